@@ -1,0 +1,44 @@
+// The world's errors (a file, a driver, a config): one exception class, thrown by `check` and `fail`, caught once in `main`.
+// Programming errors are asserts; expected outcomes are std::optional or an enum.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace binosplat {
+
+// The exit codes of the program.
+enum class ExitCode : int {
+    kDone = 0,
+    kBadInput = 1,  // a file, a value or the disk is at fault; one line said which
+    kUsage = 2,     // the command line was not understood
+    kNoDevice = 3,  // no usable GPU, OpenXR runtime or headset
+};
+
+// `what()` is one line: file, place, what is wrong, what was expected.
+class Error : public std::runtime_error {
+public:
+    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    explicit Error(const std::string& message) : Error(ExitCode::kBadInput, message) {}
+    [[nodiscard]] ExitCode code() const { return code_; }
+
+private:
+    ExitCode code_;
+};
+
+// Throws a bad-input Error with the formatted message.
+template <typename... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
+    throw Error(fmt::format(format, std::forward<Args>(args)...));
+}
+
+// Throws a bad-input Error with the formatted message unless `condition` holds.
+template <typename... Args>
+void check(bool condition, fmt::format_string<Args...> format, Args&&... args) {
+    if (!condition) { fail(format, std::forward<Args>(args)...); }
+}
+
+}  // namespace binosplat

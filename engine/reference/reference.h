@@ -1,0 +1,104 @@
+// The float64 twins of the GPU passes: same names, same order, no shared arithmetic. They are the truth tests compare with.
+// Each function is one pass of shaders/N_name.comp; `render` runs them all. Source of the equations: DESIGN "what a pixel is"
+// (2DGS, Huang et al. 2024, section 4).
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat::reference {
+
+struct Settings {
+    double near = 0.2;               // hits closer than this are skipped, scene units along the camera's z
+    glm::dvec3 background{0.0};
+    bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
+    int threads = 2;
+    double* seconds = nullptr;       // render(): if given, an array of kPassCount, filled with each pass's time
+};
+
+enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRasterize, kPassCount };
+
+// A splat as one eye sees it. With dx, dy the offset of a pixel from `reference_px`, and (A, B, D) = plane_from_pixel, the
+// ray of the pixel meets the disc's plane at
+//   1/z = inverse_depth + perspective.x dx + perspective.y dy,   u/z = plane_offset.x + A dx + B dy,   v/z = plane_offset.y + D dy
+// where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
+// unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
+// plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
+struct ProjectedSplat {
+    glm::dvec2 reference_px;
+    glm::dvec2 plane_offset;
+    glm::dvec3 plane_from_pixel;
+    glm::dvec2 perspective;
+    double inverse_depth;
+    bool low_pass;
+    bool disc;          // false: the plane holds the eye, so no ray meets it; only the low-pass is left
+    double depth;       // c.z, camera z of the centre
+    double cut;         // rho at which alpha falls to 1/255: 2 ln(255 o)
+    double opacity;
+    glm::dvec3 colour;  // max(0, 0.5 + SH(d))
+    // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W likewise; the twin's own
+    // rasterizer uses these and not the reduced form above.
+    glm::dvec3 row_u, row_v, row_w;
+    // Pixels whose centres the splat can reach, [x0, x1) x [y0, y1), clipped to the image; empty if it reaches none.
+    glm::ivec4 box_px;  // x0, y0, x1, y1
+    // The same in tiles for the customary square box of 3 sigma (ceil of three standard deviations of the larger screen
+    // extent about the projected box's centre, as the public 2DGS rasterizer bins), for the report alone. 0 where c.z <= near.
+    std::uint64_t square_box_tiles;
+};
+
+// Pictures hold one value per pixel, rows top to bottom.
+struct Picture {
+    glm::uvec2 size_px{0, 0};
+    std::vector<glm::dvec4> rgba;  // rgb = sum w c + T background, a = A = sum w
+    std::vector<double> depth;     // D = sum w z
+    std::vector<double> inverse_depth, inverse_depth_squared;  // I, J; empty unless asked for
+};
+
+// A splat in a 16x16 tile: `splat` is the rank in depth order, i.e. an index into the projected splats.
+struct TilePair {
+    std::uint32_t tile;  // row-major
+    std::uint32_t splat;
+    bool operator==(const TilePair&) const = default;
+};
+
+struct TileRange {
+    std::uint32_t begin, end;
+};
+
+// 1: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
+std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
+
+// 2: indices of the visible splats, ascending, and the camera z of each centre in `order_eye`.
+struct Visible {
+    std::vector<std::uint32_t> splats;
+    std::vector<double> depths;
+};
+Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye);
+
+// 3: the same splats, front to back, ties by index.
+std::vector<std::uint32_t> sortDepth(const Visible& visible);
+
+// 4: one eye's view of each splat, in the given order.
+std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings);
+
+// 5: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer than near, in
+// depth order and tiles ascending within a splat.
+std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
+
+// 6: pairs by tile, depth order kept within; and where each tile's pairs lie.
+void sortTiles(std::vector<TilePair>& pairs);
+std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);
+
+// 7: blending, front to back.
+Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye,
+                  const Settings& settings);
+
+// All passes for one eye.
+Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
+
+}  // namespace binosplat::reference

@@ -1,0 +1,50 @@
+// A scene of 2D Gaussian splats on the host, as float32 after the activations of DESIGN's "what a pixel is".
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+inline constexpr int kMaxShDegree = 3;
+
+// (degree + 1)^2: SH coefficients per colour channel, the constant one included.
+constexpr int shCoefficientCount(int sh_degree) { return (sh_degree + 1) * (sh_degree + 1); }
+
+// Structure of arrays; every vector holds one entry per splat (`sh`: 3 * shCoefficientCount(sh_degree) per splat).
+struct Scene {
+    std::string name;                  // file or builtin:NAME, for messages
+    std::vector<glm::vec3> positions;  // centre p, world, scene units
+    std::vector<glm::quat> rotations;  // unit; columns of its matrix are t_u, t_v, t_w
+    std::vector<glm::vec2> scales;     // s_u, s_v = exp(stored), scene units
+    std::vector<float> opacities;      // o = sigmoid(stored), 0 to 1
+    std::vector<float> sh;             // sh[(splat * shCoefficientCount(sh_degree) + k) * 3 + channel]
+    int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
+
+    [[nodiscard]] std::size_t size() const { return positions.size(); }
+};
+
+// What loading met on the way, for `info`, the report and the user.
+struct LoadNotes {
+    std::uint64_t splats_in_file = 0;
+    std::uint64_t skipped_not_finite = 0;      // a NaN or infinity in position, scale, rotation, opacity or colour
+    std::uint64_t skipped_zero_rotation = 0;   // a quaternion of length zero
+    int sh_degree_in_file = 0;                 // bands above Scene::sh_degree were all zero and were left out
+    bool three_scales = false;                 // a 3DGS scene: the shortest axis was dropped
+    double median_flatness = 0.0;              // 3DGS only: median of shortest / second shortest axis
+    std::vector<std::string> lines;            // one sentence each, for the user
+};
+
+// Called now and then with the share done, 0 to 1.
+using Progress = std::function<void(double)>;
+
+// Loads `source`: a file, a directory, or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
+// Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
+Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {});
+
+}  // namespace binosplat
