@@ -1,0 +1,27 @@
+// Image files: EXR and PNG through OpenImageIO, and nothing else knows that library; PFM and PPM in a build without it.
+// A failed write leaves no file. Files that others may watch are written where OutputFiles stages them.
+#pragma once
+
+#include "engine/picture/image.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace binosplat {
+
+enum class PictureKind {
+    kFloat,    // float32, every channel as it is: .exr, or .pfm
+    kDisplay,  // 8 bits, opaque RGB as displayed, clamped, to the nearest: .png, or .ppm
+};
+
+// The extension of a kind in this build, with its dot.
+const char* extensionOf(PictureKind kind);
+
+// Writes `stem` + extension. Float pictures have 4 channels (R, G, B, A), 3 (R, G, B) or 1, called D (depth); display pictures 3 or 4.
+// PFM has no fourth channel: A goes to a file `stem`_alpha.pfm of its own. Returns the files written. Throws Error naming the file.
+std::vector<std::filesystem::path> writePicture(const std::filesystem::path& stem, PictureKind kind, const Image& image);
+
+// Any image file of this build by its content or extension; 8-bit values become 0 to 1. For tests, goldens and photographs.
+Image readPicture(const std::filesystem::path& path);
+
+}  // namespace binosplat

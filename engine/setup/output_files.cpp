@@ -1,0 +1,72 @@
+// Files that appear all together or not at all.
+#include "engine/setup/output_files.h"
+
+#include "engine/error.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace binosplat {
+
+namespace fs = std::filesystem;
+
+OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
+    // Remember which folders are new, so that a failed run can take them away again.
+    for (fs::path part = fs::absolute(folder).lexically_normal(); !part.empty() && part != part.root_path(); part = part.parent_path()) {
+        std::error_code ignored;
+        if (fs::exists(part, ignored)) { break; }
+        if (part.has_filename()) { made_folders_.insert(made_folders_.begin(), part); }
+    }
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    const bool is_folder = !error && fs::is_directory(folder_, error);
+    if (!is_folder) {
+        removeUnpublished();
+        fail("{}: cannot be used as output directory ({}), must be a directory that can be made and written", folder_.string(),
+             error ? error.message() : "not a directory");
+    }
+    // A folder made inside proves that the place is writable, whatever its permission bits say.
+    std::string name = (folder_ / ".binosplat-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+        const std::string reason = std::strerror(errno);
+        removeUnpublished();
+        fail("{}: cannot be written ({}), must be a writable directory", folder_.string(), reason);
+    }
+    staging_ = name;
+}
+
+OutputFiles::~OutputFiles() { removeUnpublished(); }
+
+void OutputFiles::removeUnpublished() noexcept {
+    std::error_code ignored;
+    if (!staging_.empty()) { fs::remove_all(staging_, ignored); }
+    // Only empty folders go: `remove` refuses the others.
+    for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder) { fs::remove(*folder, ignored); }
+    made_folders_.clear();
+}
+
+void OutputFiles::publish() {
+    for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
+        const fs::path target = folder_ / entry.path().filename();
+        std::error_code error;
+        fs::rename(entry.path(), target, error);
+        check(!error, "{}: cannot be written ({})", target.string(), error.message());
+        made_folders_.clear();
+    }
+}
+
+void writeText(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (!file) {
+        std::error_code ignored;
+        fs::remove(path, ignored);
+        fail("{}: cannot be written ({})", path.string(), std::strerror(errno));
+    }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,37 @@
+// Files that appear all together or not at all: they are written in a hidden folder beside their place and moved at the end.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+class OutputFiles {
+public:
+    // Makes `folder` (with its parents) and proves that it can be written. Throws Error otherwise, naming the folder.
+    explicit OutputFiles(const std::filesystem::path& folder);
+    OutputFiles(const OutputFiles&) = delete;
+    OutputFiles& operator=(const OutputFiles&) = delete;
+
+    // Removes what was not published, and the folders made for it.
+    ~OutputFiles();
+
+    // Where to write files for now, under their final names.
+    [[nodiscard]] const std::filesystem::path& staging() const { return staging_; }
+
+    // Moves every staged file into the folder, replacing files of the same name. Throws Error if one cannot be moved.
+    void publish();
+
+private:
+    void removeUnpublished() noexcept;
+
+    std::filesystem::path folder_;
+    std::filesystem::path staging_;
+    std::vector<std::filesystem::path> made_folders_;  // outermost first; removed again if nothing is published
+};
+
+// Writes `text` as a whole file and checks that it reached the disk. Throws Error naming the file.
+void writeText(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace binosplat

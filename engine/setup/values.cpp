@@ -1,0 +1,117 @@
+// Typed values out of settings.
+#include "engine/setup/values.h"
+
+#include "engine/error.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace binosplat {
+
+namespace {
+
+[[noreturn]] void refuse(const Setting& setting, const std::string& expected) {
+    const std::string text = setting.text();
+    fail("{} is {}, must be {}", setting.origin, text.empty() ? "empty" : text, expected);
+}
+
+std::optional<std::uint64_t> parseCount(std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) { return std::nullopt; }
+    return value;
+}
+
+// Exactly three comma-separated numbers.
+std::optional<glm::dvec3> parseVector(std::string_view text) {
+    glm::dvec3 vector{0.0};
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t comma = i < 2 ? text.find(',') : text.size();
+        if (comma == std::string_view::npos) { return std::nullopt; }
+        const std::optional<double> number = parseNumber(text.substr(0, comma));
+        if (!number) { return std::nullopt; }
+        vector[i] = *number;
+        text.remove_prefix(i < 2 ? comma + 1 : comma);
+    }
+    return vector;
+}
+
+}  // namespace
+
+std::optional<double> parseNumber(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') { text.remove_prefix(1); }
+    while (!text.empty() && text.back() == ' ') { text.remove_suffix(1); }
+    if (text.starts_with('+')) { text.remove_prefix(1); }
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) { return std::nullopt; }
+    return value;
+}
+
+double readNumber(const Setting& setting, double least, double most) {
+    const std::optional<double> value = parseNumber(setting.text());
+    if (!value || *value < least || *value > most) { refuse(setting, fmt::format("a number from {} to {}", least, most)); }
+    return *value;
+}
+
+double readPositive(const Setting& setting) {
+    const std::optional<double> value = parseNumber(setting.text());
+    if (!value || *value <= 0.0) { refuse(setting, "a number greater than 0"); }
+    return *value;
+}
+
+std::uint64_t readCount(const Setting& setting, std::uint64_t least, std::uint64_t most) {
+    const std::optional<std::uint64_t> value = parseCount(setting.text());
+    if (!value || *value < least || *value > most) { refuse(setting, fmt::format("a whole number from {} to {}", least, most)); }
+    return *value;
+}
+
+glm::dvec3 readVector(const Setting& setting) {
+    const std::optional<glm::dvec3> vector = parseVector(setting.text());
+    if (!vector) { refuse(setting, "three finite numbers x,y,z"); }
+    return *vector;
+}
+
+glm::dvec3 readColour(const Setting& setting) {
+    const std::optional<glm::dvec3> colour = parseVector(setting.text());
+    const bool in_range =
+        colour && glm::all(glm::greaterThanEqual(*colour, glm::dvec3(0.0))) && glm::all(glm::lessThanEqual(*colour, glm::dvec3(1.0)));
+    if (!in_range) { refuse(setting, "three numbers r,g,b from 0 to 1"); }
+    return *colour;
+}
+
+glm::uvec2 readSize(const Setting& setting) {
+    const std::string text = setting.text();
+    const std::size_t cross = text.find('x');
+    const std::string_view all = text;
+    const auto width = cross == std::string::npos ? std::nullopt : parseCount(all.substr(0, cross));
+    const auto height = cross == std::string::npos ? std::nullopt : parseCount(all.substr(cross + 1));
+    const auto fits = [](const std::optional<std::uint64_t>& side) { return side && *side >= 1 && *side <= kMaxSide; };
+    if (!fits(width) || !fits(height)) { refuse(setting, fmt::format("WIDTHxHEIGHT with 1 to {} pixels per side", kMaxSide)); }
+    return {static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+}
+
+bool readFlag(const Setting& setting) {
+    const std::string text = setting.text();
+    if (text == "true") { return true; }
+    if (text == "false") { return false; }
+    refuse(setting, "true or false");
+}
+
+std::string readText(const Setting& setting) {
+    if (setting.items.size() != 1 || setting.items.front().empty()) { refuse(setting, "one text that is not empty"); }
+    return setting.items.front();
+}
+
+std::string readChoice(const Setting& setting, std::initializer_list<std::string_view> names) {
+    const std::string text = setting.text();
+    std::string list;
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        if (text == *name) { return text; }
+        list += (name == names.begin() ? "" : name + 1 == names.end() ? " or " : ", ") + std::string(*name);
+    }
+    refuse(setting, list);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,34 @@
+// Typed values out of settings. Every error is one line: where it was written, what it is, what it must be.
+#pragma once
+
+#include "engine/setup/settings.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace binosplat {
+
+// The largest picture side; a side of 0 is an error too.
+inline constexpr std::uint32_t kMaxSide = 16384;
+
+// A finite number of the C locale, nothing around it.
+std::optional<double> parseNumber(std::string_view text);
+
+double readNumber(const Setting& setting, double least, double most);
+double readPositive(const Setting& setting);
+std::uint64_t readCount(const Setting& setting, std::uint64_t least, std::uint64_t most);
+glm::dvec3 readVector(const Setting& setting);
+glm::dvec3 readColour(const Setting& setting);
+glm::uvec2 readSize(const Setting& setting);
+bool readFlag(const Setting& setting);
+std::string readText(const Setting& setting);
+
+// One of `names`.
+std::string readChoice(const Setting& setting, std::initializer_list<std::string_view> names);
+
+}  // namespace binosplat
