@@ -14,11 +14,11 @@
 namespace binosplat::reference {
 
 struct Settings {
-    double near = 0.2;               // hits closer than this are skipped, scene units along the camera's z
+    double near = 0.2;  // positive; hits closer than this are skipped, scene units along the camera's z
     glm::dvec3 background{0.0};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
     int threads = 2;
-    double* seconds = nullptr;       // render(): if given, an array of kPassCount, filled with each pass's time
+    double* seconds = nullptr;  // render(): if given, an array of kPassCount, filled with each pass's time
 };
 
 enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRasterize, kPassCount };
@@ -29,6 +29,7 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
 // unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
 // plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
+// A splat that can show nowhere (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
     glm::dvec2 plane_offset;
@@ -36,9 +37,9 @@ struct ProjectedSplat {
     glm::dvec2 perspective;
     double inverse_depth;
     bool low_pass;
-    bool disc;          // false: the plane holds the eye, so no ray meets it; only the low-pass is left
-    double depth;       // c.z, camera z of the centre
-    double cut;         // rho at which alpha falls to 1/255: 2 ln(255 o)
+    bool disc;     // false: the plane holds the eye, so no ray meets it; only the low-pass is left
+    double depth;  // c.z, camera z of the centre
+    double cut;    // rho at which alpha falls to 1/255: 2 ln(255 o)
     double opacity;
     glm::dvec3 colour;  // max(0, 0.5 + SH(d))
     // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W likewise; the twin's own
@@ -54,8 +55,8 @@ struct ProjectedSplat {
 // Pictures hold one value per pixel, rows top to bottom.
 struct Picture {
     glm::uvec2 size_px{0, 0};
-    std::vector<glm::dvec4> rgba;  // rgb = sum w c + T background, a = A = sum w
-    std::vector<double> depth;     // D = sum w z
+    std::vector<glm::dvec4> rgba;                              // rgb = sum w c + T background, a = A = sum w
+    std::vector<double> depth;                                 // D = sum w z
     std::vector<double> inverse_depth, inverse_depth_squared;  // I, J; empty unless asked for
 };
 
@@ -78,25 +79,26 @@ struct Visible {
     std::vector<std::uint32_t> splats;
     std::vector<double> depths;
 };
-Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye);
+Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye, const Settings& settings = {});
 
 // 3: the same splats, front to back, ties by index.
-std::vector<std::uint32_t> sortDepth(const Visible& visible);
+std::vector<std::uint32_t> sortDepth(const Visible& visible, const Settings& settings = {});
 
 // 4: one eye's view of each splat, in the given order.
 std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings);
 
 // 5: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer than near, in
-// depth order and tiles ascending within a splat.
+// depth order and tiles ascending within a splat. Where the disc's own hit lies nearer than near, or behind the eye, the
+// low-pass is what remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
 
 // 6: pairs by tile, depth order kept within; and where each tile's pairs lie.
-void sortTiles(std::vector<TilePair>& pairs);
+void sortTiles(std::vector<TilePair>& pairs, const Settings& settings = {});
 std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);
 
 // 7: blending, front to back.
-Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye,
-                  const Settings& settings);
+Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges,
+                  const Eye& eye, const Settings& settings);
 
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
