@@ -1,0 +1,22 @@
+// builtin:atelier: the room put together, and where to stand in it.
+#include "engine/scene/builtin/atelier.h"
+
+#include "engine/scene/builtin/builtin.h"
+
+namespace binosplat::builtin {
+
+Scene makeAtelier(std::uint64_t splats, const Progress& progress) {
+    const Room room;
+    Draft draft;
+    addShell(draft, room);
+    addOutside(draft, room);
+    addFurniture(draft, room);
+    addStillLife(draft);
+    addForeground(draft);
+    return draft.make(splats, room, progress);
+}
+
+// Lattice at 0.6 to 0.9 m on the left, leaves at 0.4 to 0.8 m on the right, hills at 40 to 400 m through the window.
+View atelierView() { return {{0.1, -1.45, 0.35}, {0.0, -1.22, 5.0}, {0.0, -1.0, 0.0}, 76.0}; }
+
+}  // namespace binosplat::builtin

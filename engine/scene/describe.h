@@ -1,0 +1,32 @@
+// What a scene is, in numbers: for `info`, the report and the choice of what to leave out.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct SceneSummary {
+    std::uint64_t splats = 0;
+    glm::vec3 min_position{0.0f}, max_position{0.0f};  // of the centres; zero for an empty scene
+    int sh_degree = 0;
+    std::array<std::uint64_t, kMaxShDegree + 1> splats_using_band{};  // splats with a non-zero coefficient in each SH band
+    // Quantiles 0, 0.05, 0.5, 0.95, 1 over the splats; scale is the longer axis, aspect the shorter over the longer.
+    std::array<float, 5> opacity_quantiles{}, scale_quantiles{}, aspect_quantiles{};
+    std::uint64_t invisible_splats = 0;  // opacity under 1/255: they never reach a pixel
+    std::uint64_t host_bytes = 0;        // of the scene's arrays
+    std::vector<std::string> left_out;   // what rendering this scene does not need, one phrase each
+};
+inline constexpr std::array<double, 5> kSummaryQuantiles{0.0, 0.05, 0.5, 0.95, 1.0};
+
+// `notes` adds what loading already left out.
+SceneSummary describeScene(const Scene& scene, const LoadNotes* notes = nullptr);
+
+// Bytes of the scene's arrays on the host.
+std::uint64_t sceneMemoryBytes(const Scene& scene);
+
+}  // namespace binosplat

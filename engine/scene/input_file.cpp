@@ -1,0 +1,91 @@
+// Buffered reading of one file. The buffer is 1 MiB: large enough for full disk speed, small beside any scene.
+#include "engine/scene/input_file.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace binosplat {
+
+namespace {
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+}
+
+InputFile::InputFile(const std::string& path) : name_(path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    check(status.type() != std::filesystem::file_type::not_found, "{}: no such file", path);
+    check(!error, "{}: cannot be read: {}", path, error.message());
+    check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", path);
+    check(status.type() == std::filesystem::file_type::regular, "{}: is not a regular file (a pipe or a device), expected a file on disk",
+          path);
+    file_.reset(std::fopen(path.c_str(), "rb"));
+    check(file_ != nullptr, "{}: cannot be opened: {}", path, std::strerror(errno));
+    size_bytes_ = std::filesystem::file_size(path, error);
+    check(!error, "{}: cannot be read: {}", path, error.message());
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+    buffer_.resize(kBufferBytes);
+}
+
+void InputFile::fillTo(std::size_t count) {
+    assert(count <= buffer_.size());
+    if (end_ - begin_ >= count) { return; }
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    while (end_ < count) {
+        errno = 0;
+        const std::size_t got = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
+        check(std::ferror(file_.get()) == 0, "{}: reading failed at byte {}: {}", name_, position_bytes_ + end_, std::strerror(errno));
+        if (got == 0) { return; }
+        end_ += got;
+    }
+}
+
+std::string_view InputFile::peek(std::size_t count) {
+    fillTo(count);
+    return {buffer_.data() + begin_, std::min(count, end_ - begin_)};
+}
+
+InputFile::LineEnd InputFile::readLine(std::string_view& line) {
+    // Most lines are short, so the search starts small and widens to the whole buffer only if no break is there.
+    for (const std::size_t reach : {std::size_t{4096}, buffer_.size()}) {
+        fillTo(reach);
+        const char* start = buffer_.data() + begin_;
+        const void* found = std::memchr(start, '\n', end_ - begin_);
+        if (found == nullptr) { continue; }
+        const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - start);
+        begin_ += length + 1;
+        position_bytes_ += length + 1;
+        line = {start, length > 0 && start[length - 1] == '\r' ? length - 1 : length};
+        return LineEnd::kBreak;
+    }
+    check(end_ - begin_ < buffer_.size(), "{}: byte {}: a line is longer than {} bytes", name_, position_bytes_, buffer_.size());
+    line = {buffer_.data() + begin_, end_ - begin_};
+    position_bytes_ += line.size();
+    begin_ = end_;
+    return line.empty() ? LineEnd::kNoLine : LineEnd::kFileEnd;
+}
+
+std::span<const std::byte> InputFile::readBlock(std::size_t count) {
+    fillTo(count);
+    const std::span<const char> block(buffer_.data() + begin_, std::min(count, end_ - begin_));
+    begin_ += block.size();
+    position_bytes_ += block.size();
+    return std::as_bytes(block);
+}
+
+void InputFile::skip(std::uint64_t count) {
+    while (count > 0) {
+        const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
+        check(got > 0, "{}: ends at byte {}, {} more were expected", name_, position_bytes_, count);
+        count -= got;
+    }
+}
+
+}  // namespace binosplat

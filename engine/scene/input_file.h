@@ -1,0 +1,53 @@
+// A file read once from front to back through one buffer, by lines or by blocks; its name is part of every message.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+class InputFile {
+public:
+    // Throws Error if `path` is missing, a directory, not a regular file or not readable.
+    explicit InputFile(const std::string& path);
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
+    [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
+    [[nodiscard]] std::uint64_t bytesLeft() const { return size_bytes_ > position_bytes_ ? size_bytes_ - position_bytes_ : 0; }
+
+    // The first bytes of the file, `count` at most, without moving on. Only before anything was read.
+    [[nodiscard]] std::string_view peek(std::size_t count);
+
+    // What a line ended with: a line break, the end of the file after at least one character, or there was no line at all.
+    enum class LineEnd { kBreak, kFileEnd, kNoLine };
+    // The next line without its break ("\n" or "\r\n"); valid until the next call. Throws Error for a line over 1 MiB.
+    LineEnd readLine(std::string_view& line);
+
+    // The next `count` bytes, at most 1 MiB; fewer only at the end of the file. Valid until the next call.
+    [[nodiscard]] std::span<const std::byte> readBlock(std::size_t count);
+
+    // Moves on by `count` bytes, which must be there.
+    void skip(std::uint64_t count);
+
+private:
+    struct Closer {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
+
+    std::string name_;
+    std::unique_ptr<std::FILE, Closer> file_;
+    std::uint64_t size_bytes_ = 0;
+    std::uint64_t position_bytes_ = 0;
+    std::vector<char> buffer_;
+    std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer
+};
+
+}  // namespace binosplat

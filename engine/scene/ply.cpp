@@ -1,0 +1,102 @@
+// From PLY properties to stored attributes: names, counts, and what is missing.
+#include "engine/scene/ply.h"
+
+#include "engine/error.h"
+#include "engine/scene/ply_header.h"
+#include "engine/scene/ply_rows.h"
+#include "engine/scene/scene_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::array<const char*, kStoredRest0> kRequiredNames{"x",       "y",       "z",       "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                                                               "scale_0", "scale_1", "scale_2", "rot_0",  "rot_1",  "rot_2",  "rot_3"};
+
+// Which columns the vertex element gives, and what follows from their number.
+struct Layout {
+    std::vector<ply::Column> columns;
+    int sh_degree = 0;
+    bool three_scales = false;
+};
+
+const ply::Element& findVertexElement(const InputFile& file, const ply::Header& header) {
+    const ply::Element* found = nullptr;
+    for (const ply::Element& element : header.elements) {
+        if (element.name != "vertex") { continue; }
+        check(found == nullptr, "{}: header: element vertex twice", file.name());
+        found = &element;
+    }
+    check(found != nullptr, "{}: header: no element vertex, expected one with the splats", file.name());
+    return *found;
+}
+
+Layout planColumns(const InputFile& file, const ply::Element& vertex) {
+    std::map<std::string, std::size_t> index_of;
+    std::size_t rest_count = 0;
+    for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
+        const ply::Property& property = vertex.properties[i];
+        check(!property.is_list, "{}: header: property {} of element vertex is a list, expected scalars only", file.name(), property.name);
+        check(index_of.emplace(property.name, i).second, "{}: header: property {} of element vertex twice", file.name(), property.name);
+        rest_count += property.name.starts_with("f_rest_");
+    }
+
+    Layout layout;
+    layout.three_scales = index_of.contains("scale_2");
+    for (int attribute = 0; attribute < kStoredRest0; ++attribute) {
+        const char* name = kRequiredNames[static_cast<std::size_t>(attribute)];
+        if (attribute == kStoredScale2 && !layout.three_scales) { continue; }
+        const auto found = index_of.find(name);
+        check(found != index_of.end(),
+              "{}: header: element vertex has no property {}, expected a splat scene with x y z f_dc_0..2 opacity scale_0..1 rot_0..3",
+              file.name(), name);
+        layout.columns.push_back({found->second, attribute});
+    }
+    while (layout.sh_degree <= kMaxShDegree && 3 * (static_cast<std::size_t>(shCoefficientCount(layout.sh_degree)) - 1) != rest_count) {
+        ++layout.sh_degree;
+    }
+    check(layout.sh_degree <= kMaxShDegree, "{}: header: element vertex has {} f_rest properties, expected 0, 9, 24 or 45", file.name(),
+          rest_count);
+    for (std::size_t i = 0; i < rest_count; ++i) {
+        const auto found = index_of.find(fmt::format("f_rest_{}", i));
+        check(found != index_of.end(), "{}: header: element vertex has {} f_rest properties but no f_rest_{}", file.name(), rest_count, i);
+        layout.columns.push_back({found->second, kStoredRest0 + static_cast<int>(i)});
+    }
+    return layout;
+}
+
+}  // namespace
+
+bool isPly(InputFile& file) {
+    const std::string_view start = file.peek(5);
+    return start.starts_with("ply\n") || start == "ply\r\n";
+}
+
+Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
+    const ply::Header header = ply::readHeader(file);
+    const ply::Element& vertex = findVertexElement(file, header);
+    const Layout layout = planColumns(file, vertex);
+    for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
+        ply::skipElement(file, header.encoding, *element);
+    }
+    const std::unique_ptr<ply::RowReader> rows = ply::openRows(file, header, vertex, layout.columns);
+
+    SceneBuilder builder(file.name(), vertex.count, layout.sh_degree, layout.three_scales);
+    StoredBlock block;
+    constexpr std::uint64_t kBlocksPerReport = 128;
+    for (std::uint64_t done = 0, blocks = 0; done < vertex.count; ++blocks) {
+        if (progress && blocks % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
+        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, vertex.count - done));
+        rows->read(block);
+        builder.append(block);
+        done += block.rows;
+    }
+    if (progress) { progress(1.0); }
+    return builder.finish(notes);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,22 @@
+// PLY files of Gaussian splats as 2DGS and 3DGS trainings leave them: reading and writing.
+#pragma once
+
+#include "engine/scene/input_file.h"
+#include "engine/scene/scene.h"
+
+#include <string>
+
+namespace binosplat {
+
+// Whether the file is a PLY, by its first line.
+bool isPly(InputFile& file);
+
+// Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24 or 45, channel-major), opacity (logit), scale_0 scale_1
+// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is passed over.
+Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
+
+// Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w.
+// Opacities 0 and 1 and scale 0 are stored as large finite numbers that read back exactly. The file appears whole or not at all.
+void writePly(const Scene& scene, const std::string& path, const Progress& progress = {});
+
+}  // namespace binosplat

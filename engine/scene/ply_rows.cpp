@@ -1,0 +1,227 @@
+// Conversion loops: one per type and byte order for binary rows, one for ascii.
+#include "engine/scene/ply_rows.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace binosplat::ply {
+
+namespace {
+
+template <typename T, bool kSwap>
+T loadValue(const std::byte* source) {
+    std::array<std::byte, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), source, sizeof(T));
+    if constexpr (kSwap) { std::reverse(bytes.begin(), bytes.end()); }
+    return std::bit_cast<T>(bytes);
+}
+
+// One column of a block: rows are `stride` bytes apart.
+template <typename T, bool kSwap>
+void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target) {
+    for (std::size_t row = 0; row < rows; ++row) { target[row] = static_cast<float>(loadValue<T, kSwap>(source + row * stride)); }
+}
+
+using ConvertColumn = void (*)(const std::byte*, std::size_t, std::size_t, float*);
+
+template <bool kSwap>
+ConvertColumn selectConversion(Type type) {
+    switch (type) {
+        case Type::kInt8:
+            return convertColumn<std::int8_t, kSwap>;
+        case Type::kUint8:
+            return convertColumn<std::uint8_t, kSwap>;
+        case Type::kInt16:
+            return convertColumn<std::int16_t, kSwap>;
+        case Type::kUint16:
+            return convertColumn<std::uint16_t, kSwap>;
+        case Type::kInt32:
+            return convertColumn<std::int32_t, kSwap>;
+        case Type::kUint32:
+            return convertColumn<std::uint32_t, kSwap>;
+        case Type::kFloat32:
+            return convertColumn<float, kSwap>;
+        case Type::kFloat64:
+            return convertColumn<double, kSwap>;
+    }
+    return nullptr;
+}
+
+bool needsSwap(Encoding encoding) { return (encoding == Encoding::kLittleEndian) != (std::endian::native == std::endian::little); }
+
+class BinaryRows final : public RowReader {
+public:
+    BinaryRows(InputFile& file, Encoding encoding, const Element& element, const std::vector<Column>& columns)
+        : file_(file), total_(element.count), stride_(element.rowBytes()) {
+        std::vector<std::size_t> offsets(element.properties.size());
+        for (std::size_t i = 1; i < offsets.size(); ++i) { offsets[i] = offsets[i - 1] + typeBytes(element.properties[i - 1].type); }
+        for (const Column& column : columns) {
+            const Type type = element.properties[column.property].type;
+            columns_.push_back({offsets[column.property],
+                                needsSwap(encoding) ? selectConversion<true>(type) : selectConversion<false>(type), column.attribute});
+        }
+    }
+
+    void read(StoredBlock& block) override {
+        // A row is at most 480 KB (the header's limit), so at least one fits into the file's buffer.
+        const std::size_t rows_at_once = std::max<std::size_t>(1, std::min(block.rows, kReadBytes / stride_));
+        for (std::size_t done = 0; done < block.rows;) {
+            const std::size_t rows = std::min(rows_at_once, block.rows - done);
+            const std::span<const std::byte> bytes = file_.readBlock(rows * stride_);
+            check(bytes.size() == rows * stride_, "{}: data: ends in splat {} of {}", file_.name(), done_ + bytes.size() / stride_, total_);
+            for (const Source& source : columns_) {
+                source.convert(bytes.data() + source.offset, stride_, rows, block.column(source.attribute) + done);
+            }
+            done += rows;
+            done_ += rows;
+        }
+    }
+
+private:
+    static constexpr std::size_t kReadBytes = std::size_t{1} << 19;
+    struct Source {
+        std::size_t offset;
+        ConvertColumn convert;
+        int attribute;
+    };
+    InputFile& file_;
+    std::uint64_t total_, done_ = 0;
+    std::size_t stride_;
+    std::vector<Source> columns_;
+};
+
+// The number at the front of `text`, which is moved past it; false if there is none. Overflow gives an infinity.
+bool takeNumber(std::string_view& text, float& value) {
+    const std::size_t start = text.find_first_not_of(" \t");
+    if (start == std::string_view::npos) { return false; }
+    text.remove_prefix(start);
+    const std::size_t length = std::min(text.find_first_of(" \t"), text.size());
+    const char* begin = text.data() + (text[0] == '+' && length > 1 ? 1 : 0);
+    double wide = 0.0;
+    const auto [end, error] = std::from_chars(begin, text.data() + length, wide);
+    if (error == std::errc::invalid_argument || end != text.data() + length) { return false; }
+    // Out of float64's range, from_chars leaves the value alone; it matters only whether the exponent was negative.
+    if (error == std::errc::result_out_of_range) {
+        const bool tiny =
+            text.substr(0, length).find("e-") != std::string_view::npos || text.substr(0, length).find("E-") != std::string_view::npos;
+        wide = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+    }
+    value = static_cast<float>(wide);
+    text.remove_prefix(length);
+    return true;
+}
+
+class AsciiRows final : public RowReader {
+public:
+    AsciiRows(InputFile& file, const Element& element, const std::vector<Column>& columns)
+        : file_(file), element_(element), attribute_of_(element.properties.size(), -1) {
+        for (const Column& column : columns) { attribute_of_[column.property] = column.attribute; }
+    }
+
+    void read(StoredBlock& block) override {
+        for (std::size_t row = 0; row < block.rows; ++row, ++done_) {
+            std::string_view text;
+            InputFile::LineEnd end{};
+            do {
+                end = file_.readLine(text);
+            } while (end == InputFile::LineEnd::kBreak && text.find_first_not_of(" \t") == std::string_view::npos);
+            check(end != InputFile::LineEnd::kNoLine, "{}: data: ends before splat {} of {}", file_.name(), done_, element_.count);
+            // A number cut short is a number still; only the line break tells that the last one is whole.
+            check(end == InputFile::LineEnd::kBreak, "{}: data: ends in splat {} of {}: its line has no line break", file_.name(), done_,
+                  element_.count);
+            for (std::size_t i = 0; i < attribute_of_.size(); ++i) {
+                float value = 0.0f;
+                const std::string_view rest = text;
+                check(takeNumber(text, value), "{}: splat {} of {}: property {} is '{}', expected a number", file_.name(), done_,
+                      element_.count, element_.properties[i].name, firstWord(rest));
+                if (attribute_of_[i] >= 0) { block.column(attribute_of_[i])[row] = value; }
+            }
+            check(text.find_first_not_of(" \t") == std::string_view::npos,
+                  "{}: splat {} of {}: more than the expected {} values in its line", file_.name(), done_, element_.count,
+                  attribute_of_.size());
+        }
+    }
+
+private:
+    static std::string firstWord(std::string_view text) {
+        const std::size_t start = std::min(text.find_first_not_of(" \t"), text.size());
+        const std::size_t end = std::min(text.find_first_of(" \t", start), text.size());
+        std::string word(text.substr(start, std::min<std::size_t>(end - start, 40)));
+        for (char& letter : word) {
+            if (letter < ' ' || letter > '~') { letter = '?'; }
+        }
+        return word;
+    }
+
+    InputFile& file_;
+    const Element& element_;
+    std::uint64_t done_ = 0;
+    std::vector<int> attribute_of_;  // -1: not wanted
+};
+
+// The count in front of a binary list.
+std::uint64_t readListCount(InputFile& file, Encoding encoding, const Element& element, const Property& property) {
+    const std::span<const std::byte> bytes = file.readBlock(typeBytes(property.count_type));
+    check(bytes.size() == typeBytes(property.count_type), "{}: data: ends in element {}, list {}", file.name(), element.name,
+          property.name);
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const std::size_t at = encoding == Encoding::kBigEndian ? i : bytes.size() - 1 - i;
+        count = count << 8 | std::to_integer<std::uint64_t>(bytes[at]);
+    }
+    return count;
+}
+
+}  // namespace
+
+void skipElement(InputFile& file, Encoding encoding, const Element& element) {
+    if (element.properties.empty()) { return; }
+    if (encoding == Encoding::kAscii) {
+        std::string_view text;
+        for (std::uint64_t row = 0; row < element.count;) {
+            check(file.readLine(text) == InputFile::LineEnd::kBreak, "{}: data: ends in row {} of {} of element {}", file.name(), row,
+                  element.count, element.name);
+            row += text.find_first_not_of(" \t") != std::string_view::npos;
+        }
+        return;
+    }
+    if (!element.hasList()) {
+        check(element.count <= file.bytesLeft() / element.rowBytes(),
+              "{}: data: {} rows of element {} take {} bytes each, but only {} bytes are left", file.name(), element.count, element.name,
+              element.rowBytes(), file.bytesLeft());
+        file.skip(element.count * element.rowBytes());
+        return;
+    }
+    for (std::uint64_t row = 0; row < element.count; ++row) {
+        for (const Property& property : element.properties) {
+            const std::uint64_t items = property.is_list ? readListCount(file, encoding, element, property) : 1;
+            check(items <= file.bytesLeft() / typeBytes(property.type), "{}: data: ends in row {} of {} of element {}", file.name(), row,
+                  element.count, element.name);
+            file.skip(items * typeBytes(property.type));
+        }
+    }
+}
+
+std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element, std::vector<Column> columns) {
+    const std::uint64_t left = file.bytesLeft();
+    if (header.encoding == Encoding::kAscii) {
+        // The shortest row has one digit and one separator per property.
+        const std::uint64_t shortest = 2 * element.properties.size();
+        check(element.count <= left / shortest, "{}: data: ends before splat {} of {}: {} bytes are left, at least {} per splat expected",
+              file.name(), left / shortest, element.count, left, shortest);
+        return std::make_unique<AsciiRows>(file, element, columns);
+    }
+    const std::uint64_t stride = element.rowBytes();
+    check(element.count <= left / stride, "{}: data: ends in splat {} of {}: {} bytes are left, {} per splat expected", file.name(),
+          left / stride, element.count, left, stride);
+    return std::make_unique<BinaryRows>(file, header.encoding, element, columns);
+}
+
+}  // namespace binosplat::ply
