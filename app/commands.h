@@ -1,0 +1,14 @@
+// The subcommands. Each throws Error; none catches one.
+#pragma once
+
+#include "app/options.h"
+
+namespace binosplat {
+
+void runRender(const RenderOptions& options);
+void runBench(const BenchOptions& options);
+void runView(const ViewOptions& options);
+void runInfo(const InfoOptions& options);
+void runScene(const SceneOptions& options);
+
+}  // namespace binosplat

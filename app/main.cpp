@@ -1,0 +1,50 @@
+// The program: reads its options, runs one command, and turns what went wrong into one line and an exit code.
+#include "app/commands.h"
+#include "app/options.h"
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+#include <variant>
+
+namespace binosplat {
+
+namespace {
+
+template <typename... Handlers>
+struct Match : Handlers... {
+    using Handlers::operator()...;
+};
+
+void run(int argument_count, const char* const* arguments) {
+    std::visit(Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
+                     [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
+                     [](const SceneOptions& options) { runScene(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
+               parseOptions(argument_count, arguments));
+    check(std::fflush(stdout) == 0, "standard output: cannot be written ({})", std::strerror(errno));
+}
+
+int report(ExitCode code, std::string message) {
+    std::ranges::replace(message, '\n', ' ');
+    fmt::print(stderr, "binosplat: {}\n", message);
+    return static_cast<int>(code);
+}
+
+}  // namespace
+
+}  // namespace binosplat
+
+int main(int argument_count, char** arguments) {
+    using namespace binosplat;
+    try {
+        run(argument_count, arguments);
+        return static_cast<int>(ExitCode::kDone);
+    } catch (const Error& error) { return report(error.code(), error.what()); } catch (const std::bad_alloc&) {
+        return report(ExitCode::kBadInput, "memory: not enough for this scene and picture size, must be smaller");
+    } catch (const std::exception& error) { return report(ExitCode::kBadInput, error.what()); }
+}

@@ -1,0 +1,41 @@
+// Every option of `render` and its likes, once: the command line, the config files and their checks are made from these rows.
+#pragma once
+
+namespace binosplat {
+
+struct OptionRow {
+    const char* key;    // --key on the command line, key in a config
+    const char* table;  // the config table it may stand in; it may also stand at the top
+    const char* value;  // placeholder for the help; "" for a flag
+    const char* help;
+};
+
+inline constexpr OptionRow kCameraRows[] = {
+    {"eye", "camera", "x,y,z", "middle of the eyes (default: a view of the whole scene)"},
+    {"look", "camera", "x,y,z", "point looked at"},
+    {"up", "camera", "x,y,z", "direction that is up in the picture (default 0,-1,0, or the built-in scene's)"},
+    {"fov-x", "camera", "DEG", "horizontal field of view (default 60, or the built-in scene's view)"},
+    {"size", "camera", "WxH", "pixels per eye (default 1024x1024, or what --cameras or --headset says)"},
+    {"cameras", "camera", "FILE", "cameras.json of a 3DGS or 2DGS training"},
+    {"view", "camera", "N", "which camera of --cameras, from 0 (default 0)"},
+    {"headset", "camera", "NAME", "angles, size and eye distance from configs/headsets/NAME.toml"},
+    {"near", "camera", "Z", "nearest depth that is drawn, scene units (default 0.2)"},
+    {"background", "camera", "r,g,b", "colour behind the scene, 0 to 1 (default 0,0,0)"},
+};
+
+inline constexpr OptionRow kStereoRows[] = {
+    {"mode", "stereo", "MODE", "mono, two-pass, shared, reproject, paper or predicted (default shared)"},
+    {"dominant", "stereo", "SIDE", "eye that is rendered in full, left or right (default left)"},
+    {"ipd", "stereo", "METRES", "distance of the eyes (default 0.063, or the headset's)"},
+    {"center-roi", "stereo", "", "paper mode: also render again what is still unfilled inside the picture"},
+    {"margin", "stereo", "PX", "paper mode: pixels added around what is rendered again (default 32)"},
+    {"budget", "stereo", "FRACTION", "predicted mode: share of the tiles that is rendered again (default 0.15)"},
+    {"depth", "stereo", "KIND", "depth that reprojects a pixel: sum, mean or inverse (default inverse)"},
+};
+
+inline constexpr OptionRow kRunRows[] = {
+    {"metres-per-unit", "scene", "M", "metres in one scene unit (default 1)"},
+    {"device", "run", "NAME|INDEX", "GPU to use: part of its name, or its number (default: the most capable)"},
+};
+
+}  // namespace binosplat

@@ -1,0 +1,185 @@
+// The command line, read with CLI11, and the typed values of all settings.
+#include "app/options.h"
+
+#include "app/option_layers.h"
+#include "app/option_table.h"
+#include "engine/error.h"
+#include "engine/setup/values.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <span>
+
+namespace binosplat {
+
+namespace {
+
+// What CLI11 fills in; values stay text until both layers are merged.
+struct CommandLine {
+    std::map<std::string, std::string> values;
+    std::map<std::string, CLI::Option*> given;
+    bool center_roi = false;
+};
+
+void addRows(CLI::App& command, CommandLine& line, std::span<const OptionRow> rows, const char* group) {
+    for (const OptionRow& row : rows) {
+        const std::string name = std::string("--") + row.key;
+        const bool is_flag = *row.value == '\0';
+        CLI::Option* option =
+            is_flag ? command.add_flag(name, line.center_roi, row.help) : command.add_option(name, line.values[row.key], row.help);
+        if (!is_flag) { option->type_name(row.value); }
+        option->group(group);
+        line.given[row.key] = option;
+    }
+}
+
+void addFrameRows(CLI::App& command, CommandLine& line, std::string& config) {
+    addRows(command, line, kCameraRows, "Camera");
+    addRows(command, line, kStereoRows, "Stereo");
+    addRows(command, line, kRunRows, "Run");
+    command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
+}
+
+Settings commandLineLayer(const CommandLine& line) {
+    Settings layer;
+    for (const auto& [key, option] : line.given) {
+        if (option->count() == 0) { continue; }
+        const bool is_flag = !line.values.contains(key);
+        layer.emplace(key, Setting{"--" + key, {is_flag ? (line.center_roi ? "true" : "false") : line.values.at(key)}});
+    }
+    return layer;
+}
+
+FrameOptions readFrame(const CommandLine& line, const std::string& config, const std::set<std::string>& foreign,
+                       std::vector<SettingsTable>* rest) {
+    Settings config_settings;
+    if (!config.empty()) {
+        const std::vector<SettingsTable> tables = readSettingsFile(config);
+        config_settings = configLayer(config, tables, foreign);
+        for (const SettingsTable& table : tables) {
+            if (rest != nullptr && foreign.contains(table.name)) { rest->push_back(table); }
+        }
+    }
+    FrameOptions options = frameOptions(mergeLayers(commandLineLayer(line), config_settings));
+    options.config = config;
+    return options;
+}
+
+// CLI11 takes "-.5,0,0" for an option but "-0.5,0,0" for a value.
+std::vector<std::string> readableArguments(int count, const char* const* arguments) {
+    std::vector<std::string> reversed;
+    for (int i = count - 1; i > 0; --i) {
+        std::string argument = arguments[i];
+        const bool bare_fraction =
+            argument.size() > 2 && argument[0] == '-' && argument[1] == '.' && std::isdigit(static_cast<unsigned char>(argument[2])) != 0;
+        if (bare_fraction) { argument.insert(1, "0"); }
+        reversed.push_back(argument);
+    }
+    return reversed;
+}
+
+std::string oneLine(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+}  // namespace
+
+FrameOptions frameOptions(const Settings& settings) {
+    FrameOptions options;
+    CameraOptions& camera = options.camera;
+    StereoOptions& stereo = options.stereo;
+    const auto read = [&](const char* key, auto&& store) {
+        if (const auto found = settings.find(key); found != settings.end()) { store(found->second); }
+    };
+    read("eye", [&](const Setting& s) { camera.eye = readVector(s); });
+    read("look", [&](const Setting& s) { camera.look = readVector(s); });
+    read("up", [&](const Setting& s) { camera.up = readVector(s); });
+    read("fov-x", [&](const Setting& s) { camera.fov_x_deg = readNumber(s, 0.1, 179.0); });
+    read("size", [&](const Setting& s) { camera.size_px = readSize(s); });
+    read("cameras", [&](const Setting& s) { camera.cameras_file = readText(s); });
+    read("view",
+         [&](const Setting& s) { camera.view = static_cast<std::uint32_t>(readCount(s, 0, std::numeric_limits<std::uint32_t>::max())); });
+    read("headset", [&](const Setting& s) { camera.headset = readText(s); });
+    read("near", [&](const Setting& s) { camera.near = readPositive(s); });
+    read("background", [&](const Setting& s) { camera.background = readColour(s); });
+    read("mode", [&](const Setting& s) { stereo.mode = readChoice(s, {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}); });
+    read("dominant", [&](const Setting& s) { stereo.dominant = readChoice(s, {"left", "right"}) == "left" ? kLeft : kRight; });
+    read("ipd", [&](const Setting& s) { stereo.ipd_m = readNumber(s, 0.0, 10.0); });
+    read("center-roi", [&](const Setting& s) { stereo.center_roi = readFlag(s); });
+    read("margin", [&](const Setting& s) { stereo.margin_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxSide)); });
+    read("budget", [&](const Setting& s) { stereo.budget = readNumber(s, 0.0, 1.0); });
+    read("depth", [&](const Setting& s) { stereo.depth = readChoice(s, {"sum", "mean", "inverse"}); });
+    read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
+    read("device", [&](const Setting& s) { options.device = readText(s); });
+    return options;
+}
+
+Options parseOptions(int argument_count, const char* const* arguments) {
+    CLI::App app{"binosplat: stereo pictures of 2D Gaussian splatting scenes", "binosplat"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "binosplat 0.1");
+
+    CommandLine render_line, bench_line;
+    RenderOptions render;
+    CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
+    render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
+    render_command->add_option("--out", render.out, "directory for pictures and report.json")->required()->type_name("DIR");
+    addFrameRows(*render_command, render_line, render.frame.config);
+
+    BenchOptions bench;
+    CLI::App* bench_command = app.add_subcommand("bench", "Measure modes over scenes, splat counts and picture sizes");
+    bench_command->add_option("SCENE", bench.scenes, "files, directories or builtin:NAME (default: those of the config)");
+    bench_command->add_option("--out", bench.out, "directory for bench.json, bench.csv and bench.svg")->required()->type_name("DIR");
+    addFrameRows(*bench_command, bench_line, bench.frame.config);
+
+    ViewOptions view;
+    CLI::App* view_command = app.add_subcommand("view", "Show a scene in an OpenXR headset");
+    view_command->add_option("SCENE", view.scene, "file, directory or builtin:NAME")->required();
+    view_command->add_option("--config", view.config, "TOML file of options")->type_name("FILE");
+    CLI::Option* simulate = view_command->add_option("--simulate", view.script, "use the simulated headset, driven by SCRIPT if given");
+    simulate->expected(0, 1)->type_name("[SCRIPT]");
+
+    InfoOptions info;
+    CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");
+    info_command->add_option("SCENE", info.scene, "file, directory or builtin:NAME")->required();
+
+    SceneOptions scene;
+    std::string splats;
+    CLI::App* scene_command = app.add_subcommand("scene", "Write a built-in scene as a 2DGS PLY file");
+    scene_command->add_option("NAME", scene.name, "name of the built-in scene")->required();
+    CLI::Option* splats_option =
+        scene_command->add_option("--splats", splats, "how many splats (default: the scene's own number)")->type_name("N");
+    scene_command->add_option("--out", scene.out, "file to write")->required()->type_name("FILE.ply");
+
+    try {
+        app.parse(readableArguments(argument_count, arguments));
+    } catch (const CLI::CallForHelp&) {
+        const auto chosen = app.get_subcommands();
+        return HelpText{chosen.empty() ? app.help() : chosen.front()->help("binosplat")};
+    } catch (const CLI::CallForVersion&) { return HelpText{app.version() + "\n"}; } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::kUsage, oneLine(error.what()) + " (see `binosplat --help`)");
+    }
+
+    if (render_command->parsed()) {
+        render.frame = readFrame(render_line, render.frame.config, {}, nullptr);
+        return render;
+    }
+    if (bench_command->parsed()) {
+        bench.frame = readFrame(bench_line, bench.frame.config, {"bench", "series"}, &bench.tables);
+        return bench;
+    }
+    if (view_command->parsed()) {
+        view.simulate = simulate->count() > 0;
+        if (!view.config.empty()) { readFrame({}, view.config, {}, nullptr); }
+        return view;
+    }
+    if (info_command->parsed()) { return info; }
+    if (splats_option->count() > 0) { scene.splats = readCount({"--splats", {splats}}, 1, std::uint64_t{1} << 31); }
+    return scene;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,91 @@
+// What the user asked for, typed and checked: the command line over the config file over the defaults.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/setup/settings.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace binosplat {
+
+// Where the eyes are and what they see. What is absent comes from --cameras, --headset or the scene.
+struct CameraOptions {
+    std::optional<glm::dvec3> eye, look, up;
+    std::optional<double> fov_x_deg;
+    std::optional<glm::uvec2> size_px;
+    std::string cameras_file;
+    std::uint32_t view = 0;
+    std::string headset;
+    double near = 0.2;
+    glm::dvec3 background{0.0};
+};
+
+struct StereoOptions {
+    std::string mode = "shared";
+    Side dominant = kLeft;
+    std::optional<double> ipd_m;
+    bool center_roi = false;
+    std::uint32_t margin_px = 32;
+    double budget = 0.15;
+    std::string depth = "inverse";
+};
+
+inline constexpr double kDefaultIpdMetres = 0.063;
+
+// What `render` and `bench` have in common.
+struct FrameOptions {
+    CameraOptions camera;
+    StereoOptions stereo;
+    double metres_per_unit = 1.0;
+    std::string device;
+    std::string config;
+};
+
+struct RenderOptions {
+    std::string scene;
+    std::filesystem::path out;
+    FrameOptions frame;
+};
+
+struct BenchOptions {
+    std::vector<std::string> scenes;  // empty: those of the config
+    std::filesystem::path out;
+    FrameOptions frame;
+    std::vector<SettingsTable> tables;  // the config's [bench] and [[series]], for the bench alone
+};
+
+struct ViewOptions {
+    std::string scene;
+    std::string config;
+    bool simulate = false;
+    std::string script;
+};
+
+struct InfoOptions {
+    std::string scene;
+};
+
+struct SceneOptions {
+    std::string name;
+    std::uint64_t splats = 0;  // 0: the scene's own default
+    std::filesystem::path out;
+};
+
+struct HelpText {
+    std::string text;
+};
+
+using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, HelpText>;
+
+// Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
+Options parseOptions(int argument_count, const char* const* arguments);
+
+// Typed values of merged settings.
+FrameOptions frameOptions(const Settings& settings);
+
+}  // namespace binosplat

@@ -1,0 +1,31 @@
+// One line on a terminal for work that takes longer than a second.
+#include "app/progress.h"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace binosplat {
+
+ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+    if (shown_) { fmt::print(stderr, "\r\033[K"); }
+}
+
+void ProgressLine::show(double share) {
+    const Clock::time_point now = Clock::now();
+    if (!terminal_ || now - start_ < std::chrono::seconds(1) || (shown_ && now - last_ < std::chrono::milliseconds(100))) { return; }
+    const int percent = std::clamp(static_cast<int>(std::lround(100.0 * share)), 0, 100);
+    fmt::print(stderr, "\r\033[K{} {} %", what_, percent);
+    std::fflush(stderr);
+    shown_ = true;
+    last_ = now;
+}
+
+}  // namespace binosplat

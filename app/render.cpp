@@ -1,0 +1,73 @@
+// `binosplat render`: one frame, its pictures and its report.
+#include "app/camera_options.h"
+#include "app/commands.h"
+#include "app/load.h"
+#include "app/modes.h"
+#include "app/report.h"
+#include "engine/error.h"
+#include "engine/frame.h"
+#include "engine/picture/image_io.h"
+#include "engine/setup/output_files.h"
+
+namespace binosplat {
+
+namespace {
+
+// The validation layers are for finding our mistakes: what they say is an error, not a remark.
+void requireNoValidationMessages(const Context& context) {
+    const std::vector<std::string> messages = context.validationMessages();
+    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
+}
+
+void writePictures(const OutputFiles& files, StereoFrame& frame, const std::string& mode) {
+    const auto write = [&](const char* name, const Image& image) {
+        writePicture(files.staging() / name, PictureKind::kFloat, image);
+        writePicture(files.staging() / name, PictureKind::kDisplay, image);
+    };
+    if (mode == "mono") {
+        write("mono", frame.readPicture(0));
+    } else {
+        write("left", frame.readPicture(kLeft));
+        write("right", frame.readPicture(kRight));
+    }
+    writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
+}
+
+}  // namespace
+
+void runRender(const RenderOptions& options) {
+    const StereoOptions& stereo = options.frame.stereo;
+    const Mode mode = frameMode(stereo.mode);
+    // Whatever can be known to fail is found out before the scene is loaded.
+    OutputFiles files(options.out);
+    const CameraFiles camera_files = readCameraFiles(options.frame.camera);
+
+    LoadNotes notes;
+    Scene scene = loadWithProgress(options.scene, 0, notes);
+    const Cameras cameras = makeCameras(options.frame, camera_files, scene);
+    const Context context({.device = options.frame.device});
+    const GpuScene gpu_scene = [&] {
+        ProgressLine line("uploading " + options.scene);
+        return GpuScene(context, scene, [&](double share) { line.show(share); });
+    }();
+    scene = {};
+
+    StereoFrame frame(context, gpu_scene);
+    const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+    const FrameSettings settings{
+        .mode = mode, .dominant = stereo.dominant, .near = options.frame.camera.near, .background = options.frame.camera.background};
+    const FrameResult result = frame.render(eyes, settings);
+
+    FrameReport report{context.deviceName(),  options,        cameras, result.gpu_ms, result.gpu_total_ms, result.counters,
+                       result.peak_gpu_bytes, result.left_out};
+    writePictures(files, frame, stereo.mode);
+    writeText(files.staging() / "report.json", reportJson(report));
+    requireNoValidationMessages(context);
+    files.publish();
+
+    fmt::print("{}", reportTable(report));
+    for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
+    for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,108 @@
+// report.json of `render`.
+#include "app/report.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vectorJson(const glm::dvec3& vector) { return Json::array({vector.x, vector.y, vector.z}); }
+
+Json eyeJson(const Eye& eye) {
+    const glm::dquat& q = eye.world_from_camera.orientation;
+    const Intrinsics& k = eye.intrinsics;
+    return {{"position", vectorJson(eye.world_from_camera.position)},
+            {"orientation_wxyz", Json::array({q.w, q.x, q.y, q.z})},
+            {"fx", k.fx},
+            {"fy", k.fy},
+            {"cx", k.cx},
+            {"cy", k.cy},
+            {"width", eye.size_px.x},
+            {"height", eye.size_px.y}};
+}
+
+// Every option under its own name with the value that was used; null for one that did not apply.
+Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
+    const CameraOptions& camera = options.frame.camera;
+    const StereoOptions& stereo = options.frame.stereo;
+    const auto given = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
+    Json json{{"scene", options.scene},
+              {"out", options.out.string()},
+              {"config", given(options.frame.config)},
+              {"device", given(options.frame.device)}};
+    json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
+    json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
+    json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();
+    json["fov-x"] = cameras.view && cameras.view->fov_x_deg > 0.0 ? Json(cameras.view->fov_x_deg) : Json();
+    json["size"] = fmt::format("{}x{}", cameras.middle.size_px.x, cameras.middle.size_px.y);
+    json["cameras"] = given(camera.cameras_file);
+    json["view"] = camera.cameras_file.empty() ? Json() : Json(camera.view);
+    json["headset"] = given(camera.headset);
+    json["near"] = camera.near;
+    json["background"] = vectorJson(camera.background);
+    json["mode"] = stereo.mode;
+    json["dominant"] = stereo.dominant == kLeft ? "left" : "right";
+    json["ipd"] = cameras.eye_distance * options.frame.metres_per_unit;
+    json["center-roi"] = stereo.center_roi;
+    json["margin"] = stereo.margin_px;
+    json["budget"] = stereo.budget;
+    json["depth"] = stereo.depth;
+    json["metres-per-unit"] = options.frame.metres_per_unit;
+    return json;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times) {
+    std::vector<std::pair<std::string, double>> sums;
+    for (const auto& [name, ms] : times) {
+        const auto found = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
+        if (found == sums.end()) {
+            sums.emplace_back(name, ms);
+        } else {
+            found->second += ms;
+        }
+    }
+    return sums;
+}
+
+std::string reportJson(const FrameReport& report) {
+    Json passes = Json::object(), counters = Json::object();
+    for (const auto& [name, ms] : addUp(report.gpu_ms)) { passes[name] = ms; }
+    for (const auto& [name, count] : report.counters) { counters[name] = count; }
+    Json eyes = Json::object();
+    if (report.options.frame.stereo.mode == "mono") {
+        eyes["mono"] = eyeJson(report.cameras.middle);
+    } else {
+        eyes["left"] = eyeJson(report.cameras.eyes[kLeft]);
+        eyes["right"] = eyeJson(report.cameras.eyes[kRight]);
+    }
+    const Json root{{"device", report.device},
+                    {"options", optionsJson(report.options, report.cameras)},
+                    {"eyes", eyes},
+                    {"gpu_ms", passes},
+                    {"gpu_total_ms", report.gpu_total_ms},
+                    {"counters", counters},
+                    {"peak_gpu_bytes", report.peak_gpu_bytes},
+                    {"left_out", report.left_out}};
+    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string reportTable(const FrameReport& report) {
+    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.frame.stereo.mode,
+                                    report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
+    for (const auto& [name, ms] : addUp(report.gpu_ms)) { table += fmt::format("  {:<16} {:>10.3f} ms\n", name, ms); }
+    table += fmt::format("  {:<16} {:>10.3f} ms\n", "total", report.gpu_total_ms);
+    for (const auto& [name, count] : report.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
+    table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.peak_gpu_bytes) / (1024.0 * 1024.0));
+    return table;
+}
+
+}  // namespace binosplat

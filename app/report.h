@@ -1,0 +1,34 @@
+// report.json of `render`: what was asked for, what ran, how long it took.
+#pragma once
+
+#include "app/camera_options.h"
+#include "app/options.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+struct FrameReport {
+    std::string device;
+    RenderOptions options;
+    Cameras cameras;
+    std::vector<std::pair<std::string, double>> gpu_ms;  // by pass, in frame order; passes of the same name are added up
+    double gpu_total_ms = 0.0;
+    std::map<std::string, std::uint64_t> counters;
+    std::uint64_t peak_gpu_bytes = 0;
+    std::vector<std::string> left_out;
+};
+
+// Times by name; entries of the same name are added up, in order of first appearance.
+std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times);
+
+std::string reportJson(const FrameReport& report);
+
+// The same on a terminal, a line per pass.
+std::string reportTable(const FrameReport& report);
+
+}  // namespace binosplat

@@ -1,0 +1,26 @@
+// `binosplat scene`: a built-in scene as a 2DGS PLY file.
+#include "app/commands.h"
+#include "app/progress.h"
+#include "engine/error.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+
+#include <filesystem>
+
+namespace binosplat {
+
+void runScene(const SceneOptions& options) {
+    check(options.out.extension() == ".ply", "{}: --out must be a file whose name ends in .ply", options.out.string());
+    const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
+    check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", options.out.string(), folder.string());
+    const std::string source = isBuiltin(options.name) ? options.name : "builtin:" + options.name;
+    Scene scene;
+    {
+        ProgressLine line("making " + source);
+        scene = makeBuiltin(source, options.splats, [&](double share) { line.show(share); });
+    }
+    ProgressLine line("writing " + options.out.string());
+    writePly(scene, options.out.string(), [&](double share) { line.show(share); });
+}
+
+}  // namespace binosplat

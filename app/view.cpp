@@ -1,0 +1,11 @@
+// `binosplat view`: the OpenXR viewer, where the build has one.
+#include "app/commands.h"
+#include "engine/error.h"
+
+namespace binosplat {
+
+void runView(const ViewOptions&) {
+    throw Error(ExitCode::kNoDevice, "the OpenXR viewer is not part of this build; use `binosplat render`");
+}
+
+}  // namespace binosplat

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that the build needs and that are missing, and nothing else.
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build ccache pkg-config
+    libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
+    glslang-tools spirv-tools
+    libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+    libopenimageio-dev
+    doctest-dev
+)
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "third_party/install.sh: this is not a Debian system; install by hand: ${packages[*]}" >&2
+    exit 1
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query --show --showformat='${Status}' "$package" 2>/dev/null || true)
+    [[ $status == "install ok installed" ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+    echo "packages: all ${#packages[@]} are installed"
+    exit 0
+fi
+echo "packages: installing ${missing[*]}"
+
+as_root=()
+if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null; then
+        echo "third_party/install.sh: not root and no sudo; as root, run: apt-get install --no-install-recommends ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
