@@ -1,0 +1,76 @@
+// The stereo frame as a list of passes: one call renders both eyes.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/passes/passes.h"
+#include "engine/picture/image.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// DESIGN, "the stereo methods".
+enum class Mode {
+    kMono,     // one eye
+    kTwoPass,  // both eyes in full, nothing shared: the paper's reference
+    kShared,   // both eyes in full, culled once and sorted by depth once
+};
+
+struct FrameSettings {
+    Mode mode = Mode::kShared;
+    Side dominant = kLeft;
+    double near = 0.2;            // scene units
+    glm::dvec3 background{0.0};
+    bool inverse_depth_moments = false;  // keep I and J of the dominant eye
+};
+
+struct FrameResult {
+    PassTimes gpu_ms;           // in frame order; "dominant 7_rasterize", "both 1_cull", or the bare pass where there is one eye
+    double gpu_total_ms = 0.0;  // from the first pass to the last
+    std::map<std::string, std::uint64_t> counters;
+    std::uint64_t peak_gpu_bytes = 0;   // of the device memory this program ever held at a time
+    std::vector<std::string> left_out;  // what this scene and mode did not need
+};
+
+class StereoFrame {
+public:
+    StereoFrame(const Context& context, const GpuScene& scene);
+
+    // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
+    // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.
+    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings);
+
+    // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
+    [[nodiscard]] Image readPicture(int eye);
+    // D = sum w z of the dominant eye, one channel.
+    [[nodiscard]] Image readDominantDepth();
+    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; only if the settings asked for them.
+    [[nodiscard]] Image readInverseDepthMoments();
+
+private:
+    void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
+    void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
+    // Whether the lists had room; if not, makes room.
+    bool growIfNeeded();
+    [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    [[nodiscard]] Image readBuffer(const Buffer& buffer, glm::uvec2 size_px, int channels);
+
+    const Context& context_;
+    const GpuScene& scene_;
+    Passes passes_;
+    Commands commands_;
+    FrameBuffers buffers_;
+    std::array<EyeImage, 2> images_;
+    std::array<glm::uvec2, 2> sizes_px_{};
+    Buffer state_readback_;
+    FrameState state_{};
+    int dominant_ = 0;
+    int regrowths_ = 0;
+};
+
+}  // namespace binosplat

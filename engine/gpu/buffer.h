@@ -1,0 +1,52 @@
+// Device memory: one allocation a buffer, known by its address.
+#pragma once
+
+#include "engine/gpu/context.h"
+#include "shaders/shared/language.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace binosplat {
+
+enum class MemoryKind {
+    kDevice,    // the GPU's own
+    kUpload,    // written by the host once, read by a copy
+    kReadback,  // written by a copy, read by the host
+};
+
+// Move-only owner. A buffer of zero bytes owns nothing and has the address 0.
+class Buffer {
+public:
+    Buffer() = default;
+    // Throws Error if the device has not that much memory; `name` says for what.
+    Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind = MemoryKind::kDevice);
+    Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+    Buffer& operator=(Buffer&& other) noexcept;
+    ~Buffer() { release(); }
+
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    [[nodiscard]] vk::Buffer handle() const { return *buffer_; }
+    // The address of an array of T that begins `offset_bytes` into the buffer.
+    template <typename T>
+    [[nodiscard]] gpu::DeviceAddress<T> address(std::uint64_t offset_bytes = 0) const {
+        return {address_ + offset_bytes};
+    }
+    // Host view of an upload or read-back buffer.
+    template <typename T>
+    [[nodiscard]] std::span<T> mapped() const {
+        return {static_cast<T*>(mapped_), bytes_ / sizeof(T)};
+    }
+
+private:
+    void release();
+
+    vk::raii::DeviceMemory memory_{nullptr};  // freed after the buffer
+    vk::raii::Buffer buffer_{nullptr};
+    MemoryUse* use_ = nullptr;
+    std::uint64_t bytes_ = 0, allocated_bytes_ = 0, address_ = 0;
+    void* mapped_ = nullptr;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,110 @@
+// Barriers, timestamps and labels, in one place.
+#include "engine/gpu/commands.h"
+
+#include "engine/error.h"
+
+#include <cassert>
+
+namespace binosplat {
+namespace {
+
+constexpr std::uint32_t kMaxTimestamps = 256;
+
+}  // namespace
+
+Commands::Commands(const Context& context) : context_(context) {
+    vk::raii::CommandBuffers buffers(context.device(), vk::CommandBufferAllocateInfo(*context.commandPool(), vk::CommandBufferLevel::ePrimary, 1));
+    command_buffer_ = std::move(buffers[0]);
+    fence_ = context.device().createFence({});
+    if (context.timestampPeriodNs() > 0.0) {
+        timestamps_ = context.device().createQueryPool(vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, kMaxTimestamps));
+    }
+}
+
+void Commands::begin() {
+    pass_names_.clear();
+    timestamp_count_ = 0;
+    command_buffer_.reset();
+    command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
+    if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }
+}
+
+void Commands::writeTimestamp() {
+    assert(timestamp_count_ < kMaxTimestamps);
+    if (*timestamps_) { command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, timestamp_count_); }
+    ++timestamp_count_;
+}
+
+void Commands::beginPass(const std::string& name) {
+    endPass();
+    if (context_.validates()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name.c_str())); }
+    pass_names_.push_back(name);
+    writeTimestamp();
+    in_pass_ = true;
+}
+
+void Commands::endPass() {
+    if (!in_pass_) { return; }
+    writeTimestamp();
+    if (context_.validates()) { command_buffer_.endDebugUtilsLabelEXT(); }
+    in_pass_ = false;
+}
+
+void Commands::waitForAll() {
+    using Stage = vk::PipelineStageFlagBits;
+    using Access = vk::AccessFlagBits;
+    const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite,
+                                    Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead | Access::eTransferWrite | Access::eIndirectCommandRead);
+    command_buffer_.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader | Stage::eTransfer | Stage::eDrawIndirect, {}, barrier, {}, {});
+}
+
+void Commands::recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes) {
+    assert(bytes == kernel.pushBytes());
+    waitForAll();
+    command_buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, kernel.pipeline());
+    command_buffer_.pushConstants<std::uint8_t>(kernel.layout(), vk::ShaderStageFlagBits::eCompute, 0, {bytes, static_cast<const std::uint8_t*>(pass)});
+}
+
+void Commands::fillZero(const Buffer& buffer) {
+    if (buffer.bytes() == 0) { return; }
+    waitForAll();
+    command_buffer_.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+}
+
+void Commands::update(const Buffer& buffer, const void* data, std::uint64_t bytes) {
+    assert(bytes <= 65536 && bytes % 4 == 0);
+    waitForAll();
+    command_buffer_.updateBuffer<std::uint8_t>(buffer.handle(), 0, {static_cast<std::uint32_t>(bytes), static_cast<const std::uint8_t*>(data)});
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset, std::uint64_t to_offset) {
+    if (bytes == 0) { return; }
+    waitForAll();
+    command_buffer_.copyBuffer(from.handle(), to.handle(), vk::BufferCopy(from_offset, to_offset, bytes));
+}
+
+void Commands::submitAndWait() {
+    endPass();
+    const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
+    command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
+    command_buffer_.end();
+    const vk::CommandBuffer commands = *command_buffer_;
+    context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
+    const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
+    check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
+    context_.device().resetFences(*fence_);
+
+    times_.clear();
+    total_ms_ = 0.0;
+    if (!*timestamps_ || timestamp_count_ == 0) { return; }
+    const auto [status, ticks] = timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                                                       vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
+    const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
+    for (std::size_t i = 0; i < pass_names_.size(); ++i) {
+        times_.emplace_back(pass_names_[i], static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * ms_per_tick);
+    }
+    total_ms_ = static_cast<double>(ticks.back() - ticks.front()) * ms_per_tick;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,74 @@
+// Recording a frame: one runner writes label, timestamps and barriers for every pass.
+#pragma once
+
+#include "engine/gpu/buffer.h"
+#include "engine/gpu/kernel.h"
+#include "shaders/shared/types.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+// Milliseconds by pass, in the order of the frame; a pass that ran for both eyes has an entry for each.
+using PassTimes = std::vector<std::pair<std::string, double>>;
+
+class Commands {
+public:
+    explicit Commands(const Context& context);
+
+    // begin, any of the recording calls, submitAndWait; then times() may be asked for.
+    void begin();
+    // Everything up to the next beginPass counts as the pass `name`.
+    void beginPass(const std::string& name);
+    void endPass();
+
+    // Each waits for all that was recorded before it.
+    template <typename Pass>
+    void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1) {
+        recordKernel(kernel, &pass, sizeof(Pass));
+        command_buffer_.dispatch(groups_x, groups_y, 1);
+    }
+    // As many workgroups as `size_bytes_offset` into `sizes` says.
+    template <typename Pass>
+    void dispatchIndirect(const Kernel& kernel, const Pass& pass, const Buffer& sizes, std::uint64_t offset_bytes) {
+        recordKernel(kernel, &pass, sizeof(Pass));
+        command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
+    }
+    // A workgroup for every kGroupSize of `items`, folded into rows (see groupIndex in the shaders).
+    template <typename Pass>
+    void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items) {
+        const auto groups = static_cast<std::uint32_t>((items + gpu::kGroupSize - 1) / gpu::kGroupSize);
+        if (groups == 0) { return; }
+        dispatch(kernel, pass, std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX);
+    }
+    void fillZero(const Buffer& buffer);
+    // At most 64 KiB, carried by the command buffer itself.
+    void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
+    void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
+
+    void submitAndWait();
+
+    // Of the frame that submitAndWait finished; empty where the device has no timestamps.
+    [[nodiscard]] const PassTimes& times() const { return times_; }
+    [[nodiscard]] double totalMs() const { return total_ms_; }
+
+private:
+    void recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes);
+    void waitForAll();
+    void writeTimestamp();
+
+    const Context& context_;
+    vk::raii::CommandBuffer command_buffer_{nullptr};
+    vk::raii::Fence fence_{nullptr};
+    vk::raii::QueryPool timestamps_{nullptr};
+    std::vector<std::string> pass_names_;
+    std::uint32_t timestamp_count_ = 0;
+    bool in_pass_ = false;
+    PassTimes times_;
+    double total_ms_ = 0.0;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,184 @@
+// Opening the Vulkan device.
+#include "engine/gpu/context.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+
+namespace binosplat {
+namespace {
+
+constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_2;
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    const auto& sink = *static_cast<std::function<void(const char*)>*>(user);
+    sink(data->pMessage);
+    return VK_FALSE;
+}
+
+// The queue family that the frame runs on: compute, and graphics too if there is such a family (viewers draw with it).
+std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& device) {
+    const auto families = device.getQueueFamilyProperties();
+    std::optional<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
+        const bool compute = bool(families[i].queueFlags & vk::QueueFlagBits::eCompute);
+        const bool graphics = bool(families[i].queueFlags & vk::QueueFlagBits::eGraphics);
+        if (compute && graphics) { return i; }
+        if (compute && !found) { found = i; }
+    }
+    return found;
+}
+
+// What the passes need and `device` lacks, as words; empty if it will do.
+std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
+    if (device.getProperties().apiVersion < kApiVersion) { return "Vulkan 1.2"; }
+    if (!queueFamilyOf(device)) { return "a compute queue"; }
+    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
+    if (!vulkan12.bufferDeviceAddress) { return "bufferDeviceAddress"; }
+    if (!vulkan12.scalarBlockLayout) { return "scalarBlockLayout"; }
+    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+    const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
+    const auto operations = vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
+    if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
+    if (vulkan11.subgroupSize < 8 || vulkan11.subgroupSize > 128) { return "subgroups of 8 to 128 invocations"; }
+    return {};
+}
+
+int preferenceOf(vk::PhysicalDeviceType type) {
+    switch (type) {
+        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
+        default: return 3;
+    }
+}
+
+}  // namespace
+
+Context::Context(const ContextOptions& options) {
+    const char* environment = std::getenv("BINOSPLAT_VALIDATION");
+    try {
+        createInstance(options.validation || (environment != nullptr && std::strcmp(environment, "1") == 0));
+        choosePhysicalDevice(options.device);
+        createDevice();
+    } catch (const vk::SystemError& error) {
+        throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kHint));
+    }
+    if (options.max_allocation_bytes != 0) { max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes); }
+}
+
+void Context::createInstance(bool validation) {
+    const vk::ApplicationInfo application("binosplat", 1, "binosplat", 1, kApiVersion);
+    std::vector<const char*> layers, extensions;
+    if (validation) {
+        const auto available = loader_.enumerateInstanceLayerProperties();
+        const bool found = std::any_of(available.begin(), available.end(), [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
+        check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
+        layers.push_back(kValidationLayer);
+        extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    }
+    const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    const vk::ValidationFeaturesEXT validation_features(synchronization);
+    vk::InstanceCreateInfo info({}, &application, layers, extensions);
+    if (validation) { info.pNext = &validation_features; }
+    instance_ = vk::raii::Instance(loader_, info);
+    validates_ = validation;
+    if (validation) {
+        sink_ = [this](const char* message) {
+            const std::lock_guard lock(messages_.mutex);
+            messages_.lines.emplace_back(message);
+        };
+        using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+        using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+        messenger_ = vk::raii::DebugUtilsMessengerEXT(
+            instance_, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, onMessage, &sink_));
+    }
+}
+
+void Context::choosePhysicalDevice(const std::string& wanted) {
+    vk::raii::PhysicalDevices devices(instance_);
+    const auto refuse = [](const std::string& message) { throw Error(ExitCode::kNoDevice, message); };
+    if (devices.empty()) { refuse(fmt::format("no Vulkan device found; {}", kHint)); }
+    std::string seen;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const std::string name = devices[i].getProperties().deviceName;
+        const std::string missing = missingFeatures(devices[i]);
+        seen += fmt::format("{}{}: {}{}", seen.empty() ? "" : ", ", i, name, missing.empty() ? "" : " (lacks " + missing + ")");
+    }
+    std::optional<std::size_t> chosen;
+    if (!wanted.empty()) {
+        const bool is_index = wanted.find_first_not_of("0123456789") == std::string::npos;
+        for (std::size_t i = 0; i < devices.size() && !chosen; ++i) {
+            const std::string name = devices[i].getProperties().deviceName;
+            if (is_index ? std::to_string(i) == wanted : name.find(wanted) != std::string::npos) { chosen = i; }
+        }
+        if (!chosen) { refuse(fmt::format("--device {}: no such Vulkan device; there is {}", wanted, seen)); }
+        if (!missingFeatures(devices[*chosen]).empty()) { refuse(fmt::format("--device {}: not usable; there is {}", wanted, seen)); }
+    } else {
+        for (std::size_t i = 0; i < devices.size(); ++i) {
+            if (!missingFeatures(devices[i]).empty()) { continue; }
+            if (!chosen || preferenceOf(devices[i].getProperties().deviceType) < preferenceOf(devices[*chosen].getProperties().deviceType)) { chosen = i; }
+        }
+        if (!chosen) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kHint)); }
+    }
+    physical_device_ = std::move(devices[*chosen]);
+}
+
+void Context::createDevice() {
+    queue_family_ = queueFamilyOf(physical_device_).value();
+    const float priority = 1.0f;
+    const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
+    vk::PhysicalDeviceVulkan12Features features;
+    features.bufferDeviceAddress = VK_TRUE;
+    features.scalarBlockLayout = VK_TRUE;
+    device_ = vk::raii::Device(physical_device_, vk::DeviceCreateInfo({}, queue_info, {}, {}, nullptr, &features));
+    queue_ = device_.getQueue(queue_family_, 0);
+    command_pool_ = device_.createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_});
+
+    const auto properties = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+    const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
+    device_name_ = std::string(vulkan10.deviceName.data());
+    max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
+    subgroup_size_ = min_subgroup_size_ = vulkan11.subgroupSize;
+    if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
+        const auto sizes = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
+        min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
+    } else {
+        min_subgroup_size_ = std::min(8u, subgroup_size_);
+    }
+    if (physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits == 64) {
+        timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod);
+    }
+}
+
+std::vector<std::string> Context::validationMessages() const {
+    const std::lock_guard lock(messages_.mutex);
+    return messages_.lines;
+}
+
+std::uint32_t Context::memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred) const {
+    const auto memory = physical_device_.getMemoryProperties();
+    std::optional<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+        const auto flags = memory.memoryTypes[i].propertyFlags;
+        if ((allowed_types & (1u << i)) == 0 || (flags & wanted) != wanted) { continue; }
+        if ((flags & preferred) == preferred) { return i; }
+        if (!found) { found = i; }
+    }
+    if (!found) { throw Error(ExitCode::kNoDevice, fmt::format("{}: no memory of the kind {}", device_name_, vk::to_string(wanted))); }
+    return *found;
+}
+
+void Context::nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const {
+    device_.setDebugUtilsObjectNameEXT(vk::DebugUtilsObjectNameInfoEXT(type, handle, object_name.c_str()));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,86 @@
+// The Vulkan device: chosen, opened, and what it can do. One queue; no descriptor sets anywhere.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace binosplat {
+
+struct ContextOptions {
+    std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
+    bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
+    std::uint64_t max_allocation_bytes = 0;  // not more in one allocation; 0: what the device allows
+};
+
+// Bytes of device memory in use and the most there ever were.
+struct MemoryUse {
+    std::uint64_t current_bytes = 0;
+    std::uint64_t peak_bytes = 0;
+};
+
+class Context {
+public:
+    // Throws Error with ExitCode::kNoDevice if there is no loader, no device, or none that has what the passes need.
+    explicit Context(const ContextOptions& options = {});
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    [[nodiscard]] const vk::raii::Device& device() const { return device_; }
+    [[nodiscard]] const vk::raii::PhysicalDevice& physicalDevice() const { return physical_device_; }
+    [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
+    [[nodiscard]] const vk::raii::CommandPool& commandPool() const { return command_pool_; }
+    [[nodiscard]] const std::string& deviceName() const { return device_name_; }
+    [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
+    // Nanoseconds of a timestamp's step; 0 if the queue has none.
+    [[nodiscard]] double timestampPeriodNs() const { return timestamp_period_ns_; }
+    [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
+    [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
+    [[nodiscard]] bool validates() const { return validates_; }
+    // What the validation layers said so far; empty is good.
+    [[nodiscard]] std::vector<std::string> validationMessages() const;
+
+    [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
+    [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred) const;
+
+    // Gives a Vulkan object its name in validation messages and captures.
+    template <typename Handle>
+    void name(const Handle& handle, const std::string& object_name) const {
+        if (!validates_) { return; }
+        using Raw = std::remove_cvref_t<decltype(*handle)>;
+        nameObject(Raw::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename Raw::CType>(*handle)), object_name);
+    }
+
+private:
+    void createInstance(bool validation);
+    void choosePhysicalDevice(const std::string& wanted);
+    void createDevice();
+    void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const;
+
+    std::function<void(const char*)> sink_;  // where the messenger writes; it holds this address
+    struct Messages {
+        mutable std::mutex mutex;
+        std::vector<std::string> lines;
+    };
+
+    bool validates_ = false;
+    Messages messages_;
+    vk::raii::Context loader_;
+    vk::raii::Instance instance_{nullptr};
+    vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
+    vk::raii::PhysicalDevice physical_device_{nullptr};
+    vk::raii::Device device_{nullptr};
+    vk::raii::Queue queue_{nullptr};
+    vk::raii::CommandPool command_pool_{nullptr};
+    std::uint32_t queue_family_ = 0;
+    std::string device_name_;
+    std::uint64_t max_allocation_bytes_ = 0;
+    double timestamp_period_ns_ = 0.0;
+    std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0;
+    mutable MemoryUse memory_use_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,40 @@
+// A scene in device memory: 48 bytes a splat, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
+#pragma once
+
+#include "engine/gpu/buffer.h"
+#include "engine/scene/scene.h"
+#include "shaders/shared/types.h"
+
+#include <vector>
+
+namespace binosplat {
+
+// Positions, rotations, scales and opacities stay float32; colours are half floats (off by at most 2^-11 of themselves).
+class GpuScene {
+public:
+    // Splits the scene into chunks of a power of two splats where one allocation cannot hold it.
+    GpuScene(const Context& context, const Scene& scene, const Progress& progress = {});
+
+    [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
+    [[nodiscard]] int shDegree() const { return sh_degree_; }
+    // World position that device positions are relative to.
+    [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
+    // Splat i lies in chunk i >> chunkBits().
+    [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
+    [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::SceneChunk> chunks() const { return chunk_table_.address<gpu::SceneChunk>(); }
+    [[nodiscard]] std::uint64_t bytes() const;
+
+private:
+    std::uint32_t splat_count_ = 0;
+    int sh_degree_ = 0;
+    glm::dvec3 origin_{0.0};
+    std::uint32_t chunk_bits_ = 0;
+    std::vector<Buffer> buffers_;
+    Buffer chunk_table_;
+};
+
+// Device bytes of one splat.
+std::uint64_t deviceBytesPerSplat(int sh_degree);
+
+}  // namespace binosplat

@@ -1,0 +1,27 @@
+// Building compute pipelines.
+#include "engine/gpu/kernel.h"
+
+#include "shaders/embedded_shaders.h"
+
+#include <cassert>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+Kernel::Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants)
+    : push_bytes_(push_bytes) {
+    const auto words = embeddedShader(shader);
+    assert(!words.empty() && push_bytes <= 128);
+    const vk::raii::ShaderModule module(context.device(), vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data()));
+    const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
+    layout_ = vk::raii::PipelineLayout(context.device(), vk::PipelineLayoutCreateInfo({}, {}, range));
+    std::vector<vk::SpecializationMapEntry> entries;
+    for (std::uint32_t id = 0; id < constants.size(); ++id) { entries.emplace_back(id, id * sizeof(std::uint32_t), sizeof(std::uint32_t)); }
+    const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size() * sizeof(std::uint32_t), constants.begin());
+    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
+    pipeline_ = vk::raii::Pipeline(context.device(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    context.name(pipeline_, std::string(shader));
+}
+
+}  // namespace binosplat

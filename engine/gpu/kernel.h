@@ -1,0 +1,29 @@
+// A compute pipeline: a shader of shaders/ with its specialization constants.
+#pragma once
+
+#include "engine/gpu/context.h"
+
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+
+namespace binosplat {
+
+class Kernel {
+public:
+    Kernel() = default;
+    // `shader` names shaders/NAME.comp; `constants` are the values of constant_id 0, 1, 2 ... ; `push_bytes` is the size of the
+    // pass struct it takes.
+    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+
+    [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
+    [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
+    [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
+
+private:
+    vk::raii::PipelineLayout layout_{nullptr};
+    vk::raii::Pipeline pipeline_{nullptr};
+    std::uint32_t push_bytes_ = 0;
+};
+
+}  // namespace binosplat

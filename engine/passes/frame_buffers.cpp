@@ -1,0 +1,39 @@
+// Allocating a frame's buffers.
+#include "engine/passes/frame_buffers.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+VisibleBuffers::VisibleBuffers(const Context& context, std::uint32_t capacity)
+    : capacity_(capacity), buffer_(context, "visible splats", kBytesPerSplat * capacity) {}
+
+PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity)
+    : capacity_(capacity), buffer_(context, "tile pairs", 4 * sizeof(gpu::uint) * std::uint64_t{capacity}) {}
+
+FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count) {
+    FrameBuffers buffers;
+    buffers.splat_count = splat_count;
+    buffers.state = Buffer(context, "frame state", sizeof(FrameState));
+    buffers.visibility = Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kGroupSize / 8 + sizeof(gpu::uint)));
+    return buffers;
+}
+
+void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity) {
+    if (buffers.visible.capacity() != capacity.visible) {
+        buffers.visible = {};
+        buffers.visible = VisibleBuffers(context, capacity.visible);
+    }
+    if (buffers.pairs.capacity() != capacity.pairs) {
+        buffers.pairs = {};
+        buffers.pairs = PairBuffers(context, capacity.pairs);
+    }
+    const std::uint64_t scratch_bytes =
+        std::max({Scan::blockSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible), Sort::histogramBytes(capacity.pairs)});
+    if (buffers.scratch.bytes() != scratch_bytes) {
+        buffers.scratch = {};
+        buffers.scratch = Buffer(context, "scan and sort scratch", scratch_bytes);
+    }
+}
+
+}  // namespace binosplat

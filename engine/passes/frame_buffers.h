@@ -1,0 +1,103 @@
+// The device memory of a frame: what grows with the visible splats (60.5 bytes each), with the pairs (16), with the pixels.
+#pragma once
+
+#include "engine/gpu/buffer.h"
+#include "engine/passes/scan.h"
+#include "engine/passes/sort.h"
+#include "shaders/shared/types.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace binosplat {
+
+// What the device is told at the start of a frame and what it tells at the end.
+struct FrameState {
+    std::array<gpu::EyeView, 2> eyes;
+    std::array<gpu::ListState, 2> visible;  // [0] is both eyes' where they share it
+    std::array<gpu::ListState, 2> pairs;
+    std::array<gpu::EyeCounters, 2> counters;
+};
+
+struct FrameCapacity {
+    std::uint32_t visible = 0;
+    std::uint32_t pairs = 0;
+    bool operator==(const FrameCapacity&) const = default;
+};
+
+// An eye's picture in device memory, rows top to bottom.
+struct EyeImage {
+    Buffer colours;  // vec4 a pixel
+    Buffer depths;   // float a pixel, where a mode wants it
+    Buffer inverse_depth_moments;  // vec2 a pixel, likewise
+};
+
+// The arrays over the visible splats lie in one buffer, one after the other.
+class VisibleBuffers {
+public:
+    VisibleBuffers() = default;
+    VisibleBuffers(const Context& context, std::uint32_t capacity);
+
+    [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
+    // Depth keys and splat indices; sorting needs `spare`, which afterwards holds the boxes of tiles.
+    [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
+    [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileBoxes() const { return at<gpu::uvec2>(8); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(16); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(20); }
+    [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
+
+private:
+    template <typename T>
+    [[nodiscard]] gpu::DeviceAddress<T> at(std::uint64_t bytes_before_per_splat) const {
+        return buffer_.address<T>(bytes_before_per_splat * capacity_);
+    }
+    static constexpr std::uint64_t kBytesPerSplat = 20 + sizeof(gpu::ProjectedSplat);
+    std::uint32_t capacity_ = 0;
+    Buffer buffer_;
+};
+
+// Likewise over the (tile, splat) pairs, twice for sorting.
+class PairBuffers {
+public:
+    PairBuffers() = default;
+    PairBuffers(const Context& context, std::uint32_t capacity);
+
+    [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
+    [[nodiscard]] KeyValues pairs() const { return {at(0), at(4)}; }
+    [[nodiscard]] KeyValues spare() const { return {at(8), at(12)}; }
+    [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
+
+private:
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> at(std::uint64_t bytes_before_per_pair) const {
+        return buffer_.address<gpu::uint>(bytes_before_per_pair * capacity_);
+    }
+    std::uint32_t capacity_ = 0;
+    Buffer buffer_;
+};
+
+// All that the passes of one frame work on, but for the pictures.
+struct FrameBuffers {
+    std::uint32_t splat_count = 0;
+    Buffer state;       // FrameState
+    Buffer visibility;  // a bit a splat, then a count a workgroup
+    VisibleBuffers visible;
+    PairBuffers pairs;
+    Buffer scratch;      // block sums or histograms of the list at hand
+    Buffer tile_ranges;  // uvec2 a tile
+
+    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const { return visibility.address<gpu::uint>(cullGroups() * (gpu::kGroupSize / 8)); }
+    [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kGroupSize - 1) / gpu::kGroupSize; }
+    // Offsets of the lists within `state`.
+    static std::uint64_t visibleList(int i) { return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
+    static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
+};
+
+FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);
+// Makes room; what was in the lists before is lost, and no more than the new is held at any time.
+void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
+
+}  // namespace binosplat

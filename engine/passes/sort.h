@@ -1,0 +1,30 @@
+// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort_*.comp): reduce then scan, 8 bits a round.
+#pragma once
+
+#include "engine/gpu/commands.h"
+#include "shaders/shared/passes.h"
+
+namespace binosplat {
+
+// Keys and their values, as two arrays.
+struct KeyValues {
+    gpu::DeviceAddress<gpu::uint> keys, values;
+};
+
+class Sort {
+public:
+    explicit Sort(const Context& context);
+
+    // Bytes of `histograms` for lists of up to `items`: half a byte a key, and a kilobyte of totals.
+    static std::uint64_t histogramBytes(std::uint64_t items);
+
+    // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
+    // holds the result. The length is that of the list at `list_bytes` of `lists`.
+    KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
+                     std::uint64_t list_bytes, unsigned key_bits) const;
+
+private:
+    Kernel count_, spine_, scatter_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,90 @@
+// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/splat.glsl"
+#include "lib/outline.glsl"
+#include "lib/front_part.glsl"
+#include "lib/sh.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { ProjectPass pass; };
+
+// The tiles that hold what the splat covers: x0, y0, x1, y1, half open.
+ivec4 tileBox(CameraSplat splat, EyeView eye, Outline outline) {
+    vec4 bounds_px = vec4(-1e9, -1e9, 1e9, 1e9);
+    const vec2 circle_px = vec2(outline.circle_px);
+    if (outline.ellipse) {
+        const vec2 x_px = boundsBetweenRows(outline, -1e9, 1e9);
+        bounds_px = vec4(x_px.x, min(outline.rows.x, -circle_px.y) + outline.centre_px.y, x_px.y, max(outline.rows.y, circle_px.y) + outline.centre_px.y);
+    }
+    const float radius = sqrt(outline.cut);
+    const float reach = radius * length(splat.scale * vec2(splat.t_u.z, splat.t_v.z));
+    if (!outline.ellipse || splat.centre.z - reach < eye.near) {
+        vec4 front_px = frontPartBounds(splat, eye, radius);
+        if (outline.circle_px > 0) {
+            front_px = vec4(min(front_px.xy, outline.centre_px - circle_px), max(front_px.zw, outline.centre_px + circle_px));
+        }
+        bounds_px = vec4(max(bounds_px.xy, front_px.xy), min(bounds_px.zw, front_px.zw));
+    }
+    const ivec2 x_tiles = unitsBetween(bounds_px.xz, kTileSize, eye.size_tiles.x);
+    const ivec2 y_tiles = unitsBetween(bounds_px.yw, kTileSize, eye.size_tiles.y);
+    return ivec4(x_tiles.x, y_tiles.x, x_tiles.y, y_tiles.y);
+}
+
+// How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
+// the middle of the disc's box, whatever the opacity (as the rasterizer of Huang et al. 2024 bins). For the report alone.
+uint squareBoxTiles(CameraSplat splat, EyeView eye) {
+    if (splat.centre.z <= eye.near) { return 0; }
+    const vec3 a = splat.scale.x * splat.t_u, b = splat.scale.y * splat.t_v, c = splat.centre;
+    const vec3 f = vec3(9, 9, -1) / dot(vec3(9, 9, -1), vec3(a.z * a.z, b.z * b.z, c.z * c.z));
+    const vec3 w = vec3(a.z, b.z, c.z);
+    const vec3 x = vec3(a.x, b.x, c.x), y = vec3(a.y, b.y, c.y);
+    const vec2 middle = vec2(dot(f, x * w), dot(f, y * w));
+    const vec2 extent = sqrt(max(middle * middle - vec2(dot(f, x * x), dot(f, y * y)), vec2(0)));
+    const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
+    const vec2 extent_px = eye.focal_px * extent;
+    const float radius_px = ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678));
+    const vec2 tiles = vec2(eye.size_tiles);
+    const vec2 first = clamp(floor((middle_px - radius_px) / float(kTileSize)), vec2(0), tiles);
+    const vec2 end = clamp(floor((middle_px + radius_px + float(kTileSize - 1)) / float(kTileSize)), vec2(0), tiles);
+    const vec2 size = max(end - first, vec2(0));
+    return uint(size.x * size.y);
+}
+
+void main() {
+    const uint count = pass.visible.at[0].count;
+    const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
+    uint square_tiles = 0;
+    if (rank < count) {
+        const uint i = pass.order.at[rank];
+        SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
+        const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
+        const EyeView eye = pass.eyes.at[pass.eye];
+        const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
+
+        bool has_reference;
+        ProjectedSplat p = projectGeometry(splat, eye, has_reference);
+        const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
+        p.opacity_colour = packOpacityColour(splat.opacity, has_reference, colour);
+        pass.splats.at[rank] = p;
+
+        const Outline outline = outlineOfProjected(p);
+        const ivec4 box = tileBox(splat, eye, outline);
+        uint tiles = 0;
+        for (int row = box.y; row < box.w; ++row) {
+            const ivec2 in_row = tilesInRow(outline, uint(row), box);
+            tiles += uint(max(in_row.y - in_row.x, 0));
+        }
+        pass.tile_boxes.at[rank] = uvec2(packTiles(box.xy), packTiles(box.zw));
+        pass.tile_counts.at[rank] = tiles;
+        square_tiles = squareBoxTiles(splat, eye);
+    }
+    uint group_square_tiles;
+    scanGroup(square_tiles, group_square_tiles);
+    if (gl_LocalInvocationIndex == 0 && group_square_tiles > 0) {
+        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, group_square_tiles);
+        if (low + group_square_tiles < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
+    }
+}

@@ -1,0 +1,162 @@
+// 7: blending, front to back, a workgroup a tile. A tile's splats come to shared memory a batch at a time, and with each a bit
+// for every cell of 8x8 pixels that it meets; the threads of a cell (one subgroup, where its width allows) then walk over
+// their own splats alone. A thread blends several pixels of a column, so that what it reads from shared memory serves them all.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "passes.h"
+#include "lib/splat.glsl"
+#include "lib/outline.glsl"
+
+layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
+layout(constant_id = 1) const bool kDepth = true;
+layout(constant_id = 2) const bool kInverseDepthMoments = false;
+layout(local_size_x_id = 3) in;  // kCellsPerTile * kThreadsPerCell
+
+layout(push_constant, scalar) uniform Push { RasterizePass pass; };
+
+const uint kThreads = kCellsPerTile * kThreadsPerCell;
+const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread, in a column
+const uint kRowStep = kThreadsPerCell / kCellSize;             // rows from one to the next
+const float kFar = 3e38;                                       // a rho that is no hit
+
+shared vec4 batch_reference[kBatchSize];    // reference_px, u/z and v/z there
+shared vec4 batch_plane[kBatchSize];        // A, B, D, low-pass or kFar
+shared vec4 batch_depth[kBatchSize];        // 1/z there, its slopes, -log2(opacity)
+shared uvec2 batch_colour[kBatchSize];
+shared uint cell_splats[kCellsPerTile][kBatchSize / 32];
+shared uint cells_done;
+
+// Which cells of the tile the splat meets, a bit each.
+uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
+    const Outline outline = outlineOfProjected(splat);
+    if (!outline.ellipse) { return 15; }
+    uint cells = 0;
+    for (uint row = 0; row < 2; ++row) {
+        const float first_row = float(tile_px.y + row * kCellSize) + 0.5;
+        vec2 bounds = boundsBetweenRows(outline, first_row - kOutlinePadding, first_row + float(kCellSize - 1) + kOutlinePadding);
+        bounds += vec2(-kOutlinePadding, kOutlinePadding) - (float(tile_px.x) + 0.5);
+        // Pixel columns 0 to 7 and 8 to 15 of the tile.
+        if (bounds.x <= float(kCellSize - 1) && bounds.y >= 0) { cells |= 1u << (2 * row); }
+        if (bounds.x <= float(2 * kCellSize - 1) && bounds.y >= float(kCellSize)) { cells |= 2u << (2 * row); }
+    }
+    return cells;
+}
+
+void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
+    const ProjectedSplat splat = pass.splats.at[rank];
+    const bool has_reference = hasReference(splat.opacity_colour);
+    batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, splat.reference_px);
+    batch_plane[slot] = vec4(splat.plane_from_pixel, has_reference ? kLowPass : kFar);
+    batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat.opacity_colour));
+    batch_colour[slot] = splat.opacity_colour;
+    const uint cells = cellsOf(splat, tile_px);
+    for (uint cell = 0; cell < kCellsPerTile; ++cell) {
+        if ((cells & (1u << cell)) != 0) { atomicOr(cell_splats[cell][slot / 32], 1u << (slot & 31)); }
+    }
+}
+
+void main() {
+    const EyeView eye = pass.eyes.at[pass.eye];
+    const uvec2 size_px = eye.size_px;
+    const float max_inverse_depth = eye.max_inverse_depth;
+    const uint tile = gl_WorkGroupID.y * eye.size_tiles.x + gl_WorkGroupID.x;
+    const uvec2 tile_px = gl_WorkGroupID.xy * kTileSize;
+    const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
+    const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
+    const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize);
+    const vec2 first_px = vec2(first_pixel) + 0.5;
+    const uvec2 range = pass.ranges.at[tile];
+
+    vec3 colour[kPixels];
+    float depth[kPixels];
+    vec2 moments[kPixels];
+    float transmittance[kPixels];
+    // Pixels that take no more light hold a limit that no transmittance falls short of.
+    float limit[kPixels];
+    uint open_pixels = 0;
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) {
+        colour[p] = vec3(0);
+        depth[p] = 0;
+        moments[p] = vec2(0);
+        transmittance[p] = 1;
+        const bool inside = first_pixel.x < size_px.x && first_pixel.y + p * kRowStep < size_px.y;
+        limit[p] = inside ? kMinTransmittance : kFar;
+        open_pixels += inside ? 1 : 0;
+    }
+    if (gl_LocalInvocationIndex == 0) { cells_done = 0; }
+    bool counted = false;
+
+    for (uint begin = range.x; begin < range.y; begin += kBatchSize) {
+        barrier();
+        if (open_pixels == 0 && !counted) {
+            atomicAdd(cells_done, 1);
+            counted = true;
+        }
+        if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
+            cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
+        }
+        barrier();
+        if (cells_done == kThreads) { break; }
+        for (uint slot = gl_LocalInvocationIndex; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
+            loadSplat(slot, pass.ranks.at[begin + slot], vec2(size_px) * 0.5, tile_px);
+        }
+        barrier();
+        for (uint word = 0; word < kBatchSize / 32; ++word) {
+            uint bits = open_pixels > 0 ? cell_splats[cell][word] : 0;
+            while (bits != 0) {
+                const uint slot = word * 32 + uint(findLSB(bits));
+                bits &= bits - 1;
+                const vec4 reference = batch_reference[slot];
+                const vec4 plane = batch_plane[slot];
+                const vec4 depth_form = batch_depth[slot];
+                const vec3 splat_colour = unpackColour(batch_colour[slot]);
+
+                const vec2 d = first_px - reference.xy;
+                const float u = reference.z + plane.x * d.x;
+                const float q = depth_form.x + depth_form.y * d.x;
+                const float rho2_x = plane.w * (d.x * d.x);
+                uint closed = 0;
+                [[unroll]] for (uint p = 0; p < kPixels; ++p) {
+                    const float dy = d.y + float(p * kRowStep);
+                    const float u_p = u + plane.y * dy;
+                    const float v_p = reference.w + plane.z * dy;
+                    const float q_p = q + depth_form.z * dy;
+                    // A hit beyond the near plane has 0 < 1/z <= 1/near; every other, and NaN, is none.
+                    const float z = 1 / q_p;
+                    const float rho3 = q_p > 0 && q_p <= max_inverse_depth ? (u_p * u_p + v_p * v_p) * z * z : kFar;
+                    const float rho2 = plane.w < kFar ? rho2_x + plane.w * (dy * dy) : kFar;
+                    const bool on_disc = rho3 <= rho2;
+                    const float rho = on_disc ? rho3 : rho2;
+                    const float alpha = min(kMaxAlpha, exp2(-depth_form.w - kLog2PerRho * rho));
+                    if (alpha >= kMinAlpha && limit[p] < 1) {
+                        const float w = alpha * transmittance[p];
+                        const float after = transmittance[p] - w;
+                        if (after < limit[p]) {
+                            limit[p] = kFar;
+                            ++closed;
+                        } else {
+                            const float hit_z = on_disc ? z : 1 / depth_form.x;
+                            colour[p] += w * splat_colour;
+                            if (kDepth) { depth[p] += w * hit_z; }
+                            if (kInverseDepthMoments) { moments[p] += w / hit_z * vec2(1, 1 / hit_z); }
+                            transmittance[p] = after;
+                        }
+                    }
+                }
+                open_pixels -= closed;
+                if (open_pixels == 0) { break; }
+            }
+        }
+    }
+
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) {
+        const uvec2 pixel = first_pixel + uvec2(0, p * kRowStep);
+        if (pixel.x < size_px.x && pixel.y < size_px.y) {
+            const uint at = pixel.y * size_px.x + pixel.x;
+            pass.colours.at[at] = vec4(colour[p] + transmittance[p] * pass.background, 1 - transmittance[p]);
+            if (kDepth) { pass.depths.at[at] = depth[p]; }
+            if (kInverseDepthMoments) { pass.inverse_depth_moments.at[at] = moments[p]; }
+        }
+    }
+}

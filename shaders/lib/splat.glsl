@@ -1,0 +1,103 @@
+// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the
+// form that ProjectedSplat holds.
+//
+// A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
+// r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r, and with t_w = t_u x t_v and
+// delta = t_w . c the rows of that inverse are
+//   u/z = (t_v x c) . r / (s_u delta),   v/z = (c x t_u) . r / (s_v delta),   1/z = t_w . r / delta:
+// linear in the pixel, and free of the cancellation that det(a, b, c) has for tiny or long discs.
+
+// A splat in camera space.
+struct CameraSplat {
+    vec3 centre;
+    vec3 t_u, t_v;
+    vec2 scale;
+    float opacity;
+};
+
+vec3 cameraFromWorld(EyeView eye, vec3 direction) {
+    return vec3(dot(eye.camera_from_world_x, direction), dot(eye.camera_from_world_y, direction), dot(eye.camera_from_world_z, direction));
+}
+
+// First and second column of the rotation matrix of a unit quaternion x, y, z, w.
+void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
+    t_u = vec3(1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y + q.w * q.z), 2 * (q.x * q.z - q.w * q.y));
+    t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
+}
+
+CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) {
+    CameraSplat splat;
+    vec3 t_u, t_v;
+    tangents(chunk.rotations.at[i], t_u, t_v);
+    splat.centre = cameraFromWorld(eye, chunk.positions.at[i] - eye.position);
+    splat.t_u = cameraFromWorld(eye, t_u);
+    splat.t_v = cameraFromWorld(eye, t_v);
+    splat.scale = chunk.scales.at[i];
+    splat.opacity = chunk.opacities.at[i];
+    return splat;
+}
+
+// rho at which alpha falls to 1/255; not positive for a splat that is never seen.
+float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
+
+// Opacity as -log2 in fixed point, so that alpha = exp2(-(this + kLog2PerRho rho)).
+uint packOpacity(float opacity) { return min(uint(-log2(opacity) * kOpacitySteps + 0.5), (1u << 18) - 1); }
+float negativeLog2Opacity(uint packed) { return float(packed) * (1.0 / kOpacitySteps); }
+
+const uint kNoReferenceBit = 1u << 18;
+
+uvec2 packOpacityColour(float opacity, bool has_reference, vec3 colour) {
+    // The greatest half float is 65504; colours are not negative.
+    const vec3 finite = mix(vec3(0), min(colour, vec3(65504)), greaterThan(colour, vec3(0)));
+    const uint rg = packHalf2x16(finite.rg);
+    const uint b = packHalf2x16(vec2(finite.b, 0));
+    const uint low = packOpacity(opacity) | (has_reference ? 0 : kNoReferenceBit) | (rg << 19);  // 13 of red's 15 bits
+    const uint high = ((rg >> 13) & 3) | ((rg >> 16) << 2) | (b << 17);
+    return uvec2(low, high);
+}
+
+vec3 unpackColour(uvec2 packed) {
+    const uint red = (packed.x >> 19) | ((packed.y & 3) << 13);
+    const uint green = (packed.y >> 2) & 0x7fff;
+    const uint blue = packed.y >> 17;
+    return vec3(unpackHalf2x16(red | (green << 16)), unpackHalf2x16(blue).x);
+}
+bool hasReference(uvec2 packed) { return (packed.x & kNoReferenceBit) == 0; }
+float negativeLog2Opacity(uvec2 packed) { return negativeLog2Opacity(packed.x & (kNoReferenceBit - 1)); }
+
+// The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane.
+ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_reference) {
+    const vec3 c = splat.centre;
+    has_reference = c.z > eye.near;
+    const vec2 middle_px = vec2(eye.size_px) * 0.5;
+    ProjectedSplat p;
+    p.reference_px = has_reference ? eye.focal_px * c.xy / c.z + eye.principal_px : middle_px;
+    p.inverse_depth = 1 / c.z;
+    p.plane_from_pixel = vec3(kMaxPlaneSlope, 0, kMaxPlaneSlope);
+    p.perspective = vec2(0);
+    p.opacity_colour = uvec2(0);
+
+    const vec3 t_w = cross(splat.t_u, splat.t_v);
+    const float delta = dot(t_w, c);
+    const vec3 row_u = cross(splat.t_v, c) / (splat.scale.x * delta);
+    const vec3 row_v = cross(c, splat.t_u) / (splat.scale.y * delta);
+    const vec3 row_w = t_w / delta;
+    // Turn (u, v) within the disc so that v/z does not depend on dx.
+    const vec2 along_x = vec2(row_u.x, row_v.x) / eye.focal_px.x;
+    const vec2 along_y = vec2(row_u.y, row_v.y) / eye.focal_px.y;
+    const float a = length(along_x);
+    const vec2 turn = along_x / a;  // cosine, sine
+    const vec3 plane = vec3(a, dot(turn, along_y), turn.x * along_y.y - turn.y * along_y.x);
+    const bool disc = abs(delta) > kEdgeOnSine * length(c) && a < kMaxPlaneSlope && abs(plane.y) < kMaxPlaneSlope && abs(plane.z) < kMaxPlaneSlope && a > 0;
+    if (disc) {
+        p.plane_from_pixel = plane;
+        p.perspective = row_w.xy / eye.focal_px;
+        if (!has_reference) {
+            const vec3 ray = vec3((middle_px - eye.principal_px) / eye.focal_px, 1);
+            const vec2 offset = vec2(dot(row_u, ray), dot(row_v, ray));
+            p.reference_px = vec2(dot(turn, offset), turn.x * offset.y - turn.y * offset.x);
+            p.inverse_depth = dot(row_w, ray);
+        }
+    }
+    return p;
+}

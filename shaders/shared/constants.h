@@ -1,0 +1,57 @@
+// The numbers that shape code, each with its reason.
+#ifndef BINOSPLAT_SHADERS_SHARED_CONSTANTS_H
+#define BINOSPLAT_SHADERS_SHARED_CONSTANTS_H
+
+#include "language.h"
+
+BINOSPLAT_BEGIN_SHARED
+
+// Tiles are the unit of binning and of patching; the 16x16 of 3DGS and 2DGS (Kerbl et al. 2023, section 6).
+BINOSPLAT_CONSTANT uint kTileSize = 16;
+// Cells are the quarters of a tile that one subgroup owns while blending, so that a splat costs only the cells it meets.
+BINOSPLAT_CONSTANT uint kCellSize = 8;
+BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
+// Splats of a tile that are brought to shared memory at a time: 128 x 56 bytes = 7 KiB, so that eight workgroups and more
+// fit into the shared memory of a GPU's core; a multiple of 32, since a bit each says which cells they meet.
+BINOSPLAT_CONSTANT uint kBatchSize = 128;
+
+// Threads of a workgroup wherever a thread handles one item.
+BINOSPLAT_CONSTANT uint kGroupSize = 256;
+// Values that one workgroup of a scan handles: eight a thread.
+BINOSPLAT_CONSTANT uint kScanBlock = 2048;
+
+// Sorting: 8 bits a pass; a block is what one workgroup ranks. 128 threads keep one histogram per subgroup within
+// 16 KiB of shared memory even where subgroups are eight wide; 16 keys a thread amortise it.
+BINOSPLAT_CONSTANT uint kDigits = 256;
+BINOSPLAT_CONSTANT uint kSortGroupSize = 128;
+BINOSPLAT_CONSTANT uint kSortKeysPerThread = 16;
+BINOSPLAT_CONSTANT uint kSortBlock = kSortGroupSize * kSortKeysPerThread;
+
+// A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
+BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
+
+// Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
+// kMinTransmittance (Kerbl et al. 2023, appendix C).
+BINOSPLAT_CONSTANT float kMaxAlpha = 0.99f;
+BINOSPLAT_CONSTANT float kMinAlpha = 1.0f / 255.0f;
+BINOSPLAT_CONSTANT float kMinTransmittance = 1e-4f;
+BINOSPLAT_CONSTANT float kLog2Of255 = 7.99435343685886f;
+// rho is in units of exp(-rho/2): exp(-rho/2) = exp2(-kLog2PerRho rho).
+BINOSPLAT_CONSTANT float kLog2PerRho = 0.72134752044448f;
+// The low-pass of 2DGS: rho2 = kLowPass * squared distance in pixels, i.e. sigma = sqrt(2)/2 px (Huang et al. 2024, section 4.2).
+BINOSPLAT_CONSTANT float kLowPass = 2.0f;
+
+// -log2(opacity) in 18 bits, 0 to 8 in steps of 2^-15: alpha is off by at most 1.1e-5 of itself.
+BINOSPLAT_CONSTANT float kOpacitySteps = 32768.0f;
+
+// A disc whose plane passes the eye within this sine is seen edge-on: float32 no longer knows which side is seen, and even
+// a disc a thousand pixels long is thinner than 1/1000 px. What is left of it is the low-pass.
+BINOSPLAT_CONSTANT float kEdgeOnSine = 3e-7f;
+// plane_from_pixel is cut off here, at a disc of 1e-15 px, so that its squares stay finite.
+BINOSPLAT_CONSTANT float kMaxPlaneSlope = 1e15f;
+// Outlines are widened by this much, in pixels: a hundred times the rounding of a coordinate in a 2048 px image.
+BINOSPLAT_CONSTANT float kOutlinePadding = 1.0f / 64.0f;
+
+BINOSPLAT_END_SHARED
+
+#endif

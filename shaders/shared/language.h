@@ -1,0 +1,51 @@
+// What lets one header be read by C++ and by GLSL: vector types of equal layout (GLSL's `scalar`) and typed device addresses.
+#ifndef BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
+#define BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
+
+#ifdef __cplusplus
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace binosplat::gpu {
+
+using uint = std::uint32_t;
+using glm::ivec2;
+using glm::ivec4;
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+
+// The address of an array of T in device memory. Eight bytes, like GLSL's buffer_reference.
+template <typename T>
+struct DeviceAddress {
+    std::uint64_t value = 0;
+    // The address of element `index`.
+    [[nodiscard]] DeviceAddress at(std::uint64_t index) const { return {value + index * sizeof(T)}; }
+};
+
+}  // namespace binosplat::gpu
+
+#define BINOSPLAT_BEGIN_SHARED namespace binosplat::gpu {
+#define BINOSPLAT_END_SHARED }
+#define BINOSPLAT_ARRAY_OF(Element, Name) using Name = DeviceAddress<Element>
+#define BINOSPLAT_CONSTANT inline constexpr
+
+#else
+
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+
+#define BINOSPLAT_BEGIN_SHARED
+#define BINOSPLAT_END_SHARED
+// In a shader `name.at[i]` is element i.
+#define BINOSPLAT_ARRAY_OF(Element, Name) \
+    layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Name { Element at[]; }
+#define BINOSPLAT_CONSTANT const
+
+#endif
+
+#endif

@@ -1,0 +1,85 @@
+// What lies in device memory, read by C++ and GLSL alike (scalar layout).
+#ifndef BINOSPLAT_SHADERS_SHARED_TYPES_H
+#define BINOSPLAT_SHADERS_SHARED_TYPES_H
+
+#include "constants.h"
+
+BINOSPLAT_BEGIN_SHARED
+
+BINOSPLAT_ARRAY_OF(uint, Uints);
+BINOSPLAT_ARRAY_OF(float, Floats);
+BINOSPLAT_ARRAY_OF(uvec2, UVec2s);
+BINOSPLAT_ARRAY_OF(vec2, Vec2s);
+BINOSPLAT_ARRAY_OF(vec3, Vec3s);
+BINOSPLAT_ARRAY_OF(vec4, Vec4s);
+
+// A run of splats that lies in one allocation: 48 bytes a splat, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
+struct SceneChunk {
+    Vec3s positions;  // relative to the scene's origin, so that far-off worlds keep their precision
+    Vec4s rotations;  // x, y, z, w
+    Vec2s scales;
+    Floats opacities;
+    UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
+    Uints sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
+};
+BINOSPLAT_ARRAY_OF(SceneChunk, SceneChunks);
+
+// One eye for one frame. Camera axes: x right, y down, z forward.
+struct EyeView {
+    vec3 camera_from_world_x;  // rows of the rotation
+    vec3 camera_from_world_y;
+    vec3 camera_from_world_z;
+    vec3 position;  // relative to the scene's origin
+    vec2 focal_px;
+    vec2 principal_px;
+    uvec2 size_px;
+    uvec2 size_tiles;
+    float near;
+    float max_inverse_depth;  // 1 / near
+};
+BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
+
+// A splat as one eye sees it; 40 bytes. With (dx, dy) the offset of a pixel from `reference_px`, the pixel's ray meets the
+// disc's plane where
+//   1/z = inverse_depth + perspective.x dx + perspective.y dy
+//   u/z = plane_from_pixel.x dx + plane_from_pixel.y dy
+//   v/z =                         plane_from_pixel.z dy
+// (u, v) in standard deviations, turned within the disc so that v does not depend on dx. All three are linear in the pixel.
+// A centre that is not beyond the near plane has no such reference: then (flag in `opacity_colour`) reference_px holds the
+// constant terms of u/z and v/z instead, and offsets count from the middle of the image.
+struct ProjectedSplat {
+    vec2 reference_px;
+    vec3 plane_from_pixel;
+    vec2 perspective;
+    float inverse_depth;
+    // 18 bits -log2(opacity), 1 bit "no reference", 3 x 15 bits colour: half floats without their sign.
+    uvec2 opacity_colour;
+};
+BINOSPLAT_ARRAY_OF(ProjectedSplat, ProjectedSplats);
+
+// The size of an indirect dispatch.
+struct DispatchSize {
+    uint x, y, z;
+};
+
+// A list whose length the GPU alone knows: what was needed, what fits (0 if it does not fit: the frame is void and is done
+// again with more room), and the dispatches that go over it.
+struct ListState {
+    uint needed;  // 0xffffffff: more than can be counted
+    uint count;
+    DispatchSize per_item;        // workgroups of kGroupSize
+    DispatchSize per_scan_block;  // workgroups of kScanBlock
+    DispatchSize per_sort_block;  // workgroups of kSortBlock
+};
+BINOSPLAT_ARRAY_OF(ListState, ListStates);
+
+// Counters for the report that no list states.
+struct EyeCounters {
+    uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
+    uint square_box_pairs_high;
+};
+BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
+
+BINOSPLAT_END_SHARED
+
+#endif
