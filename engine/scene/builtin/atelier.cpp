@@ -17,6 +17,6 @@ Scene makeAtelier(std::uint64_t splats, const Progress& progress) {
 }
 
 // Lattice at 0.6 to 0.9 m on the left, leaves at 0.4 to 0.8 m on the right, hills at 40 to 400 m through the window.
-View atelierView() { return {{0.1, -1.45, 0.35}, {0.0, -1.22, 5.0}, {0.0, -1.0, 0.0}, 76.0}; }
+View atelierView() { return {{0.1, -1.45, 0.35}, {0.02, -1.06, 5.0}, {0.0, -1.0, 0.0}, 70.0}; }
 
 }  // namespace binosplat::builtin

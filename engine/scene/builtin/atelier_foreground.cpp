@@ -28,9 +28,9 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
         const glm::vec2 at = from + 0.5f * (s0 + s1) * along;
         addBox(draft, {{at.x, y, at.y}, {0.5f * (s1 - s0) * width, half_height, half_depth}, yaw}, cherry, detail, half_height > 0.01f);
     };
-    addBar(0.0f, 0.0f, kTop, 0.017f, 0.017f, 14.0f);
-    addBar(1.0f, 0.0f, kTop, 0.017f, 0.017f, 14.0f);
-    for (const float y : {kTop, kRail, -0.06f}) { addRail(y, 0.0f, 1.0f, 0.017f, 0.014f, 14.0f); }
+    addBar(0.0f, 0.0f, kTop, 0.013f, 0.013f, 14.0f);
+    addBar(1.0f, 0.0f, kTop, 0.013f, 0.013f, 14.0f);
+    for (const float y : {kTop, kRail, -0.06f}) { addRail(y, 0.0f, 1.0f, 0.014f, 0.011f, 14.0f); }
     addRail(0.5f * (kRail - 0.06f), 0.0f, 1.0f, 0.5f * (-0.06f - kRail), 0.005f, 4.0f);
     // The lattice: four uprights and nine cross bars, with short pieces between every other pair.
     constexpr int kUprights = 4, kBars = 9;
@@ -48,7 +48,7 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
 
 // A tall plant in a clay pot: stems with long narrow leaves, some of which reach before the eye.
 void addPlant(Draft& draft) {
-    const glm::vec3 foot(0.98f, 0.0f, 1.22f);
+    const glm::vec3 foot(0.72f, 0.0f, 1.15f);
     addRevolution(
         draft, foot,
         {{0.0f, 0.0f}, {0.13f, 0.0f}, {0.15f, 0.1f}, {0.185f, 0.26f}, {0.195f, 0.34f}, {0.175f, 0.345f}, {0.17f, 0.32f}, {0.0f, 0.31f}},

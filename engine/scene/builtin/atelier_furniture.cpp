@@ -30,7 +30,7 @@ MaterialAt fabric(const glm::vec3& albedo, std::uint32_t seed) {
 void addTable(Draft& draft) {
     const glm::vec3 centre(0.35f, -0.74f, 2.45f);
     const MaterialAt oak = wood({0.24f, 0.115f, 0.05f}, {0.46f, 0.26f, 0.125f}, true, 41u);
-    addBox(draft, {centre + glm::vec3(0.0f, 0.018f, 0.0f), {0.80f, 0.018f, 0.43f}, 0.0f}, oak, 6.0f);
+    addBox(draft, {centre + glm::vec3(0.0f, 0.018f, 0.0f), {0.80f, 0.018f, 0.43f}, 0.0f, true}, oak, 6.0f);
     addBox(draft, {centre + glm::vec3(0.0f, 0.08f, 0.0f), {0.72f, 0.042f, 0.36f}, 0.0f}, oak, 3.0f);
     for (const float x : {-0.69f, 0.69f}) {
         for (const float z : {-0.33f, 0.33f}) {
@@ -49,13 +49,13 @@ void addArmchair(Draft& draft) {
         const float c = std::cos(yaw), s = std::sin(yaw);
         return foot + glm::vec3(c * local.x + s * local.z, local.y, -s * local.x + c * local.z);
     };
-    addCushion(draft, {place({0.0f, -0.26f, 0.0f}), {0.42f, 0.14f, 0.40f}, yaw}, 0.35f, cloth, 4.0f);
-    addCushion(draft, {place({0.0f, -0.43f, -0.05f}), {0.31f, 0.085f, 0.36f}, yaw}, 0.4f, cloth, 5.0f);
-    addCushion(draft, {place({0.0f, -0.62f, 0.36f}), {0.40f, 0.40f, 0.11f}, yaw}, 0.4f, cloth, 4.0f);
+    addCushion(draft, {place({0.0f, -0.26f, 0.0f}), {0.42f, 0.14f, 0.40f}, yaw}, 6.0f, cloth, 4.0f);
+    addCushion(draft, {place({0.0f, -0.43f, -0.05f}), {0.31f, 0.085f, 0.36f}, yaw}, 5.0f, cloth, 5.0f);
+    addCushion(draft, {place({0.0f, -0.62f, 0.36f}), {0.40f, 0.40f, 0.11f}, yaw}, 5.0f, cloth, 4.0f);
     for (const float side : {-1.0f, 1.0f}) {
-        addCushion(draft, {place({side * 0.41f, -0.42f, 0.02f}), {0.095f, 0.22f, 0.40f}, yaw}, 0.4f, cloth, 5.0f);
+        addCushion(draft, {place({side * 0.41f, -0.42f, 0.02f}), {0.095f, 0.22f, 0.40f}, yaw}, 5.0f, cloth, 5.0f);
     }
-    addCushion(draft, {place({0.06f, -0.66f, 0.20f}), {0.21f, 0.17f, 0.085f}, yaw + 0.2f}, 0.6f, pillow, 7.0f);
+    addCushion(draft, {place({0.06f, -0.66f, 0.20f}), {0.21f, 0.17f, 0.085f}, yaw + 0.2f}, 3.2f, pillow, 7.0f);
     for (const float x : {-0.34f, 0.34f}) {
         for (const float z : {-0.30f, 0.30f}) {
             addRod(draft, place({x, 0.0f, z}), place({x, -0.14f, z}), 0.02f, plain({0.13f, 0.07f, 0.035f}), 6.0f);
@@ -82,8 +82,14 @@ void addBooks(Draft& draft, float shelf, float z0, float z1, std::uint32_t seed)
                 1.0f - glm::smoothstep(0.012f, 0.03f, std::abs(up - band)) * glm::smoothstep(0.01f, 0.02f, std::abs(up - 0.93f));
             return Material{glm::mix(cover, glm::vec3(0.62f, 0.48f, 0.20f), 0.8f * gilt), glm::vec3(0.0f), 0.97f};
         };
-        addBox(draft, {{-2.98f + 0.03f + depth, shelf - 0.5f * height, z + 0.5f * thick}, {depth, 0.5f * height, 0.48f * thick}, 0.0f},
-               spine, 3.2f, false);
+        // Spine and top are what one sees; the sides stand against each other, and the back at the wall is left out.
+        const glm::vec3 low(-2.95f, shelf - height, z), high(-2.95f + 2.0f * depth, shelf, z + 0.96f * thick),
+            away(0.0f, -1.5f, 0.5f * (low.z + high.z));
+        const glm::vec3 x(high.x - low.x, 0.0f, 0.0f), y(0.0f, height, 0.0f), along(0.0f, 0.0f, high.z - low.z);
+        addQuad(draft, {{high.x, low.y, low.z}, along, y, away}, spine, 3.0f);
+        addQuad(draft, {low, x, along, away + glm::vec3(0.0f, -100.0f, 0.0f)}, plain({0.55f, 0.50f, 0.40f}), 1.0f);
+        addQuad(draft, {low, x, y, away + glm::vec3(0.0f, 0.0f, -100.0f)}, spine, 0.25f);
+        addQuad(draft, {{low.x, low.y, high.z}, x, y, away + glm::vec3(0.0f, 0.0f, 100.0f)}, spine, 0.25f);
         z += thick + 0.002f;
     }
     // For shadows, the row is one block.
@@ -98,9 +104,7 @@ void addShelf(Draft& draft) {
     addQuad(draft, {{-2.985f, -2.3f, z0}, {0.0f, 0.0f, z1 - z0}, {0.0f, 2.3f, 0.0f}, {100.0f, -1.0f, 3.4f}}, walnut, 0.9f);
     for (int board = 0; board <= 6; ++board) {
         const float y = -0.06f - 0.37f * static_cast<float>(board);
-        addBox(draft, {{x, y, 0.5f * (z0 + z1)}, {depth, 0.014f, 0.5f * (z1 - z0)}, 0.0f}, walnut, 2.5f);
-        // The lower faces of the boards, which a box leaves out.
-        addQuad(draft, {{x - depth, y + 0.014f, z0}, {0.0f, 0.0f, z1 - z0}, {2.0f * depth, 0.0f, 0.0f}, {x, 100.0f, 3.4f}}, walnut, 1.5f);
+        addBox(draft, {{x, y, 0.5f * (z0 + z1)}, {depth, 0.014f, 0.5f * (z1 - z0)}, 0.0f, true}, walnut, 2.5f);
         if (board == 6) { break; }
         const auto seed = static_cast<std::uint32_t>(board);
         addBooks(draft, y - 0.014f, z0 + 0.03f, 0.5f * (z0 + z1) - 0.02f, 131u + seed);

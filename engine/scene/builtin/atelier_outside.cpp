@@ -38,7 +38,7 @@ void addRidge(Draft& draft, const Ridge& ridge) {
         const float distance = ridge.distance * (0.85f + 0.3f * up);
         return kEye + glm::vec3(distance * std::sin(angle), -(bottom + (top - bottom) * up), distance * std::cos(angle));
     };
-    const float haze = 1.0f - std::exp(-ridge.distance / 170.0f);
+    const float haze = 1.0f - std::exp(-ridge.distance / 560.0f);
     patch.material = [=](const glm::vec3& p, const glm::vec2& uv) {
         const glm::vec2 at = glm::vec2(p.x, p.y * 2.5f - p.z) / ridge.distance;
         const float fields = fractalNoise(at * 13.0f, ridge.seed + 31u),
@@ -49,7 +49,7 @@ void addRidge(Draft& draft, const Ridge& ridge) {
         return Material{glm::vec3(0.0f), glm::mix(1.25f * colour * light, kHaze, haze), 0.98f};
     };
     patch.size_m = {2.0f * half_angle * ridge.distance, 0.22f * ridge.distance};
-    patch.detail = detailFor(ridge.distance, 1.6f);
+    patch.detail = detailFor(ridge.distance, 1.1f);
     patch.lit = false;
     draft.add(std::move(patch));
 }
@@ -66,43 +66,56 @@ void addMeadow(Draft& draft) {
                     flowers = glm::smoothstep(0.70f, 0.76f, fractalNoise({p.x * 4.0f, p.z * 3.0f}, 93u));
         glm::vec3 colour = glm::mix(glm::vec3(0.16f, 0.27f, 0.07f), glm::vec3(0.46f, 0.50f, 0.16f), tufts);
         colour = glm::mix(colour, glm::vec3(0.85f, 0.72f, 0.35f), 0.6f * flowers);
-        return Material{glm::vec3(0.0f), glm::mix(colour, kHaze, 1.0f - std::exp(-p.z / 220.0f)), 0.98f};
+        return Material{glm::vec3(0.0f), glm::mix(colour, kHaze, 1.0f - std::exp(-p.z / 600.0f)), 0.98f};
     };
     patch.size_m = {30.0f, 40.0f};
-    patch.detail = detailFor(13.0f, 0.25f);
+    patch.detail = detailFor(13.0f, 0.12f);
     patch.lit = false;
     draft.add(std::move(patch));
 }
 
-// A round crown on a stem, darker below.
-void addTree(Draft& draft, const glm::vec3& foot, float height, std::uint32_t seed) {
-    const glm::vec3 centre = foot + glm::vec3(0.0f, -0.62f * height, 0.0f);
+// One ball of leaves, darker below.
+void addFoliage(Draft& draft, const glm::vec3& centre, float radius, std::uint32_t seed) {
     const float distance = glm::distance(centre, kEye);
     Patch crown;
     crown.point = [=](const glm::vec2& uv) {
         const float longitude = 2.0f * kPi * uv.x, latitude = kPi * (uv.y - 0.5f);
-        const float bump = 0.8f + 0.4f * fractalNoise({uv.x * 9.0f, uv.y * 7.0f}, seed);
         const glm::vec3 unit(std::cos(latitude) * std::cos(longitude), std::sin(latitude), std::cos(latitude) * std::sin(longitude));
-        return centre + bump * height * unit * glm::vec3(0.27f, 0.38f, 0.27f);
+        const float bump = 0.78f + 0.3f * fractalNoise({unit.x * 2.5f + unit.y, unit.z * 2.5f - unit.y}, seed);
+        return centre + bump * radius * unit * glm::vec3(1.0f, 0.85f, 1.0f);
     };
     crown.material = [=](const glm::vec3& p, const glm::vec2& uv) {
-        const float up = (centre.y - p.y) / (0.4f * height), leaves = fractalNoise(uv * glm::vec2(34.0f, 22.0f), seed + 5u);
-        const glm::vec3 colour = glm::mix(glm::vec3(0.05f, 0.10f, 0.035f), glm::vec3(0.34f, 0.42f, 0.12f),
-                                          glm::clamp(0.35f + 0.35f * up + 0.9f * (leaves - 0.5f), 0.0f, 1.0f));
-        return Material{glm::vec3(0.0f), glm::mix(colour, kHaze, 1.0f - std::exp(-distance / 200.0f)), 0.93f};
+        const float up = (centre.y - p.y) / radius, leaves = fractalNoise(uv * glm::vec2(26.0f, 15.0f), seed + 5u);
+        const float light = glm::clamp(0.30f + 0.34f * up + 1.0f * (leaves - 0.5f), 0.0f, 1.0f);
+        const glm::vec3 colour = glm::mix(glm::vec3(0.04f, 0.085f, 0.03f), glm::vec3(0.33f, 0.40f, 0.11f), light);
+        return Material{glm::vec3(0.0f), glm::mix(colour, kHaze, 1.0f - std::exp(-distance / 500.0f)), 0.90f};
     };
-    crown.size_m = {1.7f * height, 1.1f * height};
-    crown.detail = detailFor(distance, 1.6f);
+    crown.size_m = {4.6f * radius, 2.7f * radius};
+    crown.detail = detailFor(distance, 1.2f);
     crown.lit = false;
     draft.add(std::move(crown));
+}
+
+// A stem and a handful of such balls round its top.
+void addTree(Draft& draft, const glm::vec3& foot, float height, std::uint32_t seed) {
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        const float angle = 2.39996f * static_cast<float>(i), out = i == 0 ? 0.0f : 0.20f + 0.08f * unitFloat(hash(seed, i));
+        const float up = 0.48f + 0.40f * static_cast<float>((i * 5) % 8) / 8.0f, radius = 0.15f + 0.07f * unitFloat(hash(seed, i + 100u));
+        const float narrow = 1.25f - 0.8f * (up - 0.48f);
+        addFoliage(draft, foot + height * glm::vec3(narrow * out * std::cos(angle), -up, narrow * out * std::sin(angle)), radius * height,
+                   seed * 16u + i);
+    }
     Patch stem;
     stem.point = [=](const glm::vec2& uv) {
-        const float angle = 2.0f * kPi * uv.x;
-        return foot + glm::vec3(0.03f * height * std::cos(angle), -0.4f * height * uv.y, 0.03f * height * std::sin(angle));
+        const float angle = 2.0f * kPi * uv.x, radius = height * glm::mix(0.032f, 0.018f, uv.y);
+        return foot + glm::vec3(radius * std::cos(angle), -0.55f * height * uv.y, radius * std::sin(angle));
     };
-    stem.material = [](const glm::vec3&, const glm::vec2&) { return Material{glm::vec3(0.0f), glm::vec3(0.13f, 0.10f, 0.07f), 0.97f}; };
-    stem.size_m = {0.19f * height, 0.4f * height};
-    stem.detail = detailFor(distance, 1.6f);
+    stem.material = [](const glm::vec3& p, const glm::vec2& uv) {
+        return Material{glm::vec3(0.0f), glm::vec3(0.13f, 0.10f, 0.07f) * (0.6f + 0.8f * fractalNoise({uv.x * 9.0f, p.y * 3.0f}, 71u)),
+                        0.97f};
+    };
+    stem.size_m = {0.16f * height, 0.55f * height};
+    stem.detail = detailFor(glm::distance(foot, kEye), 1.2f);
     stem.lit = false;
     draft.add(std::move(stem));
 }
@@ -117,7 +130,7 @@ void addSky(Draft& draft) {
     };
     patch.material = [](const glm::vec3& p, const glm::vec2&) {
         const glm::vec3 d = glm::normalize(p - kEye);
-        const float up = glm::clamp(-d.y / 0.6f, 0.0f, 1.0f);
+        const float up = glm::clamp(-d.y / 0.32f, 0.0f, 1.0f);
         glm::vec3 colour = glm::mix(glm::vec3(0.90f, 0.93f, 0.95f), glm::vec3(0.26f, 0.50f, 0.88f), std::sqrt(up));
         const glm::vec2 cloud_at = glm::vec2(d.x, d.z) / (0.12f - d.y);
         const float cloud = glm::smoothstep(0.50f, 0.72f, fractalNoise(cloud_at * glm::vec2(1.1f, 1.9f) + 4.0f, 61u));
@@ -125,7 +138,7 @@ void addSky(Draft& draft) {
         return Material{glm::vec3(0.0f), 1.15f * colour, 0.99f};
     };
     patch.size_m = {2.0f * kDistance, 0.72f * kDistance};
-    patch.detail = detailFor(kDistance, 0.7f);
+    patch.detail = detailFor(kDistance, 0.5f);
     patch.lit = false;
     draft.add(std::move(patch));
 }
@@ -134,10 +147,10 @@ void addSky(Draft& draft) {
 
 void addOutside(Draft& draft, const Room&) {
     addSky(draft);
-    addRidge(draft, {320.0f, 0.115f, {0.30f, 0.36f, 0.30f}, 101u});
-    addRidge(draft, {190.0f, 0.065f, {0.30f, 0.37f, 0.18f}, 211u});
-    addRidge(draft, {105.0f, 0.015f, {0.36f, 0.42f, 0.15f}, 307u});
-    addRidge(draft, {55.0f, -0.030f, {0.40f, 0.44f, 0.14f}, 401u});
+    addRidge(draft, {320.0f, 0.075f, {0.20f, 0.26f, 0.26f}, 101u});
+    addRidge(draft, {190.0f, 0.030f, {0.22f, 0.30f, 0.13f}, 211u});
+    addRidge(draft, {105.0f, -0.008f, {0.30f, 0.37f, 0.12f}, 307u});
+    addRidge(draft, {55.0f, -0.042f, {0.36f, 0.40f, 0.11f}, 401u});
     addMeadow(draft);
     addTree(draft, {-9.5f, 1.9f, 24.0f}, 7.0f, 1u);
     addTree(draft, {5.6f, 1.8f, 29.0f}, 6.0f, 2u);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace binosplat::builtin {
 
@@ -62,7 +63,7 @@ Material wall(float along, float y) {
 
 // The rug: a border of triangles around a field of nested diamonds. `at` in its own metres from its middle.
 Material rugPattern(const glm::vec2& at, const glm::vec2& half) {
-    const glm::vec3 red(0.40f, 0.075f, 0.055f), navy(0.045f, 0.06f, 0.15f), sand(0.62f, 0.50f, 0.33f), rust(0.50f, 0.20f, 0.08f);
+    const glm::vec3 red(0.27f, 0.04f, 0.03f), navy(0.045f, 0.06f, 0.15f), sand(0.62f, 0.50f, 0.33f), rust(0.40f, 0.13f, 0.045f);
     const glm::vec2 edge = half - glm::abs(at);
     const float inset = std::min(edge.x, edge.y);
     glm::vec3 colour;
@@ -114,14 +115,23 @@ void addWalls(Draft& draft, const Room& room) {
     addQuadAround(draft, {room.min, deep, down, middle}, left_holes, by_z, 0.9f);
     const std::array<glm::vec4, 1> right_holes{holeOn(2.1f, 0.62f, 3.7f, 1.72f, size.z)};  // the large picture
     addQuadAround(draft, {{room.max.x, room.min.y, room.min.z}, deep, down, middle}, right_holes, by_z, 0.9f);
-    addQuad(draft, {room.min, across, down, middle}, by_x, 0.3f);
-    addQuad(
-        draft, {room.min, across, deep, middle},
-        [](const glm::vec3& p, const glm::vec2&) {
-            return Material{glm::vec3(0.82f, 0.81f, 0.78f) * (0.97f + 0.05f * fractalNoise({p.x * 1.7f, p.z * 1.7f}, 9u)), glm::vec3(0.0f),
-                            0.98f};
-        },
-        0.35f);
+    addQuad(draft, {room.min, across, down, middle}, by_x, 0.15f);
+    // Four beams carry the ceiling.
+    const MaterialAt beam = [](const glm::vec3& p, const glm::vec2&) {
+        const float grain = fractalNoise({(p.x + p.y) * 38.0f, p.z * 1.6f}, 13u);
+        return Material{glm::mix(glm::vec3(0.17f, 0.10f, 0.055f), glm::vec3(0.34f, 0.215f, 0.125f), grain), glm::vec3(0.0f), 0.98f};
+    };
+    constexpr float kBeams[] = {-2.25f, -0.75f, 0.75f, 2.25f}, kHalfBeam = 0.065f;
+    std::vector<glm::vec4> beam_holes;
+    for (const float x : kBeams) {
+        addBox(draft, {{x, -2.72f, 2.5f}, {kHalfBeam, 0.08f, 2.5f}, 0.0f, true}, beam, 1.8f);
+        beam_holes.emplace_back((x - kHalfBeam - room.min.x) / size.x, 0.0f, (x + kHalfBeam - room.min.x) / size.x, 1.0f);
+    }
+    const MaterialAt lime = [](const glm::vec3& p, const glm::vec2&) {
+        return Material{glm::vec3(0.82f, 0.81f, 0.78f) * (0.97f + 0.05f * fractalNoise({p.x * 1.7f, p.z * 1.7f}, 9u)), glm::vec3(0.0f),
+                        0.98f};
+    };
+    addQuadAround(draft, {room.min, across, deep, middle}, beam_holes, lime, 0.35f);
 }
 
 void addWindow(Draft& draft, const Room& room) {

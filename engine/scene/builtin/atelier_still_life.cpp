@@ -74,7 +74,7 @@ void addFruit(Draft& draft) {
                                            glm::smoothstep(0.55f, 0.8f, fractalNoise({p.x * 22.0f, p.z * 22.0f}, 9u)));
             return Material{apple ? red : orange, glm::vec3(0.0f), 0.97f};
         };
-        addCushion(draft, {foot + places[i], {0.052f, 0.049f, 0.052f}, 0.0f}, 1.0f, skin, 16.0f);
+        addCushion(draft, {foot + places[i], {0.052f, 0.049f, 0.052f}, 0.0f}, 2.0f, skin, 16.0f);
     }
 }
 

@@ -37,7 +37,7 @@ float lobe(const glm::vec3& direction, const glm::vec3& axis) {
     const float t = 0.5f + 0.5f * glm::dot(direction, axis);
     return t * t * t;
 }
-// The narrowest non-ringing-looking lobe of degree 3: the square of degree 1.5 is not one, so the Legendre sum with Lanczos-like weights.
+// A narrower lobe: a Legendre sum whose weights fall off, so that it hardly rings (down to -0.08 behind the axis).
 float sharpLobe(const glm::vec3& direction, const glm::vec3& axis) {
     const float t = glm::dot(direction, axis);
     const float p2 = 1.5f * t * t - 0.5f, p3 = 2.5f * t * t * t - 1.5f * t;
@@ -69,11 +69,14 @@ std::array<float, 16> evaluateSh(const glm::vec3& d) {
 std::array<glm::vec3, 16> projectGloss(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& window, const glm::vec3& lamp) {
     static const Quadrature kQuadrature = makeQuadrature();
     const glm::vec3 to_window = glm::normalize(window - point), to_lamp = glm::normalize(lamp - point), up(0.0f, -1.0f, 0.0f);
+    const glm::vec3 to_skylight =
+        glm::normalize(glm::vec3(-0.75f, -0.75f, -0.6f));  // a second bright spot, behind the viewer's left shoulder
     std::array<glm::vec3, 16> sh{};
     for (std::size_t i = 0; i < kQuadrature.directions.size(); ++i) {
         const glm::vec3 mirrored = glm::reflect(kQuadrature.directions[i], normal);
         const glm::vec3 shine = glm::vec3(0.60f, 0.66f, 0.72f) * sharpLobe(mirrored, to_window) +
                                 glm::vec3(0.22f, 0.14f, 0.06f) * sharpLobe(mirrored, to_lamp) +
+                                glm::vec3(0.34f, 0.33f, 0.32f) * sharpLobe(mirrored, to_skylight) +
                                 glm::vec3(0.10f, 0.10f, 0.11f) * lobe(mirrored, up);
         for (std::size_t k = 0; k < 16; ++k) { sh[k] += shine * (kQuadrature.weights[i] * kQuadrature.sh[i][k]); }
     }

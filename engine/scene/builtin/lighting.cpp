@@ -17,10 +17,12 @@ constexpr float kFar = 1e9f;
 
 // The distance at which a ray enters the occluder; kFar if it misses or starts inside (a surface does not shade itself).
 float hitDistance(const Occluder& occluder, const glm::vec3& origin, const glm::vec3& direction) {
-    const float c = std::cos(occluder.yaw_rad), s = std::sin(occluder.yaw_rad);
-    const auto turn = [&](const glm::vec3& v) { return glm::vec3(c * v.x - s * v.z, v.y, s * v.x + c * v.z); };
-    const glm::vec3 o = turn(origin - occluder.centre) / occluder.half;
-    const glm::vec3 d = turn(direction) / occluder.half;
+    const glm::vec3 to_centre = occluder.centre - origin;
+    const float radius = occluder.bounding_radius, nearest = glm::dot(to_centre, direction);
+    if (nearest < -radius || glm::dot(to_centre, to_centre) - nearest * nearest > radius * radius) { return kFar; }
+    const float c = occluder.cosine, s = occluder.sine;
+    const auto turn = [&](const glm::vec3& v) { return glm::vec3(c * v.x - s * v.z, v.y, s * v.x + c * v.z) * occluder.inverse_half; };
+    const glm::vec3 o = turn(-to_centre), d = turn(direction);
     if (occluder.shape == Occluder::Shape::kEllipsoid) {
         const float a = glm::dot(d, d), b = glm::dot(o, d), e = glm::dot(o, o) - 1.0f;
         if (e < 0.0f || b >= 0.0f) { return kFar; }
@@ -52,7 +54,7 @@ bool isBlocked(const std::vector<Occluder>& occluders, const glm::vec3& origin, 
 // Bounced light from the room's own surfaces, by the wall a ray ends on.
 glm::vec3 bounceColour(const Room& room, const glm::vec3& end) {
     const float depth = (end.z - room.min.z) / (room.max.z - room.min.z);  // brighter towards the window
-    const float level = 0.14f + 0.14f * depth;
+    const float level = 0.18f + 0.15f * depth;
     if (end.y > room.max.y - 0.01f) { return level * glm::vec3(1.0f, 0.78f, 0.56f); }
     if (end.y < room.min.y + 0.01f) { return level * glm::vec3(1.08f, 1.05f, 1.0f); }
     return level * glm::vec3(0.98f, 0.98f, 0.93f);
@@ -113,6 +115,14 @@ glm::vec3 gatherBounce(const Room& room, const std::vector<Occluder>& occluders,
 }
 
 }  // namespace
+
+Occluder::Occluder(Shape shape_in, const glm::vec3& centre_in, const glm::vec3& half, float yaw_rad)
+    : shape(shape_in),
+      centre(centre_in),
+      inverse_half(1.0f / half),
+      cosine(std::cos(yaw_rad)),
+      sine(std::sin(yaw_rad)),
+      bounding_radius(glm::length(half)) {}
 
 Light gatherLight(const Room& room, const std::vector<Occluder>& occluders, const glm::vec3& point, const glm::vec3& normal) {
     const glm::vec3 origin = point + 0.012f * normal;

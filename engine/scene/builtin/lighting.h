@@ -11,10 +11,12 @@ namespace binosplat::builtin {
 
 // What blocks light: boxes (turned about the vertical) and ellipsoids (upright).
 struct Occluder {
-    enum class Shape { kBox, kEllipsoid } shape = Shape::kBox;
-    glm::vec3 centre{0.0f};
-    glm::vec3 half{0.1f};
-    float yaw_rad = 0.0f;
+    enum class Shape { kBox, kEllipsoid };
+    Occluder(Shape shape, const glm::vec3& centre, const glm::vec3& half, float yaw_rad);
+    Shape shape;
+    glm::vec3 centre, inverse_half;
+    float cosine, sine;     // of the yaw
+    float bounding_radius;
 };
 
 struct Room {

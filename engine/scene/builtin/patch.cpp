@@ -15,9 +15,10 @@ namespace binosplat::builtin {
 
 namespace {
 
-// Sigma over spacing. On a square grid 1.7 % of the background shines through the middle of four splats at opacity 0.96; smaller
-// values show holes, larger ones blur.
-constexpr float kSigmaPerSpacing = 0.7f;
+// Sigma over spacing, by the number of splats across a patch. On a square grid with 0.66, 3 % of the background shines through the
+// middle of four splats at opacity 0.96; smaller values show holes, larger ones blur. A narrow strip (a bar, a leaf) would look fatter than
+// it is: one splat across of 0.45 falls to half its opacity at the strip's edges.
+float sigmaPerSpacing(std::uint64_t splats_across) { return splats_across == 1 ? 0.45f : splats_across == 2 ? 0.56f : 0.66f; }
 
 struct Frame {
     glm::vec3 point, along_u, along_v, normal;  // along_*: derivatives by u and v
@@ -41,10 +42,11 @@ Frame frameAt(const Patch& patch, const glm::vec2& uv) {
 class LightGrid {
 public:
     LightGrid() = default;
-    LightGrid(const Patch& patch, const Room& room, const std::vector<Occluder>& occluders) {
+    LightGrid(const Patch& patch, const Room& room, const std::vector<Occluder>& occluders, std::uint64_t splats) {
         if (!patch.lit) { return; }
-        constexpr float kCell = 0.05f;
-        const auto cells = [](float extent) { return std::clamp(static_cast<int>(std::lround(extent / kCell)), 1, 96); };
+        // No finer than the splats, and no finer than the softest shadows need.
+        const float spacing = std::sqrt(patch.size_m.x * patch.size_m.y / static_cast<float>(splats)), cell = std::max(0.05f, spacing);
+        const auto cells = [cell](float extent) { return std::clamp(static_cast<int>(std::lround(extent / cell)), 1, 96); };
         columns_ = cells(patch.size_m.x);
         rows_ = cells(patch.size_m.y);
         for (int row = 0; row < rows_; ++row) {
@@ -136,7 +138,9 @@ private:
         const glm::vec2 jitter(unitFloat(chance) - 0.5f, unitFloat(hash(chance)) - 0.5f);
         const glm::vec2 place(static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
                               static_cast<float>(row) + 0.5f);
-        const glm::vec2 uv = glm::clamp((place + 0.3f * jitter) * cell, glm::vec2(0.0f), glm::vec2(1.0f));
+        // The outermost splats move in by an eighth of a cell: half of a splat's opacity reaches 0.3 cells past the edge otherwise.
+        const glm::vec2 even = (place + 0.16f * jitter) * cell,
+                        uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.25f * cell), glm::vec2(0.0f), glm::vec2(1.0f));
 
         const Frame frame = frameAt(patch_, uv);
         const float length_u = glm::length(frame.along_u);
@@ -145,7 +149,8 @@ private:
         scene.rotations[target] = makeRotation(frame, t_u, t_v);
         scene.positions[target] = frame.point;
         const glm::vec2 spacing = cell * glm::vec2(length_u, std::abs(glm::dot(frame.along_v, t_v)));
-        scene.scales[target] = glm::max(kSigmaPerSpacing * spacing, glm::vec2(1e-5f));
+        const glm::vec2 per_spacing(sigmaPerSpacing(rows_.starts[row + 1] - rows_.starts[row]), sigmaPerSpacing(rows_.starts.size() - 1));
+        scene.scales[target] = glm::max(per_spacing * spacing, glm::vec2(1e-5f));
 
         float opacity = 0.0f;
         const glm::vec3 colour = shade(frame, uv, cell, opacity);
@@ -209,6 +214,19 @@ void runParallel(std::size_t count, const Work& work, const Progress& progress, 
     take(true);
 }
 
+// Whether a patch lies in a wall, floor or ceiling and looks out of the room: the back of a picture frame, the underside of a pot.
+bool isHidden(const Patch& patch, const Room& room) {
+    if (!patch.lit || patch.two_sided || !patch.behind) { return false; }
+    const Frame frame = frameAt(patch, {0.5f, 0.5f});
+    constexpr float kContact = 0.005f;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool beyond_max = frame.point[axis] > room.max[axis] - kContact && frame.normal[axis] > 0.9f;
+        const bool beyond_min = frame.point[axis] < room.min[axis] + kContact && frame.normal[axis] < -0.9f;
+        if (beyond_max || beyond_min) { return true; }
+    }
+    return false;
+}
+
 }  // namespace
 
 Patch& Draft::add(Patch patch) {
@@ -221,7 +239,9 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     // share on average even where it is under one.
     std::vector<std::uint64_t> starts{0};
     double total = 0.0, running = 0.0;
-    const auto weight = [](const Patch& patch) { return static_cast<double>(patch.size_m.x) * patch.size_m.y * patch.detail; };
+    const auto weight = [&room](const Patch& patch) {
+        return isHidden(patch, room) ? 0.0 : static_cast<double>(patch.size_m.x) * patch.size_m.y * patch.detail;
+    };
     for (const Patch& patch : patches_) { total += weight(patch); }
     for (const Patch& patch : patches_) {
         running += weight(patch);
@@ -233,7 +253,7 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     runParallel(
         patches_.size(),
         [&](std::size_t i) {
-            if (starts[i + 1] > starts[i]) { grids[i] = LightGrid(patches_[i], room, occluders_); }
+            if (starts[i + 1] > starts[i]) { grids[i] = LightGrid(patches_[i], room, occluders_, starts[i + 1] - starts[i]); }
         },
         progress, 0.0, 0.3);
 

@@ -17,9 +17,6 @@ glm::vec3 turn(const glm::vec3& v, float yaw) {
     return {c * v.x + s * v.z, v.y, -s * v.x + c * v.z};
 }
 
-// sign(x) |x|^e, the power that makes superellipsoids.
-float signedPower(float x, float e) { return std::copysign(std::pow(std::abs(x), e), x); }
-
 // Catmull-Rom through the profile's points.
 glm::vec2 evaluateProfile(const std::vector<glm::vec2>& points, float v) {
     const auto last = static_cast<int>(points.size()) - 1;
@@ -81,24 +78,26 @@ void addBox(Draft& draft, const Box& box, const MaterialAt& material, float deta
     };
     const glm::vec3 x(1.0f, 0.0f, 0.0f), y(0.0f, 1.0f, 0.0f), z(0.0f, 0.0f, 1.0f);
     addFace(-y, x, z);
+    if (box.underside) { addFace(y, x, z); }
     for (const float sign : {-1.0f, 1.0f}) {
         addFace(sign * x, z, y);
         addFace(sign * z, x, y);
     }
 }
 
-void addCushion(Draft& draft, const Box& box, float exponent, const MaterialAt& material, float detail, bool occludes) {
+void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& material, float detail, bool occludes) {
     if (occludes) { draft.occluders().push_back({Occluder::Shape::kEllipsoid, box.centre, 0.97f * box.half, box.yaw_rad}); }
     Patch patch;
     patch.point = [=](const glm::vec2& uv) {
-        const float longitude = 2.0f * kPi * uv.x, latitude = kPi * (uv.y - 0.5f);
-        const float ring = signedPower(std::cos(latitude), exponent);
-        const glm::vec3 unit(ring * signedPower(std::cos(longitude), exponent), signedPower(std::sin(latitude), exponent),
-                             ring * signedPower(std::sin(longitude), exponent));
-        return box.centre + turn(unit * box.half, box.yaw_rad);
+        // A direction, stretched until its norm of order `boxiness` is 1. (The usual superellipsoid formula has no finite derivative
+        // there.)
+        const float longitude = 2.0f * kPi * uv.x, latitude = kPi * (uv.y - 0.5f), ring = std::cos(latitude);
+        const glm::vec3 d(ring * std::cos(longitude), std::sin(latitude), ring * std::sin(longitude));
+        const glm::vec3 powers = glm::pow(glm::abs(d), glm::vec3(boxiness));
+        return box.centre + turn(d * std::pow(powers.x + powers.y + powers.z, -1.0f / boxiness) * box.half, box.yaw_rad);
     };
     patch.material = material;
-    patch.size_m = {4.0f * (box.half.x + box.half.z) * 0.85f, 2.0f * box.half.y + box.half.x + box.half.z};
+    patch.size_m = {4.0f * (box.half.x + box.half.z) * 0.75f, 2.0f * box.half.y + box.half.x + box.half.z};
     patch.detail = detail;
     patch.behind = [centre = box.centre](const glm::vec3&) { return centre; };
     draft.add(std::move(patch));

@@ -23,15 +23,16 @@ void addQuad(Draft& draft, const Quad& quad, const MaterialAt& material, float d
 // be mixed with it, since splats are sorted by their centres.
 void addQuadAround(Draft& draft, const Quad& quad, std::span<const glm::vec4> holes, const MaterialAt& material, float detail);
 
-// A box turned by yaw about the vertical, without its bottom, and an occluder like it.
+// A box turned by yaw about the vertical, and an occluder like it.
 struct Box {
     glm::vec3 centre, half;
     float yaw_rad = 0.0f;
+    bool underside = false;
 };
 void addBox(Draft& draft, const Box& box, const MaterialAt& material, float detail, bool occludes = true);
 
-// A rounded box (exponent 0.3) to ellipsoid (exponent 1), and an occluder like it.
-void addCushion(Draft& draft, const Box& box, float exponent, const MaterialAt& material, float detail, bool occludes = true);
+// From an ellipsoid (boxiness 2) to a rounded box (6), and an occluder like it.
+void addCushion(Draft& draft, const Box& box, float boxiness, const MaterialAt& material, float detail, bool occludes = true);
 
 // The profile (radius, height above `foot`) turned about the vertical; corners are smoothed.
 Patch& addRevolution(Draft& draft, const glm::vec3& foot, std::vector<glm::vec2> profile, const MaterialAt& material, float detail);
