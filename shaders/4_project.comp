@@ -81,10 +81,9 @@ void main() {
         pass.tile_counts.at[rank] = tiles;
         square_tiles = squareBoxTiles(splat, eye);
     }
-    uint group_square_tiles;
-    scanGroup(square_tiles, group_square_tiles);
-    if (gl_LocalInvocationIndex == 0 && group_square_tiles > 0) {
-        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, group_square_tiles);
-        if (low + group_square_tiles < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
+    const uint subgroup_square_tiles = subgroupAdd(square_tiles);
+    if (subgroupElect() && subgroup_square_tiles > 0) {
+        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, subgroup_square_tiles);
+        if (low + subgroup_square_tiles < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
     }
 }

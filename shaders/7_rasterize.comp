@@ -20,9 +20,10 @@ const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread, i
 const uint kRowStep = kThreadsPerCell / kCellSize;             // rows from one to the next
 const float kFar = 3e38;                                       // a rho that is no hit
 
-shared vec4 batch_reference[kBatchSize];    // reference_px, u/z and v/z there
-shared vec4 batch_plane[kBatchSize];        // A, B, D, low-pass or kFar
-shared vec4 batch_depth[kBatchSize];        // 1/z there, its slopes, -log2(opacity)
+// u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
+shared vec4 batch_reference[kBatchSize];  // reference_px, u/z and v/z there
+shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or kFar
+shared vec4 batch_depth[kBatchSize];      // 1/z there, its slopes, -log2(opacity)
 shared uvec2 batch_colour[kBatchSize];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];
 shared uint cells_done;
@@ -46,8 +47,9 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
 void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = hasReference(splat.opacity_colour);
-    batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, splat.reference_px);
-    batch_plane[slot] = vec4(splat.plane_from_pixel, has_reference ? kLowPass : kFar);
+    const float scale = sqrt(kLog2PerRho);
+    batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, scale * splat.reference_px);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : kFar);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat.opacity_colour));
     batch_colour[slot] = splat.opacity_colour;
     const uint cells = cellsOf(splat, tile_px);
@@ -59,7 +61,7 @@ void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
 void main() {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
-    const float max_inverse_depth = eye.max_inverse_depth;
+    const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
     const uint tile = gl_WorkGroupID.y * eye.size_tiles.x + gl_WorkGroupID.x;
     const uvec2 tile_px = gl_WorkGroupID.xy * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
@@ -72,24 +74,23 @@ void main() {
     float depth[kPixels];
     vec2 moments[kPixels];
     float transmittance[kPixels];
-    // Pixels that take no more light hold a limit that no transmittance falls short of.
-    float limit[kPixels];
-    uint open_pixels = 0;
+    float open[kPixels];  // the transmittance of a pixel that still takes light, otherwise 0
+    bool any_open = false;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         colour[p] = vec3(0);
         depth[p] = 0;
         moments[p] = vec2(0);
         transmittance[p] = 1;
         const bool inside = first_pixel.x < size_px.x && first_pixel.y + p * kRowStep < size_px.y;
-        limit[p] = inside ? kMinTransmittance : kFar;
-        open_pixels += inside ? 1 : 0;
+        open[p] = inside ? 1 : 0;
+        any_open = any_open || inside;
     }
     if (gl_LocalInvocationIndex == 0) { cells_done = 0; }
     bool counted = false;
 
     for (uint begin = range.x; begin < range.y; begin += kBatchSize) {
         barrier();
-        if (open_pixels == 0 && !counted) {
+        if (!any_open && !counted) {
             atomicAdd(cells_done, 1);
             counted = true;
         }
@@ -103,7 +104,7 @@ void main() {
         }
         barrier();
         for (uint word = 0; word < kBatchSize / 32; ++word) {
-            uint bits = open_pixels > 0 ? cell_splats[cell][word] : 0;
+            uint bits = any_open ? cell_splats[cell][word] : 0;
             while (bits != 0) {
                 const uint slot = word * 32 + uint(findLSB(bits));
                 bits &= bits - 1;
@@ -116,36 +117,34 @@ void main() {
                 const float u = reference.z + plane.x * d.x;
                 const float q = depth_form.x + depth_form.y * d.x;
                 const float rho2_x = plane.w * (d.x * d.x);
-                uint closed = 0;
+                const float centre_z = 1 / depth_form.x;
+                float most_open = 0;
+                // Without branches: pixels that the splat does not reach blend it with weight 0.
                 [[unroll]] for (uint p = 0; p < kPixels; ++p) {
                     const float dy = d.y + float(p * kRowStep);
                     const float u_p = u + plane.y * dy;
                     const float v_p = reference.w + plane.z * dy;
                     const float q_p = q + depth_form.z * dy;
-                    // A hit beyond the near plane has 0 < 1/z <= 1/near; every other, and NaN, is none.
+                    // A hit beyond the near plane has 0 < 1/z <= 1/near. As bits, negative values and NaN are above that.
                     const float z = 1 / q_p;
-                    const float rho3 = q_p > 0 && q_p <= max_inverse_depth ? (u_p * u_p + v_p * v_p) * z * z : kFar;
-                    const float rho2 = plane.w < kFar ? rho2_x + plane.w * (dy * dy) : kFar;
+                    const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? (u_p * u_p + v_p * v_p) * (z * z) : kFar;
+                    const float rho2 = rho2_x + plane.w * (dy * dy);
                     const bool on_disc = rho3 <= rho2;
-                    const float rho = on_disc ? rho3 : rho2;
-                    const float alpha = min(kMaxAlpha, exp2(-depth_form.w - kLog2PerRho * rho));
-                    if (alpha >= kMinAlpha && limit[p] < 1) {
-                        const float w = alpha * transmittance[p];
-                        const float after = transmittance[p] - w;
-                        if (after < limit[p]) {
-                            limit[p] = kFar;
-                            ++closed;
-                        } else {
-                            const float hit_z = on_disc ? z : 1 / depth_form.x;
-                            colour[p] += w * splat_colour;
-                            if (kDepth) { depth[p] += w * hit_z; }
-                            if (kInverseDepthMoments) { moments[p] += w / hit_z * vec2(1, 1 / hit_z); }
-                            transmittance[p] = after;
-                        }
-                    }
+                    const float alpha = min(kMaxAlpha, exp2(-depth_form.w - (on_disc ? rho3 : rho2)));
+                    const float full_weight = alpha >= kMinAlpha ? alpha * open[p] : 0;
+                    const float after = open[p] - full_weight;
+                    const bool closes = after < kMinTransmittance;  // or is closed
+                    const float weight = closes ? 0 : full_weight;
+                    open[p] = closes ? 0 : after;
+                    most_open = max(most_open, open[p]);
+                    transmittance[p] -= weight;
+                    colour[p] += weight * splat_colour;
+                    const float hit_z = on_disc ? z : centre_z;
+                    if (kDepth) { depth[p] += weight * hit_z; }
+                    if (kInverseDepthMoments) { moments[p] += weight / hit_z * vec2(1, 1 / hit_z); }
                 }
-                open_pixels -= closed;
-                if (open_pixels == 0) { break; }
+                any_open = most_open > 0;
+                if (!any_open) { break; }
             }
         }
     }

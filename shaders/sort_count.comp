@@ -6,22 +6,22 @@
 layout(local_size_x = kSortGroupSize) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-shared uint digit_counts[kDigits];
+shared uint digit_counts[kMaxDigits];
 
 void main() {
     const uint count = pass.list.at[0].count;
     const uint blocks = (count + kSortBlock - 1) / kSortBlock;
     const uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    for (uint digit = gl_LocalInvocationIndex; digit < kDigits; digit += kSortGroupSize) { digit_counts[digit] = 0; }
+    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kSortGroupSize) { digit_counts[digit] = 0; }
     barrier();
     const uint first = block * kSortBlock + gl_LocalInvocationIndex;
     const uint end = min(count, (block + 1) * kSortBlock);
     for (uint item = first; item < end; item += kSortGroupSize) {
-        atomicAdd(digit_counts[(pass.keys.at[item] >> pass.shift) & (kDigits - 1)], 1);
+        atomicAdd(digit_counts[(pass.keys.at[item] >> pass.shift) & (pass.digits - 1)], 1);
     }
     barrier();
     if (block < blocks) {
-        for (uint digit = gl_LocalInvocationIndex; digit < kDigits; digit += kSortGroupSize) {
+        for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kSortGroupSize) {
             pass.histograms.at[digit * blocks + block] = digit_counts[digit];
         }
     }

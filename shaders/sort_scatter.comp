@@ -5,20 +5,29 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 
 layout(local_size_x = kSortGroupSize) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 layout(constant_id = 0) const uint kMaxSubgroups = 16;
+layout(constant_id = 1) const bool kNarrowSubgroups = false;  // all have at most 8 invocations
 
-shared uint subgroup_digits[kMaxSubgroups * kDigits];  // counts, then where a subgroup's run of a digit begins
+shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where a subgroup's run of a digit begins
 
 // The lanes of this subgroup whose digit equals this lane's.
 uvec4 matchDigit(uint digit) {
+    if (kNarrowSubgroups) {  // a comparison a lane is then cheaper than a ballot a bit
+        uint peers = 0;
+        [[unroll]] for (uint lane = 0; lane < 8; ++lane) {
+            if (subgroupBroadcast(digit, lane) == digit) { peers |= 1u << lane; }
+        }
+        return uvec4(peers, 0, 0, 0);
+    }
     uvec4 peers = subgroupBallot(true);
-    for (uint bit = 0; bit < 8; ++bit) {
-        const bool set = ((digit >> bit) & 1) != 0;
+    for (uint bit = 1; bit < pass.digits; bit <<= 1) {
+        const bool set = (digit & bit) != 0;
         const uvec4 lanes = subgroupBallot(set);
         peers &= set ? lanes : ~lanes;
     }
@@ -29,7 +38,7 @@ void main() {
     const uint count = pass.list.at[0].count;
     const uint blocks = (count + kSortBlock - 1) / kSortBlock;
     const uint block = groupIndex();
-    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * kDigits; i += kSortGroupSize) { subgroup_digits[i] = 0; }
+    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kSortGroupSize) { subgroup_digits[i] = 0; }
     barrier();
 
     // Rank: how many keys of the subgroup's run have the same digit and come before.
@@ -40,11 +49,11 @@ void main() {
         const uint item = run_begin + i * gl_SubgroupSize;
         // Past the end stand keys of the last digit; they come after all others and are not written.
         keys[i] = item < count ? pass.keys_in.at[item] : 0xffffffffu;
-        const uint digit = (keys[i] >> pass.shift) & (kDigits - 1);
+        const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
         const uvec4 peers = matchDigit(digit);
         const uint before = subgroupBallotExclusiveBitCount(peers);
         uint run_before = 0;
-        if (before == 0) { run_before = atomicAdd(subgroup_digits[gl_SubgroupID * kDigits + digit], subgroupBallotBitCount(peers)); }
+        if (before == 0) { run_before = atomicAdd(subgroup_digits[gl_SubgroupID * pass.digits + digit], subgroupBallotBitCount(peers)); }
         subgroupMemoryBarrierShared();
         ranks[i] = before + subgroupShuffle(run_before, subgroupBallotFindLSB(peers));
     }
@@ -52,15 +61,16 @@ void main() {
 
     // Where each digit begins, in all and in this block, and each subgroup's share of it.
     uint digits_before = 0;
-    for (uint first = 0; first < kDigits; first += kSortGroupSize) {
+    for (uint first = 0; first < pass.digits; first += kSortGroupSize) {
         const uint digit = first + gl_LocalInvocationIndex;
         uint total;
-        const uint before = digits_before + scanGroup(pass.totals.at[digit], total);
+        const uint before = digits_before + scanGroup(digit < pass.digits ? pass.totals.at[digit] : 0, total);
         digits_before += total;
+        if (digit >= pass.digits) { continue; }
         uint place = before + (block < blocks ? pass.histograms.at[digit * blocks + block] : 0);
         for (uint s = 0; s < gl_NumSubgroups; ++s) {
-            const uint own = subgroup_digits[s * kDigits + digit];
-            subgroup_digits[s * kDigits + digit] = place;
+            const uint own = subgroup_digits[s * pass.digits + digit];
+            subgroup_digits[s * pass.digits + digit] = place;
             place += own;
         }
     }
@@ -69,8 +79,8 @@ void main() {
     for (uint i = 0; i < kSortKeysPerThread; ++i) {
         const uint item = run_begin + i * gl_SubgroupSize;
         if (item < count) {
-            const uint digit = (keys[i] >> pass.shift) & (kDigits - 1);
-            const uint place = subgroup_digits[gl_SubgroupID * kDigits + digit] + ranks[i];
+            const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
+            const uint place = subgroup_digits[gl_SubgroupID * pass.digits + digit] + ranks[i];
             pass.keys_out.at[place] = keys[i];
             pass.values_out.at[place] = pass.values_in.at[item];
         }

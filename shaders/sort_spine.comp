@@ -4,14 +4,16 @@
 #include "passes.h"
 #include "lib/group.glsl"
 
-layout(local_size_x = kGroupSize) in;
+const uint kSpineSize = 64;  // a sort of 100,000 keys has 50 blocks
+
+layout(local_size_x = kSpineSize) in;
 layout(push_constant, scalar) uniform Push { SortSpinePass pass; };
 
 void main() {
     const uint digit = gl_WorkGroupID.x;
     const uint blocks = (pass.list.at[0].count + kSortBlock - 1) / kSortBlock;
     uint before_step = 0;
-    for (uint step_begin = 0; step_begin < blocks; step_begin += kGroupSize) {
+    for (uint step_begin = 0; step_begin < blocks; step_begin += kSpineSize) {
         const uint block = step_begin + gl_LocalInvocationIndex;
         const uint value = block < blocks ? pass.histograms.at[digit * blocks + block] : 0;
         uint total;

@@ -147,12 +147,14 @@ void Context::createDevice() {
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     device_name_ = std::string(vulkan10.deviceName.data());
     max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
-    subgroup_size_ = min_subgroup_size_ = vulkan11.subgroupSize;
+    subgroup_size_ = min_subgroup_size_ = max_subgroup_size_ = vulkan11.subgroupSize;
     if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
         const auto sizes = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
-    } else {
+        max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
+    } else {  // some drivers vary the size between 8 and 32 without saying so
         min_subgroup_size_ = std::min(8u, subgroup_size_);
+        max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
     if (physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits == 64) {
         timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod);

@@ -39,6 +39,7 @@ public:
     [[nodiscard]] double timestampPeriodNs() const { return timestamp_period_ns_; }
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
+    [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
     [[nodiscard]] bool validates() const { return validates_; }
     // What the validation layers said so far; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
@@ -79,7 +80,7 @@ private:
     std::string device_name_;
     std::uint64_t max_allocation_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;
-    std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0;
+    std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
     mutable MemoryUse memory_use_;
 };
 

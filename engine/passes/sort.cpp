@@ -9,10 +9,12 @@ namespace binosplat {
 Sort::Sort(const Context& context)
     : count_(context, "sort_count", sizeof(gpu::SortCountPass)),
       spine_(context, "sort_spine", sizeof(gpu::SortSpinePass)),
-      scatter_(context, "sort_scatter", sizeof(gpu::SortScatterPass), {/*max_subgroups=*/gpu::kSortGroupSize / std::min(context.minSubgroupSize(), gpu::kSortGroupSize)}) {}
+      scatter_(context, "sort_scatter", sizeof(gpu::SortScatterPass),
+               {/*max_subgroups=*/gpu::kSortGroupSize / std::min(context.minSubgroupSize(), gpu::kSortGroupSize),
+                /*narrow_subgroups=*/context.maxSubgroupSize() <= 8}) {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
-    return ((items + gpu::kSortBlock - 1) / gpu::kSortBlock + 1) * gpu::kDigits * sizeof(gpu::uint);
+    return ((items + gpu::kSortBlock - 1) / gpu::kSortBlock + 1) * gpu::kMaxDigits * sizeof(gpu::uint);
 }
 
 KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
@@ -20,12 +22,17 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
     const auto totals = histograms;
-    const auto counts = histograms.at(gpu::kDigits);
-    for (gpu::uint shift = 0; shift < key_bits; shift += 8) {
-        commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, list, shift}, lists, groups);
-        commands.dispatch(spine_, gpu::SortSpinePass{counts, totals, list}, gpu::kDigits);
-        commands.dispatchIndirect(scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, totals, list, shift}, lists, groups);
+    const auto counts = histograms.at(gpu::kMaxDigits);
+    // As few rounds as 8 bits allow, and then as few bits a round as will do.
+    const unsigned rounds = (key_bits + 7) / 8;
+    for (unsigned round = 0, shift = 0; round < rounds; ++round) {
+        const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
+        const gpu::uint digits = 1u << bits;
+        commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, list, shift, digits}, lists, groups);
+        commands.dispatch(spine_, gpu::SortSpinePass{counts, totals, list}, digits);
+        commands.dispatchIndirect(scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, totals, list, shift, digits}, lists, groups);
         std::swap(in, spare);
+        shift += bits;
     }
     return in;
 }

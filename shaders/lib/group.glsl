@@ -5,7 +5,7 @@
 // Dispatches of many groups are folded into rows.
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-shared uint subgroup_sums[kGroupSize];
+shared uint subgroup_sums[kGroupSize + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
 uint scanGroup(uint value, out uint total) {
@@ -13,12 +13,19 @@ uint scanGroup(uint value, out uint total) {
     barrier();  // an earlier call may still be reading
     if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) { subgroup_sums[gl_SubgroupID] = before_in_subgroup + value; }
     barrier();
-    uint before = before_in_subgroup;
-    total = 0;
-    for (uint s = 0; s < gl_NumSubgroups; ++s) {
-        const uint sum = subgroup_sums[s];
-        if (s < gl_SubgroupID) { before += sum; }
-        total += sum;
+    // The first subgroup sums the subgroups' sums, as many at a time as it is wide.
+    if (gl_SubgroupID == 0) {
+        uint carry = 0;
+        for (uint first = 0; first < gl_NumSubgroups; first += gl_SubgroupSize) {
+            const uint s = first + gl_SubgroupInvocationID;
+            const uint sum = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
+            const uint before = subgroupExclusiveAdd(sum);
+            if (s < gl_NumSubgroups) { subgroup_sums[s] = carry + before; }
+            carry += subgroupAdd(sum);
+        }
+        if (gl_SubgroupInvocationID == 0) { subgroup_sums[kGroupSize] = carry; }
     }
-    return before;
+    barrier();
+    total = subgroup_sums[kGroupSize];
+    return subgroup_sums[gl_SubgroupID] + before_in_subgroup;
 }

@@ -20,9 +20,9 @@ BINOSPLAT_CONSTANT uint kGroupSize = 256;
 // Values that one workgroup of a scan handles: eight a thread.
 BINOSPLAT_CONSTANT uint kScanBlock = 2048;
 
-// Sorting: 8 bits a pass; a block is what one workgroup ranks. 128 threads keep one histogram per subgroup within
+// Sorting: up to 8 bits a round; a block is what one workgroup ranks. 128 threads keep one histogram per subgroup within
 // 16 KiB of shared memory even where subgroups are eight wide; 16 keys a thread amortise it.
-BINOSPLAT_CONSTANT uint kDigits = 256;
+BINOSPLAT_CONSTANT uint kMaxDigits = 256;
 BINOSPLAT_CONSTANT uint kSortGroupSize = 128;
 BINOSPLAT_CONSTANT uint kSortKeysPerThread = 16;
 BINOSPLAT_CONSTANT uint kSortBlock = kSortGroupSize * kSortKeysPerThread;
@@ -34,7 +34,9 @@ BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 // kMinTransmittance (Kerbl et al. 2023, appendix C).
 BINOSPLAT_CONSTANT float kMaxAlpha = 0.99f;
 BINOSPLAT_CONSTANT float kMinAlpha = 1.0f / 255.0f;
-BINOSPLAT_CONSTANT float kMinTransmittance = 1e-4f;
+// Two hits of kMaxAlpha leave exactly 1e-4, which is not under it; in float32 they leave 0.99999819e-4, so the limit lies
+// below that by a little more than rounding.
+BINOSPLAT_CONSTANT float kMinTransmittance = 0.99999e-4f;
 BINOSPLAT_CONSTANT float kLog2Of255 = 7.99435343685886f;
 // rho is in units of exp(-rho/2): exp(-rho/2) = exp2(-kLog2PerRho rho).
 BINOSPLAT_CONSTANT float kLog2PerRho = 0.72134752044448f;

@@ -98,13 +98,14 @@ struct ScanApplyPass {
     ListStates list;
 };
 
-// A stable radix sort of (key, value), 8 bits a round, reduce then scan: needs neither forward progress between workgroups
+// A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups
 // nor a subgroup width.
 struct SortCountPass {
     Uints keys;
     Uints histograms;  // out: [digit][block]
     ListStates list;
     uint shift;
+    uint digits;  // a power of two, at most kMaxDigits
 };
 struct SortSpinePass {
     Uints histograms;  // in and out: exclusive prefix sums along the blocks
@@ -118,6 +119,7 @@ struct SortScatterPass {
     Uints totals;
     ListStates list;
     uint shift;
+    uint digits;
 };
 
 BINOSPLAT_END_SHARED
