@@ -10,8 +10,6 @@
 namespace binosplat {
 namespace {
 
-constexpr FrameCapacity kFirstCapacity{65536, 262144};
-
 glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
 
 gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
@@ -40,14 +38,14 @@ bool haveSameDepths(const Eye& a, const Eye& b) {
 
 }  // namespace
 
-StereoFrame::StereoFrame(const Context& context, const GpuScene& scene)
+StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       scene_(scene),
-      passes_(context, scene.shDegree()),
+      passes_(context, scene.shDegree(), options.threads_per_cell),
       commands_(context),
       buffers_(makeFrameBuffers(context, scene.splatCount())),
       state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback) {
-    growFrameBuffers(context, buffers_, {std::min(kFirstCapacity.visible, std::max(scene.splatCount(), 1u)), kFirstCapacity.pairs});
+    growFrameBuffers(context, buffers_, {std::min(options.first_capacity.visible, std::max(scene.splatCount(), 1u)), options.first_capacity.pairs});
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings) {

@@ -37,9 +37,15 @@ struct FrameResult {
     std::vector<std::string> left_out;  // what this scene and mode did not need
 };
 
+// What a frame starts with; the defaults suit every device.
+struct FrameOptions {
+    FrameCapacity first_capacity{65536, 262144};
+    std::uint32_t threads_per_cell = 0;  // see Passes
+};
+
 class StereoFrame {
 public:
-    StereoFrame(const Context& context, const GpuScene& scene);
+    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
     // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.

@@ -4,6 +4,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 #include "passes.h"
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
@@ -52,9 +54,16 @@ void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : kFar);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat.opacity_colour));
     batch_colour[slot] = splat.opacity_colour;
+    // A subgroup's slots follow one another, so that one lane can set the bits of all; 32 divides the slot of lane 0 or is
+    // divided by the subgroup's width.
     const uint cells = cellsOf(splat, tile_px);
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
-        if ((cells & (1u << cell)) != 0) { atomicOr(cell_splats[cell][slot / 32], 1u << (slot & 31)); }
+        const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
+        if (subgroupElect()) {
+            for (uint word = 0; word < (gl_SubgroupSize + 31) / 32; ++word) {
+                if (lanes[word] != 0) { atomicOr(cell_splats[cell][slot / 32 + word], lanes[word] << (slot & 31)); }
+            }
+        }
     }
 }
 
@@ -99,7 +108,7 @@ void main() {
         }
         barrier();
         if (cells_done == kThreads) { break; }
-        for (uint slot = gl_LocalInvocationIndex; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
+        for (uint slot = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
             loadSplat(slot, pass.ranks.at[begin + slot], vec2(size_px) * 0.5, tile_px);
         }
         barrier();

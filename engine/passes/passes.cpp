@@ -7,17 +7,15 @@
 namespace binosplat {
 namespace {
 
-// A cell is one subgroup's where a subgroup has 8 to 64 invocations.
-std::uint32_t threadsPerCell(const Context& context) { return std::clamp(context.subgroupSize(), 8u, 64u); }
-
-Kernel rasterizeKernelFor(const Context& context, Kept kept) {
-    const std::uint32_t threads = threadsPerCell(context);
+Kernel rasterizeKernelFor(const Context& context, std::uint32_t threads_per_cell, Kept kept) {
+    // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
+    const std::uint32_t threads = threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u);
     return Kernel(context, "7_rasterize", sizeof(gpu::RasterizePass), {threads, kept.depth, kept.inverse_depth_moments, gpu::kCellsPerTile * threads});
 }
 
 }  // namespace
 
-Passes::Passes(const Context& context, int sh_degree)
+Passes::Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell)
     : scan_(context),
       sort_(context),
       cull_(context, "1_cull", sizeof(gpu::CullPass)),
@@ -25,9 +23,9 @@ Passes::Passes(const Context& context, int sh_degree)
       project_(context, "4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(sh_degree)}),
       bin_(context, "5_bin", sizeof(gpu::BinPass)),
       tile_ranges_(context, "6_tile_ranges", sizeof(gpu::TileRangesPass)),
-      rasterize_colour_(rasterizeKernelFor(context, {})),
-      rasterize_depth_(rasterizeKernelFor(context, {/*depth=*/true})),
-      rasterize_moments_(rasterizeKernelFor(context, {/*depth=*/true, /*inverse_depth_moments=*/true})) {}
+      rasterize_colour_(rasterizeKernelFor(context, threads_per_cell, {})),
+      rasterize_depth_(rasterizeKernelFor(context, threads_per_cell, {/*depth=*/true})),
+      rasterize_moments_(rasterizeKernelFor(context, threads_per_cell, {/*depth=*/true, /*inverse_depth_moments=*/true})) {}
 
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
                            const std::string& role) const {

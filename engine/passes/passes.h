@@ -25,7 +25,8 @@ struct Kept {
 
 class Passes {
 public:
-    Passes(const Context& context, int sh_degree);
+    // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's subgroups.
+    Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell = 0);
 
     // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
     // the depths of `order_eye`. `role` goes before the passes' names.
