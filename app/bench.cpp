@@ -9,6 +9,7 @@
 #include "engine/frame.h"
 #include "engine/setup/output_files.h"
 
+#include <filesystem>
 #include <memory>
 
 namespace binosplat {
@@ -93,6 +94,14 @@ std::vector<BenchResult> benchPoint(PointBench& bench, const Context& context, c
     return results;
 }
 
+// A scene that is not there is found out before the others are measured.
+void requireScenes(const BenchPlan& plan) {
+    for (const std::string& source : plan.scenes) {
+        const bool there = isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source);
+        check(there, "{}: no such scene", source);
+    }
+}
+
 std::size_t pointCount(const BenchPlan& plan) {
     std::size_t points = 0;
     for (const BenchSeries& series : plan.series) { points += series.splats.size() * series.sizes_px.size(); }
@@ -103,6 +112,7 @@ std::size_t pointCount(const BenchPlan& plan) {
 
 void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
+    requireScenes(plan);
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.frame.camera);
     const Context context({.device = options.frame.device});

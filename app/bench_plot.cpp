@@ -35,6 +35,12 @@ bool variesSplats(const BenchRun& run, const Group& group) {
     return splats.size() > 1 && pixels.size() == 1;
 }
 
+// The other axis, which does not vary in a well-made series.
+std::string heldFixed(const BenchRun& run, const Group& group, bool against_splats) {
+    const auto first = std::ranges::find_if(run.results, [&](const BenchResult& result) { return belongs(result, group); });
+    return against_splats ? fmt::format("{}x{}", first->size_px.x, first->size_px.y) : fmt::format("{} splats", first->splats);
+}
+
 }  // namespace
 
 std::string benchPlot(const BenchRun& run) {
@@ -48,8 +54,9 @@ std::string benchPlot(const BenchRun& run) {
     for (const Group& group : groups) {
         const bool against_splats = variesSplats(run, group);
         const std::string x_label = against_splats ? "splats in the scene" : "pixels per eye";
-        PlotPanel totals{fmt::format("{}: all passes", group.first), x_label, "GPU time, ms", {}};
-        PlotPanel passes{fmt::format("{}: passes of shared", group.first), x_label, "GPU time, ms", {}};
+        const std::string where = fmt::format("{}, {}", group.first, heldFixed(run, group, against_splats));
+        PlotPanel totals{where + ": each mode", x_label, "GPU time, ms", {}};
+        PlotPanel passes{where + ": passes of shared", x_label, "GPU time, ms", {}};
         for (const BenchResult& result : run.results) {
             if (!belongs(result, group)) { continue; }
             const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);

@@ -30,6 +30,11 @@ std::uint64_t counter(const BenchResult& result, const std::string& name) {
     return found == result.counters.end() ? 0 : found->second;
 }
 
+// A counter that is kept per eye, added up.
+std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
+    return counter(result, name) + counter(result, name + "_left") + counter(result, name + "_right");
+}
+
 // Quoted where the text would break the row.
 std::string cell(const std::string& value) {
     if (value.find_first_of(",\"\n") == std::string::npos) { return value; }
@@ -89,6 +94,7 @@ std::string benchTable(const BenchRun& run) {
         table += fmt::format("  {:<10} {:>10.3f} {:>19} {:>12} {:>11} {:>10.1f}", result.mode, result.total_ms, range,
                              text(result.ratio_to_two_pass), text(result.ratio_to_shared),
                              static_cast<double>(result.peak_gpu_bytes) / (1024.0 * 1024.0));
+        table += fmt::format(" {:>10} {:>11}", ofBothEyes(result, "splats_visible"), ofBothEyes(result, "tile_pairs"));
         for (const auto& [name, ms] : byPass(result)) { table += fmt::format(" {:>13.3f}", ms); }
         table += "\n";
         previous = &result;
@@ -131,8 +137,8 @@ std::string benchCsv(const BenchRun& run) {
     std::string csv =
         "device,series,scene,splats,width,height,mode,frames,gpu_total_ms,gpu_total_least_ms,gpu_total_most_ms,ratio_to_two_pass,ratio_to_"
         "shared,peak_gpu_bytes";
-    for (const std::string& name : passes) { csv += "," + cell(name + " ms"); }
-    for (const std::string& name : counters) { csv += "," + cell(name); }
+    for (const std::string& name : passes) { csv += fmt::format(",{}", cell(name + " ms")); }
+    for (const std::string& name : counters) { csv += fmt::format(",{}", cell(name)); }
     csv += "\n";
     const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : std::string(); };
     for (const BenchResult& result : run.results) {

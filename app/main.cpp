@@ -26,7 +26,7 @@ void run(int argument_count, const char* const* arguments) {
                      [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
                      [](const SceneOptions& options) { runScene(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
                parseOptions(argument_count, arguments));
-    check(std::fflush(stdout) == 0, "standard output: cannot be written ({})", std::strerror(errno));
+    if (std::fflush(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
 }
 
 int report(ExitCode code, std::string message) {

@@ -29,6 +29,17 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(folder) {
              error ? error.message() : "not a directory");
     }
     // A folder made inside proves that the place is writable, whatever its permission bits say.
+    makeStaging();
+    fs::remove(staging_, error);
+    staging_.clear();
+}
+
+const fs::path& OutputFiles::staging() {
+    if (staging_.empty()) { makeStaging(); }
+    return staging_;
+}
+
+void OutputFiles::makeStaging() {
     std::string name = (folder_ / ".binosplat-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
         const std::string reason = std::strerror(errno);
@@ -49,6 +60,7 @@ void OutputFiles::removeUnpublished() noexcept {
 }
 
 void OutputFiles::publish() {
+    if (staging_.empty()) { return; }
     for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
         const fs::path target = folder_ / entry.path().filename();
         std::error_code error;

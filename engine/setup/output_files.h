@@ -17,13 +17,15 @@ public:
     // Removes what was not published, and the folders made for it.
     ~OutputFiles();
 
-    // Where to write files for now, under their final names.
-    [[nodiscard]] const std::filesystem::path& staging() const { return staging_; }
+    // Where to write files for now, under their final names. The hidden folder is made by the first call, so that a run that is
+    // stopped before it has anything to write leaves none.
+    [[nodiscard]] const std::filesystem::path& staging();
 
     // Moves every staged file into the folder, replacing files of the same name. Throws Error if one cannot be moved.
     void publish();
 
 private:
+    void makeStaging();
     void removeUnpublished() noexcept;
 
     std::filesystem::path folder_;

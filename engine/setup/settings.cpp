@@ -57,15 +57,20 @@ Setting settingFrom(const std::string& file, const std::string& key, const toml:
     return setting;
 }
 
+void addSetting(const std::string& file, SettingsTable& table, const std::string& written_key, const toml::node& node) {
+    std::string key = written_key;
+    std::ranges::replace(key, '_', '-');
+    check(!table.settings.contains(key), "{}: {} is set twice, must be set once ('_' and '-' are the same)", place(file, node),
+          written_key);
+    table.settings.emplace(key, settingFrom(file, written_key, node));
+}
+
 SettingsTable tableFrom(const std::string& file, const std::string& name, const toml::table& table) {
     SettingsTable result{name, place(file, table), {}};
-    for (const auto& [toml_key, node] : table) {
-        std::string key(toml_key.str());
-        std::ranges::replace(key, '_', '-');
+    for (const auto& [key, node] : table) {
         check(!node.is_table() && !node.is_array_of_tables(), "{}: [{}.{}] is a table in a table, must be a [table] of its own",
-              place(file, node), name, key);
-        check(!result.settings.contains(key), "{}: {} is set twice, must be set once ('_' and '-' are the same)", place(file, node), key);
-        result.settings.emplace(key, settingFrom(file, std::string(toml_key.str()), node));
+              place(file, node), name, key.str());
+        addSetting(file, result, std::string(key.str()), node);
     }
     return result;
 }
@@ -92,19 +97,17 @@ std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
     } catch (const toml::parse_error& error) {
         fail("{}:{}: {}, must be valid TOML", file, error.source().begin.line, std::string(error.description()));
     }
-    std::vector<SettingsTable> tables{{"", fmt::format("{}:1", file), {}}};
-    toml::table top;
-    for (const auto& [toml_key, node] : root) {
-        const std::string name(toml_key.str());
+    std::vector<SettingsTable> tables{SettingsTable{"", fmt::format("{}:1", file), {}}};
+    for (const auto& [key, node] : root) {
+        const std::string name(key.str());
         if (const toml::table* table = node.as_table()) {
             tables.push_back(tableFrom(file, name, *table));
         } else if (node.is_array_of_tables()) {
             for (const toml::node& element : *node.as_array()) { tables.push_back(tableFrom(file, name, *element.as_table())); }
         } else {
-            top.insert(toml_key, node);
+            addSetting(file, tables.front(), name, node);
         }
     }
-    tables.front().settings = tableFrom(file, "", top).settings;
     return tables;
 }
 

@@ -1,0 +1,177 @@
+// Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace fs = std::filesystem;
+using namespace binosplat::test;
+
+namespace {
+
+// The error is one line that holds `part`.
+void checkRefused(const Outcome& outcome, int exit_code, const std::string& part) {
+    INFO("stderr: " << outcome.errors);
+    CHECK(outcome.exit_code == exit_code);
+    CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+    CHECK(outcome.errors.starts_with("binosplat: "));
+    CHECK(outcome.errors.find(part) != std::string::npos);
+}
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
+
+}  // namespace
+
+TEST_CASE("usageErrorsExitWithTwo") {
+    const Workplace work;
+    checkRefused(work.run(""), 2, "subcommand");
+    checkRefused(work.run("frobnicate"), 2, "subcommand");
+    checkRefused(work.run("render"), 2, "SCENE");
+    checkRefused(work.run("render builtin:one-splat"), 2, "--out");
+    checkRefused(work.run("render builtin:one-splat --out out --bogus"), 2, "--bogus");
+    checkRefused(work.run("render builtin:one-splat --out out --near"), 2, "--near");
+    checkRefused(work.run("render builtin:one-splat --out out --view 1"), 2, "--cameras");
+    checkRefused(work.run("render builtin:one-splat --out out --headset quest2 --fov-x 60"), 2, "--headset and --fov-x");
+    checkRefused(work.run("render builtin:one-splat --out out --cameras c.json --eye 0,0,0"), 2, "--cameras and --eye");
+    checkRefused(work.run("bench --out out"), 2, "SCENE");
+    CHECK(work.isEmpty());
+}
+
+TEST_CASE("badValuesExitWithOneAndSayTheRange") {
+    const Workplace work;
+    const std::string render = "render builtin:one-splat --out out ";
+    for (const char* size : {"0x0", "70000x70000", "16385x1", "0x16", "-1x5", "12", "axb", "1x2x3", "99999999999999999999x1"}) {
+        checkRefused(work.run(render + "--size " + size), 1,
+                     "--size is " + std::string(size) + ", must be WIDTHxHEIGHT with 1 to 16384 pixels per side");
+    }
+    checkRefused(work.run(render + "--eye 1,2"), 1, "--eye is 1,2, must be three finite numbers");
+    checkRefused(work.run(render + "--eye 1,2,nan"), 1, "three finite numbers");
+    checkRefused(work.run(render + "--eye 1,2,3,4"), 1, "three finite numbers");
+    checkRefused(work.run(render + "--eye 0,0,0 --look 0,0,0"), 1, "span a view");
+    checkRefused(work.run(render + "--up 0,0,1 --eye 0,0,0 --look 0,0,1"), 1, "span a view");
+    checkRefused(work.run(render + "--fov-x 180"), 1, "--fov-x is 180, must be a number from 0.1 to 179");
+    checkRefused(work.run(render + "--near 0"), 1, "--near is 0, must be a number greater than 0");
+    checkRefused(work.run(render + "--near inf"), 1, "--near is inf");
+    checkRefused(work.run(render + "--background 0,0,2"), 1, "--background is 0,0,2");
+    checkRefused(work.run(render + "--ipd -1"), 1, "--ipd is -1");
+    checkRefused(work.run(render + "--budget 1.5"), 1, "--budget is 1.5, must be a number from 0 to 1");
+    checkRefused(work.run(render + "--margin 1.5"), 1, "--margin is 1.5");
+    checkRefused(work.run(render + "--dominant middle"), 1, "--dominant is middle, must be left or right");
+    checkRefused(work.run(render + "--depth median"), 1, "--depth is median, must be sum, mean or inverse");
+    checkRefused(work.run(render + "--mode fast"), 1, "--mode is fast, must be mono");
+    checkRefused(work.run(render + "--headset nobody"), 1, "must be one of");
+    CHECK(work.isEmpty());
+}
+
+TEST_CASE("modesThatAreNotBuiltSaySo") {
+    const Workplace work;
+    for (const std::string mode : {"reproject", "paper", "predicted"}) {
+        checkRefused(work.run("render builtin:one-splat --out out --mode " + mode), 1,
+                     "mode " + mode + " is not available in this build yet");
+    }
+    CHECK(work.isEmpty());
+}
+
+TEST_CASE("badScenesExitWithOne") {
+    const Workplace work;
+    checkRefused(work.run("render missing.ply --out out"), 1, "missing.ply");
+    checkRefused(work.run("info missing.ply"), 1, "missing.ply");
+    checkRefused(work.run("render builtin:nothing --out out"), 1, "builtin:nothing");
+    checkRefused(work.run("bench missing.ply --out out"), 1, "missing.ply");
+    CHECK(work.isEmpty());
+    write(work.path / "text.ply", "this is no scene\n");
+    write(work.path / "cut.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
+    checkRefused(work.run("render text.ply --out out"), 1, "text.ply");
+    checkRefused(work.run("info cut.ply"), 1, "cut.ply");
+    CHECK(!fs::exists(work.path / "out"));
+}
+
+TEST_CASE("unusableOutputIsRefusedBeforeRendering") {
+    const Workplace work;
+    write(work.path / "file", "keep me");
+    // No driver: had the run come to rendering, the exit code would be 3.
+    checkRefused(work.run("render builtin:one-splat --out file", kNoDriver), 1, "file: cannot be used as output directory");
+    checkRefused(work.run("render builtin:one-splat --out file/below", kNoDriver), 1, "file/below: cannot be used as output directory");
+    checkRefused(work.run("bench builtin:one-splat --out file", kNoDriver), 1, "file: cannot be used as output directory");
+    checkRefused(work.run("scene one-splat --out nowhere/a.ply"), 1, "nowhere");
+    checkRefused(work.run("scene one-splat --out a.txt"), 1, ".ply");
+    CHECK(fs::file_size(work.path / "file") == 7);
+}
+
+TEST_CASE("withoutADeviceTheExitCodeIsThree") {
+    const Workplace work;
+    const Outcome outcome = work.run("render builtin:one-splat --out out/below", kNoDriver);
+    checkRefused(outcome, 3, "install");
+    checkRefused(work.run("render builtin:one-splat --out out --device nobody-has-this"), 3, "nobody-has-this");
+    CHECK(work.isEmpty());
+}
+
+TEST_CASE("viewSaysWhatIsMissing") {
+    const Workplace work;
+    checkRefused(work.run("view builtin:one-splat"), 3, "OpenXR");
+    checkRefused(work.run("view builtin:one-splat --simulate"), 3, "OpenXR");
+}
+
+TEST_CASE("configErrorsNameFileAndLine") {
+    const Workplace work;
+    const auto refuse = [&](const std::string& text, const std::string& part) {
+        write(work.path / "a.toml", text);
+        checkRefused(work.run("render builtin:one-splat --out out --config a.toml"), 1, part);
+    };
+    refuse("[camera]\n\nnear = 0\n", "a.toml:3: near is 0, must be a number greater than 0");
+    refuse("size = \"0x5\"\n", "a.toml:1: size is 0x5, must be WIDTHxHEIGHT with 1 to 16384");
+    refuse("[camera]\neye = [1, 2]\n", "a.toml:2: eye is 1,2, must be three");
+    refuse("[stereo]\nmargin = -1\n", "a.toml:2: margin is -1");
+    refuse("[stereo]\ncenter-roi = 1\n", "a.toml:2: center-roi is 1, must be true or false");
+    refuse("[stereo]\nmargins = 1\n", "a.toml:2: margins is not a known key");
+    refuse("[stereo]\nnear = 1\n", "a.toml:2: near stands in [stereo], must stand in [camera]");
+    refuse("[stereoo]\nmargin = 1\n", "a.toml:1: [stereoo] is not a known table");
+    refuse("near = 1\n[camera]\nnear = 2\n", "near is set twice");
+    refuse("[camera]\nnear = \n", "a.toml:2: ");
+    refuse("[camera]\nheadset = \"quest2\"\nfov_x = 60\n", "contradict");
+    checkRefused(work.run("render builtin:one-splat --out out --config none.toml"), 1, "none.toml");
+    CHECK(!fs::exists(work.path / "out"));
+}
+
+TEST_CASE("badCameraFilesNameCameraAndKey") {
+    const Workplace work;
+    const auto refuse = [&](const std::string& text, const std::string& part) {
+        write(work.path / "c.json", text);
+        checkRefused(work.run("render builtin:one-splat --out out --cameras c.json"), 1, part);
+    };
+    refuse("[{", "c.json: byte");
+    refuse("{}", "c.json: holds no cameras");
+    refuse("[]", "c.json: holds no cameras");
+    refuse("[3]", "c.json: camera 0");
+    refuse(R"([{"width": 8}])", "c.json: camera 0: height is missing");
+    const std::string start = R"([{"width": 8, "height": 8, "fx": 8, "fy": 8, "position": [0,0,0], )";
+    refuse(start + R"("rotation": [[1,0,0],[0,1,0]]}])", "rotation");
+    refuse(start + R"("rotation": [[1,0,0],[0,1,0],[0,0,-1]]}])", "must be a rotation");
+    refuse(start + R"("rotation": [[2,0,0],[0,1,0],[0,0,1]]}])", "must be a rotation");
+    write(work.path / "c.json", start + R"("rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    checkRefused(work.run("render builtin:one-splat --out out --cameras c.json --view 1"), 1, "--view is 1, must be 0 to 0");
+    CHECK(!fs::exists(work.path / "out"));
+}
+
+TEST_CASE("aSceneCanBeWrittenAndDescribed") {
+    const Workplace work;
+    CHECK(work.run("scene one-splat --out one.ply").exit_code == 0);
+    const Outcome info = work.run("info one.ply");
+    CHECK(info.exit_code == 0);
+    CHECK(info.errors.empty());
+    CHECK(info.output.find("splats             1\n") != std::string::npos);
+    CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
+}
+
+TEST_CASE("helpExitsWithZero") {
+    const Workplace work;
+    for (const char* command : {"--help", "render --help", "bench --help", "view --help", "info --help", "scene --help"}) {
+        const Outcome outcome = work.run(command);
+        CHECK(outcome.exit_code == 0);
+        CHECK(!outcome.output.empty());
+    }
+}

@@ -1,0 +1,56 @@
+// Runs the built program in a folder of its own.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace binosplat::test {
+
+struct Outcome {
+    int exit_code = -1;
+    std::string output, errors;
+};
+
+// An empty folder to run in, removed with the test. Standard output and error are kept outside of it.
+struct Workplace {
+    std::filesystem::path base = makeBase();
+    std::filesystem::path path = base / "work";
+
+    Workplace() { std::filesystem::create_directories(path); }
+    Workplace(const Workplace&) = delete;
+    Workplace& operator=(const Workplace&) = delete;
+    ~Workplace() {
+        std::error_code ignored;
+        std::filesystem::remove_all(base, ignored);
+    }
+
+    // Through the shell: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
+    [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
+        const std::string out = (base / "output").string(), errors = (base / "errors").string();
+        const std::string command = "cd '" + path.string() + "' && { " + environment + " '" BINOSPLAT_PROGRAM "' " + arguments + "; } >'" +
+                                    out + "' 2>'" + errors + "'";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(out), textOf(errors)};
+    }
+
+    [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
+
+private:
+    static std::filesystem::path makeBase() {
+        std::string name = (std::filesystem::temp_directory_path() / "binosplat-test-XXXXXX").string();
+        return mkdtemp(name.data());
+    }
+    static std::string textOf(const std::string& file) {
+        std::ifstream stream(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+};
+
+}  // namespace binosplat::test
