@@ -6,15 +6,13 @@
 namespace binosplat::reference {
 namespace {
 
-// max(0, 0.5 + SH(d)); d is zero, so that only the constant is left, where the splat is at the eye itself.
+// 0.5 + SH(d); d is zero, so that only the constant is left, where the splat is at the eye itself.
 glm::dvec3 shade(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
     const glm::dvec3 from_eye = glm::dvec3(scene.positions[splat]) - eye.position_world;
     const double distance = glm::length(from_eye);
     const glm::dvec3 direction = distance > 0.0 ? from_eye / distance : glm::dvec3(0.0);
     const std::size_t stride = 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
-    const glm::dvec3 shaded = 0.5 + evaluateHarmonics(scene.sh.data() + splat * stride, scene.sh_degree, direction);
-    // A NaN stays one: project() hides the splat.
-    return {shaded.x < 0.0 ? 0.0 : shaded.x, shaded.y < 0.0 ? 0.0 : shaded.y, shaded.z < 0.0 ? 0.0 : shaded.z};
+    return 0.5 + evaluateHarmonics(scene.sh.data() + splat * stride, scene.sh_degree, direction);
 }
 
 // Linear functions 1/z, u/z and v/z of the pixel about reference_px, with the (u, v) frame turned so that v/z does not
@@ -56,7 +54,7 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
     splat.depth = c.z;
     splat.cut = camera->cut;
     splat.opacity = static_cast<double>(scene.opacities[index]);
-    splat.colour = colour;
+    splat.colour = glm::max(colour, glm::dvec3(0.0));
     splat.row_w = {a.z, b.z, c.z};
     splat.row_u = k.fx * glm::dvec3(a.x, b.x, c.x) + k.cx * splat.row_w;
     splat.row_v = k.fy * glm::dvec3(a.y, b.y, c.y) + k.cy * splat.row_w;
