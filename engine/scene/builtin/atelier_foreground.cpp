@@ -48,7 +48,7 @@ void addScreenPanel(Draft& draft, const glm::vec2& from, const glm::vec2& to) {
 
 // A tall plant in a clay pot: stems with long narrow leaves, some of which reach before the eye.
 void addPlant(Draft& draft) {
-    const glm::vec3 foot(0.72f, 0.0f, 1.15f);
+    const glm::vec3 foot(0.76f, 0.0f, 1.17f);
     addRevolution(
         draft, foot,
         {{0.0f, 0.0f}, {0.13f, 0.0f}, {0.15f, 0.1f}, {0.185f, 0.26f}, {0.195f, 0.34f}, {0.175f, 0.345f}, {0.17f, 0.32f}, {0.0f, 0.31f}},
@@ -59,11 +59,11 @@ void addPlant(Draft& draft) {
         5.0f);
     draft.occluders().push_back({Occluder::Shape::kEllipsoid, foot + glm::vec3(0.0f, -0.16f, 0.0f), {0.19f, 0.19f, 0.19f}, 0.0f});
     const glm::vec3 tips[] = {
-        {0.72f, -1.46f, 1.02f}, {0.93f, -1.80f, 1.10f}, {0.66f, -1.12f, 1.0f}, {1.10f, -1.45f, 1.30f}, {0.86f, -1.55f, 0.86f}};
+        {0.60f, -1.36f, 1.04f}, {0.60f, -1.72f, 1.05f}, {0.52f, -1.02f, 1.04f}, {0.90f, -1.45f, 1.25f}, {0.64f, -1.56f, 0.92f}};
     for (std::uint32_t stem = 0; stem < std::size(tips); ++stem) {
         const glm::vec3 root =
             foot + glm::vec3(0.05f * (static_cast<float>(stem % 3) - 1.0f), -0.31f, 0.04f * (static_cast<float>(stem % 2) - 0.5f));
-        addRod(draft, root, tips[stem], 0.008f, plain({0.22f, 0.24f, 0.09f}), 14.0f);
+        addRod(draft, root, tips[stem], 0.0055f, plain({0.22f, 0.24f, 0.09f}), 14.0f);
         constexpr std::uint32_t kLeaves = 13;
         for (std::uint32_t i = 0; i < kLeaves; ++i) {
             const std::uint32_t chance = hash(stem * 31u + i, 421u);
@@ -78,7 +78,7 @@ void addPlant(Draft& draft) {
                      length,
                      0.045f + 0.02f * unitFloat(hash(chance, 3u)),
                      0.55f},
-                    {0.10f, 0.24f, 0.055f}, 22.0f);
+                    {0.13f, 0.29f, 0.065f}, 22.0f);
         }
     }
 }

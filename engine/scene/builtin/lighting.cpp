@@ -41,14 +41,32 @@ float hitDistance(const Occluder& occluder, const glm::vec3& origin, const glm::
     return enter < leave && enter > 0.0f ? enter : kFar;
 }
 
-float nearestHit(const std::vector<Occluder>& occluders, const glm::vec3& origin, const glm::vec3& direction, float limit) {
-    for (const Occluder& occluder : occluders) { limit = std::min(limit, hitDistance(occluder, origin, direction)); }
+// The occluders that rays within a cone can meet, by their bounding spheres. Most points see few of them in any one direction.
+using Nearby = std::vector<const Occluder*>;
+
+Nearby selectInCone(const std::vector<Occluder>& occluders, const glm::vec3& origin, const glm::vec3& axis, float cosine) {
+    const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+    Nearby nearby;
+    for (const Occluder& occluder : occluders) {
+        // The sphere fills the angle asin(radius / distance); it is out if the angle to its centre is larger than both together.
+        const glm::vec3 to_centre = occluder.centre - origin;
+        const float distance = glm::length(to_centre), share = std::min(1.0f, occluder.bounding_radius / std::max(distance, 1e-6f));
+        const float limit = cosine * std::sqrt(1.0f - share * share) - sine * share;
+        // Past half a turn the sum of the two angles has no larger cosine to compare with.
+        const bool everywhere = share >= 1.0f || (cosine < 0.0f && -cosine > std::sqrt(1.0f - share * share));
+        if (everywhere || glm::dot(to_centre, axis) >= distance * limit) { nearby.push_back(&occluder); }
+    }
+    return nearby;
+}
+
+float nearestHit(const Nearby& occluders, const glm::vec3& origin, const glm::vec3& direction, float limit) {
+    for (const Occluder* occluder : occluders) { limit = std::min(limit, hitDistance(*occluder, origin, direction)); }
     return limit;
 }
 
-bool isBlocked(const std::vector<Occluder>& occluders, const glm::vec3& origin, const glm::vec3& direction, float limit) {
+bool isBlocked(const Nearby& occluders, const glm::vec3& origin, const glm::vec3& direction, float limit) {
     return std::any_of(occluders.begin(), occluders.end(),
-                       [&](const Occluder& occluder) { return hitDistance(occluder, origin, direction) < limit; });
+                       [&](const Occluder* occluder) { return hitDistance(*occluder, origin, direction) < limit; });
 }
 
 // Bounced light from the room's own surfaces, by the wall a ray ends on.
@@ -71,9 +89,16 @@ float distanceToWall(const Room& room, const glm::vec3& origin, const glm::vec3&
 }
 
 // Sky light through the window, from a grid of points on it; the upper part is sky, the lower part hills.
-glm::vec3 gatherWindow(const Room& room, const std::vector<Occluder>& occluders, const glm::vec3& point, const glm::vec3& normal) {
+glm::vec3 gatherWindow(const Room& room, const std::vector<Occluder>& all_occluders, const glm::vec3& point, const glm::vec3& normal) {
     constexpr int kColumns = 10, kRows = 6;
     const glm::vec2 extent = room.window_max - room.window_min;
+    const glm::vec3 axis = glm::normalize(glm::vec3(0.5f * (room.window_min + room.window_max), room.max.z) - point);
+    float cosine_of_window = 1.0f;
+    for (const glm::vec2& corner : {room.window_min, room.window_max, glm::vec2(room.window_min.x, room.window_max.y),
+                                    glm::vec2(room.window_max.x, room.window_min.y)}) {
+        cosine_of_window = std::min(cosine_of_window, glm::dot(axis, glm::normalize(glm::vec3(corner, room.max.z) - point)));
+    }
+    const Nearby occluders = selectInCone(all_occluders, point, axis, cosine_of_window);
     const float cell_area = extent.x * extent.y / (kColumns * kRows);
     glm::vec3 sum(0.0f);
     for (int row = 0; row < kRows; ++row) {
@@ -96,8 +121,9 @@ glm::vec3 gatherWindow(const Room& room, const std::vector<Occluder>& occluders,
 }
 
 // One bounce: cosine-distributed rays; what is near is itself in the dark, which is what darkens corners and contacts.
-glm::vec3 gatherBounce(const Room& room, const std::vector<Occluder>& occluders, const glm::vec3& point, const glm::vec3& normal) {
+glm::vec3 gatherBounce(const Room& room, const std::vector<Occluder>& all_occluders, const glm::vec3& point, const glm::vec3& normal) {
     constexpr int kRays = 48;
+    const Nearby occluders = selectInCone(all_occluders, point, normal, 0.0f);
     const glm::vec3 not_parallel = std::abs(normal.y) < 0.9f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(1.0f, 0.0f, 0.0f);
     const glm::vec3 tangent = glm::normalize(glm::cross(not_parallel, normal)), bitangent = glm::cross(normal, tangent);
     glm::vec3 sum(0.0f);
@@ -129,13 +155,16 @@ Light gatherLight(const Room& room, const std::vector<Occluder>& occluders, cons
     Light light;
     light.diffuse = gatherWindow(room, occluders, origin, normal) + gatherBounce(room, occluders, origin, normal);
 
-    // The lamp: four points within the shade.
+    // The lamp: four points within the shade, 11 cm from its middle at most.
+    const glm::vec3 to_lamp = room.lamp - origin;
+    const float lamp_share = std::min(1.0f, 0.12f / glm::length(to_lamp));
+    const Nearby before_lamp = selectInCone(occluders, origin, glm::normalize(to_lamp), std::sqrt(1.0f - lamp_share * lamp_share));
     for (int i = 0; i < 4; ++i) {
         const glm::vec3 offset =
             room.lamp + glm::vec3(0.08f * (static_cast<float>(i % 2) - 0.5f), 0.07f * (static_cast<float>(i) - 1.5f), 0.0f) - origin;
         const float square = std::max(glm::dot(offset, offset), 0.03f), length = std::sqrt(square);
         const float cosine = glm::dot(offset, normal) / length;
-        if (cosine <= 0.0f || isBlocked(occluders, origin, offset / length, length)) { continue; }
+        if (cosine <= 0.0f || isBlocked(before_lamp, origin, offset / length, length)) { continue; }
         light.diffuse += glm::vec3(0.26f, 0.17f, 0.08f) * (0.25f * cosine / (square + 0.15f));
     }
 
@@ -144,11 +173,12 @@ Light gatherLight(const Room& room, const std::vector<Occluder>& occluders, cons
     const float cosine = glm::dot(sun, normal);
     if (cosine > 0.0f) {
         constexpr int kRays = 9;
+        const Nearby before_sun = selectInCone(occluders, origin, sun, 0.999f);
         int free = 0;
         for (int i = 0; i < kRays; ++i) {
             const float angle = 2.39996323f * static_cast<float>(i), radius = 0.03f * std::sqrt((static_cast<float>(i) + 0.5f) / kRays);
             const glm::vec3 direction = glm::normalize(sun + glm::vec3(radius * std::cos(angle), radius * std::sin(angle), 0.0f));
-            free += !isBlocked(occluders, origin, direction, kFar);
+            free += !isBlocked(before_sun, origin, direction, kFar);
         }
         light.sun = cosine * static_cast<float>(free) / kRays;
     }

@@ -138,9 +138,9 @@ private:
         const glm::vec2 jitter(unitFloat(chance) - 0.5f, unitFloat(hash(chance)) - 0.5f);
         const glm::vec2 place(static_cast<float>(i - rows_.starts[row]) + 0.5f + (row % 2 == 0 ? 0.2f : -0.2f),
                               static_cast<float>(row) + 0.5f);
-        // The outermost splats move in by an eighth of a cell: half of a splat's opacity reaches 0.3 cells past the edge otherwise.
+        // The outermost splats move in by a sixteenth of a cell: half of a splat's opacity reaches 0.3 cells past the edge otherwise.
         const glm::vec2 even = (place + 0.16f * jitter) * cell,
-                        uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.25f * cell), glm::vec2(0.0f), glm::vec2(1.0f));
+                        uv = glm::clamp(0.5f + (even - 0.5f) * (1.0f - 0.12f * cell), glm::vec2(0.0f), glm::vec2(1.0f));
 
         const Frame frame = frameAt(patch_, uv);
         const float length_u = glm::length(frame.along_u);
