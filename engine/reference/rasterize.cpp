@@ -14,19 +14,22 @@ struct PixelState {
 };
 
 // Blends one hit; closes the pixel instead if the transmittance would fall under its limit.
-bool blend(PixelState& pixel, const ProjectedSplat& splat, const Hit& hit) {
+bool blend(PixelState& pixel, const ProjectedSplat& splat, const Hit& hit, bool inverse_moments) {
     const double alpha = std::min(kMaxAlpha, splat.opacity * std::exp(-0.5 * hit.rho));
     const double transmittance = pixel.transmittance * (1.0 - alpha);
     if (transmittance < kMinTransmittance) {
         pixel.open = false;
         return false;
     }
-    const double weight = alpha * pixel.transmittance, inverse_depth = 1.0 / hit.depth;
+    const double weight = alpha * pixel.transmittance;
     pixel.colour += weight * splat.colour;
     pixel.weight += weight;
     pixel.depth += weight * hit.depth;
-    pixel.inverse_depth += weight * inverse_depth;
-    pixel.inverse_depth_squared += weight * inverse_depth * inverse_depth;
+    if (inverse_moments) {
+        const double inverse_depth = 1.0 / hit.depth;
+        pixel.inverse_depth += weight * inverse_depth;
+        pixel.inverse_depth_squared += weight * inverse_depth * inverse_depth;
+    }
     pixel.transmittance = transmittance;
     return true;
 }
@@ -38,12 +41,13 @@ struct Tile {
     PixelState& at(int x, int y) { return pixels[static_cast<std::size_t>((y - begin_px.y) * kTileSize + x - begin_px.x)]; }
 };
 
-void blendTile(Tile& tile, std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, glm::uvec2 size_px, double near) {
+void blendTile(Tile& tile, std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, glm::uvec2 size_px,
+               const Settings& settings) {
     int open_count = (tile.end_px.x - tile.begin_px.x) * (tile.end_px.y - tile.begin_px.y);
     for (const TilePair& pair : pairs) {
         if (open_count == 0) { return; }
         const ProjectedSplat& splat = splats[pair.splat];
-        const RayPlane plane = rayPlane(splat, size_px, near);
+        const RayPlane plane = rayPlane(splat, size_px, settings.near);
         const int x0 = std::max(splat.box_px.x, tile.begin_px.x), x1 = std::min(splat.box_px.z, tile.end_px.x);
         const int y0 = std::max(splat.box_px.y, tile.begin_px.y), y1 = std::min(splat.box_px.w, tile.end_px.y);
         for (int y = y0; y < y1; ++y) {
@@ -51,7 +55,9 @@ void blendTile(Tile& tile, std::span<const ProjectedSplat> splats, std::span<con
                 for (int x = run.begin; x < run.end; ++x) {
                     PixelState& pixel = tile.at(x, y);
                     Hit hit;
-                    if (pixel.open && meet(plane, {x + 0.5, y + 0.5}, hit) && !blend(pixel, splat, hit)) { --open_count; }
+                    if (pixel.open && meet(plane, {x + 0.5, y + 0.5}, hit) && !blend(pixel, splat, hit, settings.inverse_depth_moments)) {
+                        --open_count;
+                    }
                 }
             }
         }
@@ -92,7 +98,7 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
         tile.begin_px = kTileSize * glm::ivec2(static_cast<int>(index) % columns, static_cast<int>(index) / columns);
         tile.end_px = glm::min(tile.begin_px + kTileSize, glm::ivec2(eye.size_px));
         const TileRange range = ranges[index];
-        blendTile(tile, splats, pairs.subspan(range.begin, range.end - range.begin), eye.size_px, settings.near);
+        blendTile(tile, splats, pairs.subspan(range.begin, range.end - range.begin), eye.size_px, settings);
         writeTile(tile, picture, settings);
     });
     return picture;
