@@ -196,6 +196,29 @@ void addCurtains(Draft& draft, const Room& room) {
            plain({0.20f, 0.13f, 0.07f}), 6.0f);
 }
 
+// A dark hull of few large splats a metre outside the walls, so that the two or three percent which shine through a wall do not
+// depend on the sky behind it. So far out, no splat of it comes before one of the wall; nothing of it is seen through the window.
+void addHull(Draft& draft, const Room& room) {
+    const glm::vec3 low = room.min - 1.0f, high(room.max.x + 1.0f, room.max.y + 1.0f, room.max.z - 0.5f), size = high - low;
+    const glm::vec3 x(size.x, 0.0f, 0.0f), y(0.0f, size.y, 0.0f), z(0.0f, 0.0f, size.z);
+    const auto add = [&](const glm::vec3& origin, const glm::vec3& a, const glm::vec3& b) {
+        Patch patch;
+        patch.point = [=](const glm::vec2& uv) { return origin + uv.x * a + uv.y * b; };
+        patch.material = [](const glm::vec3&, const glm::vec2&) {
+            return Material{glm::vec3(0.0f), glm::vec3(0.12f, 0.11f, 0.09f), 0.98f};
+        };
+        patch.size_m = {glm::length(a), glm::length(b)};
+        patch.detail = 0.02f;
+        patch.lit = false;
+        draft.add(std::move(patch));
+    };
+    add(low, x, y);
+    add(low, z, y);
+    add(low, x, z);
+    add({high.x, low.y, low.z}, z, y);
+    add({low.x, high.y, low.z}, x, z);
+}
+
 }  // namespace
 
 void addShell(Draft& draft, const Room& room) {
@@ -203,6 +226,7 @@ void addShell(Draft& draft, const Room& room) {
     addWalls(draft, room);
     addWindow(draft, room);
     addCurtains(draft, room);
+    addHull(draft, room);
 }
 
 }  // namespace binosplat::builtin
