@@ -9,7 +9,9 @@
 #include "engine/frame.h"
 #include "engine/setup/output_files.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
 namespace binosplat {
@@ -28,7 +30,7 @@ struct Runner {
 
 class PointBench {
 public:
-    PointBench(const Context& context, const GpuScene& scene, const FrameOptions& options, const Cameras& cameras)
+    PointBench(const Context& context, const GpuScene& scene, const RunOptions& options, const Cameras& cameras)
         : context_(context), scene_(scene), options_(options), cameras_(cameras) {}
 
     // The most memory that the program holds while nothing but this mode runs.
@@ -56,7 +58,7 @@ public:
 private:
     const Context& context_;
     const GpuScene& scene_;
-    const FrameOptions& options_;
+    const RunOptions& options_;
     const Cameras& cameras_;
 };
 
@@ -108,40 +110,50 @@ std::size_t pointCount(const BenchPlan& plan) {
     return points * plan.scenes.size();
 }
 
+// One scene with one splat count, at every size of a series.
+template <typename PointDone>
+std::vector<BenchResult> benchSizes(const Context& context, const RunOptions& run, const CameraFiles& files, const Scene& scene,
+                                    const BenchPlan& plan, const BenchSeries& series, PointDone&& point_done) {
+    std::vector<BenchResult> results;
+    const GpuScene gpu_scene(context, scene);
+    for (const glm::uvec2 size_px : series.sizes_px) {
+        RunOptions resized = run;
+        resized.camera.size_px = size_px;
+        const Cameras cameras = makeCameras(resized, files, scene);
+        PointBench bench(context, gpu_scene, resized, cameras);
+        for (BenchResult& result : benchPoint(bench, context, gpu_scene, plan)) {
+            result.series = series.name;
+            result.scene = scene.name;
+            result.splats = scene.size();
+            result.size_px = size_px;
+            results.push_back(std::move(result));
+        }
+        point_done();
+    }
+    return results;
+}
+
 }  // namespace
 
 void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
     requireScenes(plan);
     OutputFiles files(options.out);
-    const CameraFiles camera_files = readCameraFiles(options.frame.camera);
-    const Context context({.device = options.frame.device});
-    BenchRun run{context.deviceName(), options.frame.config, {}};
+    const CameraFiles camera_files = readCameraFiles(options.run.camera);
+    const Context context({.device = options.run.device});
+    BenchRun run{context.deviceName(), options.run.config, {}};
 
     ProgressLine progress("bench");
     std::size_t points_done = 0;
+    const auto point_done = [&] { progress.show(static_cast<double>(++points_done) / static_cast<double>(pointCount(plan))); };
     for (const std::string& source : plan.scenes) {
         for (const BenchSeries& series : plan.series) {
             // A file has the splats it has: it is measured once for all counts of a series.
             const std::vector<std::uint64_t> counts = isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
             for (const std::uint64_t splats : counts) {
-                LoadNotes notes;
-                Scene scene = loadScene(source, splats, &notes);
-                const GpuScene gpu_scene(context, scene);
-                for (const glm::uvec2 size_px : series.sizes_px) {
-                    FrameOptions frame = options.frame;
-                    frame.camera.size_px = size_px;
-                    const Cameras cameras = makeCameras(frame, camera_files, scene);
-                    PointBench bench(context, gpu_scene, frame, cameras);
-                    for (BenchResult& result : benchPoint(bench, context, gpu_scene, plan)) {
-                        result.series = series.name;
-                        result.scene = source;
-                        result.splats = scene.size();
-                        result.size_px = size_px;
-                        run.results.push_back(std::move(result));
-                    }
-                    progress.show(static_cast<double>(++points_done) / static_cast<double>(pointCount(plan)));
-                }
+                const Scene scene = loadScene(source, splats);
+                std::ranges::move(benchSizes(context, options.run, camera_files, scene, plan, series, point_done),
+                                  std::back_inserter(run.results));
             }
         }
     }

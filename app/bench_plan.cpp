@@ -54,7 +54,7 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
 }  // namespace
 
 BenchPlan planBench(const BenchOptions& options) {
-    const glm::uvec2 default_size_px = options.frame.camera.size_px.value_or(glm::uvec2(1024));
+    const glm::uvec2 default_size_px = options.run.camera.size_px.value_or(glm::uvec2(1024));
     BenchPlan plan;
     for (const SettingsTable& table : options.tables) {
         if (table.name == "bench") { readBench(table, plan); }

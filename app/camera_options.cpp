@@ -51,7 +51,7 @@ View viewOfScene(const Scene& scene, double fov_x_deg) {
     return view;
 }
 
-Cameras makeCameras(const FrameOptions& options, const CameraFiles& files, const Scene& scene) {
+Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
     const CameraOptions& camera = options.camera;
     const double default_ipd_m = files.headset ? files.headset->eye_distance_m : kDefaultIpdMetres;
     const double eye_distance = options.stereo.ipd_m.value_or(default_ipd_m) / options.metres_per_unit;

@@ -30,6 +30,6 @@ struct Cameras {
 };
 
 // What the options leave open comes from the files, then from the scene. Throws Error if the points span no view.
-Cameras makeCameras(const FrameOptions& options, const CameraFiles& files, const Scene& scene);
+Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
 }  // namespace binosplat

@@ -36,7 +36,7 @@ void addRows(CLI::App& command, CommandLine& line, std::span<const OptionRow> ro
     }
 }
 
-void addFrameRows(CLI::App& command, CommandLine& line, std::string& config) {
+void addCommonRows(CLI::App& command, CommandLine& line, std::string& config) {
     addRows(command, line, kCameraRows, "Camera");
     addRows(command, line, kStereoRows, "Stereo");
     addRows(command, line, kRunRows, "Run");
@@ -53,8 +53,8 @@ Settings commandLineLayer(const CommandLine& line) {
     return layer;
 }
 
-FrameOptions readFrame(const CommandLine& line, const std::string& config, const std::set<std::string>& foreign,
-                       std::vector<SettingsTable>* rest) {
+RunOptions readRun(const CommandLine& line, const std::string& config, const std::set<std::string>& foreign,
+                   std::vector<SettingsTable>* rest) {
     Settings config_settings;
     if (!config.empty()) {
         const std::vector<SettingsTable> tables = readSettingsFile(config);
@@ -63,7 +63,7 @@ FrameOptions readFrame(const CommandLine& line, const std::string& config, const
             if (rest != nullptr && foreign.contains(table.name)) { rest->push_back(table); }
         }
     }
-    FrameOptions options = frameOptions(mergeLayers(commandLineLayer(line), config_settings));
+    RunOptions options = runOptions(mergeLayers(commandLineLayer(line), config_settings));
     options.config = config;
     return options;
 }
@@ -88,8 +88,8 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-FrameOptions frameOptions(const Settings& settings) {
-    FrameOptions options;
+RunOptions runOptions(const Settings& settings) {
+    RunOptions options;
     CameraOptions& camera = options.camera;
     StereoOptions& stereo = options.stereo;
     const auto read = [&](const char* key, auto&& store) {
@@ -128,13 +128,13 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
     render_command->add_option("--out", render.out, "directory for pictures and report.json")->required()->type_name("DIR");
-    addFrameRows(*render_command, render_line, render.frame.config);
+    addCommonRows(*render_command, render_line, render.run.config);
 
     BenchOptions bench;
     CLI::App* bench_command = app.add_subcommand("bench", "Measure modes over scenes, splat counts and picture sizes");
     bench_command->add_option("SCENE", bench.scenes, "files, directories or builtin:NAME (default: those of the config)");
     bench_command->add_option("--out", bench.out, "directory for bench.json, bench.csv and bench.svg")->required()->type_name("DIR");
-    addFrameRows(*bench_command, bench_line, bench.frame.config);
+    addCommonRows(*bench_command, bench_line, bench.run.config);
 
     ViewOptions view;
     CLI::App* view_command = app.add_subcommand("view", "Show a scene in an OpenXR headset");
@@ -165,16 +165,16 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     }
 
     if (render_command->parsed()) {
-        render.frame = readFrame(render_line, render.frame.config, {}, nullptr);
+        render.run = readRun(render_line, render.run.config, {}, nullptr);
         return render;
     }
     if (bench_command->parsed()) {
-        bench.frame = readFrame(bench_line, bench.frame.config, {"bench", "series"}, &bench.tables);
+        bench.run = readRun(bench_line, bench.run.config, {"bench", "series"}, &bench.tables);
         return bench;
     }
     if (view_command->parsed()) {
         view.simulate = simulate->count() > 0;
-        if (!view.config.empty()) { readFrame({}, view.config, {}, nullptr); }
+        if (!view.config.empty()) { readRun({}, view.config, {}, nullptr); }
         return view;
     }
     if (info_command->parsed()) { return info; }

@@ -38,7 +38,7 @@ struct StereoOptions {
 inline constexpr double kDefaultIpdMetres = 0.063;
 
 // What `render` and `bench` have in common.
-struct FrameOptions {
+struct RunOptions {
     CameraOptions camera;
     StereoOptions stereo;
     double metres_per_unit = 1.0;
@@ -49,13 +49,13 @@ struct FrameOptions {
 struct RenderOptions {
     std::string scene;
     std::filesystem::path out;
-    FrameOptions frame;
+    RunOptions run;
 };
 
 struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
-    FrameOptions frame;
+    RunOptions run;
     std::vector<SettingsTable> tables;  // the config's [bench] and [[series]], for the bench alone
 };
 
@@ -86,6 +86,6 @@ using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptio
 Options parseOptions(int argument_count, const char* const* arguments);
 
 // Typed values of merged settings.
-FrameOptions frameOptions(const Settings& settings);
+RunOptions runOptions(const Settings& settings);
 
 }  // namespace binosplat

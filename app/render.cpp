@@ -38,16 +38,16 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const std::string& mo
 }  // namespace
 
 void runRender(const RenderOptions& options) {
-    const StereoOptions& stereo = options.frame.stereo;
+    const StereoOptions& stereo = options.run.stereo;
     const Mode mode = frameMode(stereo.mode);
     // Whatever can be known to fail is found out before the scene is loaded.
     OutputFiles files(options.out);
-    const CameraFiles camera_files = readCameraFiles(options.frame.camera);
+    const CameraFiles camera_files = readCameraFiles(options.run.camera);
 
     LoadNotes notes;
     Scene scene = loadWithProgress(options.scene, 0, notes);
-    const Cameras cameras = makeCameras(options.frame, camera_files, scene);
-    const Context context({.device = options.frame.device});
+    const Cameras cameras = makeCameras(options.run, camera_files, scene);
+    const Context context({.device = options.run.device});
     const GpuScene gpu_scene = [&] {
         ProgressLine line("uploading " + options.scene);
         return GpuScene(context, scene, [&](double share) { line.show(share); });
@@ -57,7 +57,7 @@ void runRender(const RenderOptions& options) {
     StereoFrame frame(context, gpu_scene);
     const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     const FrameSettings settings{
-        .mode = mode, .dominant = stereo.dominant, .near = options.frame.camera.near, .background = options.frame.camera.background};
+        .mode = mode, .dominant = stereo.dominant, .near = options.run.camera.near, .background = options.run.camera.background};
     FrameResult result = frame.render(eyes, settings);
     // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
     if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }

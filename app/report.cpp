@@ -30,13 +30,13 @@ Json eyeJson(const Eye& eye) {
 
 // Every option under its own name with the value that was used; null for one that did not apply.
 Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
-    const CameraOptions& camera = options.frame.camera;
-    const StereoOptions& stereo = options.frame.stereo;
+    const CameraOptions& camera = options.run.camera;
+    const StereoOptions& stereo = options.run.stereo;
     const auto given = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
     Json json{{"scene", options.scene},
               {"out", options.out.string()},
-              {"config", given(options.frame.config)},
-              {"device", given(options.frame.device)}};
+              {"config", given(options.run.config)},
+              {"device", given(options.run.device)}};
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
     json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();
@@ -49,12 +49,12 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["background"] = vectorJson(camera.background);
     json["mode"] = stereo.mode;
     json["dominant"] = stereo.dominant == kLeft ? "left" : "right";
-    json["ipd"] = cameras.eye_distance * options.frame.metres_per_unit;
+    json["ipd"] = cameras.eye_distance * options.run.metres_per_unit;
     json["center-roi"] = stereo.center_roi;
     json["margin"] = stereo.margin_px;
     json["budget"] = stereo.budget;
     json["depth"] = stereo.depth;
-    json["metres-per-unit"] = options.frame.metres_per_unit;
+    json["metres-per-unit"] = options.run.metres_per_unit;
     return json;
 }
 
@@ -78,7 +78,7 @@ std::string reportJson(const FrameReport& report) {
     for (const auto& [name, ms] : addUp(report.gpu_ms)) { passes[name] = ms; }
     for (const auto& [name, count] : report.counters) { counters[name] = count; }
     Json eyes = Json::object();
-    if (report.options.frame.stereo.mode == "mono") {
+    if (report.options.run.stereo.mode == "mono") {
         eyes["mono"] = eyeJson(report.cameras.middle);
     } else {
         eyes["left"] = eyeJson(report.cameras.eyes[kLeft]);
@@ -96,7 +96,7 @@ std::string reportJson(const FrameReport& report) {
 }
 
 std::string reportTable(const FrameReport& report) {
-    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.frame.stereo.mode,
+    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.run.stereo.mode,
                                     report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
     for (const auto& [name, ms] : addUp(report.gpu_ms)) { table += fmt::format("  {:<28} {:>14.3f} ms\n", name, ms); }
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.gpu_total_ms);

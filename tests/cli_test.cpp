@@ -1,12 +1,15 @@
 // Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
+#include "engine/picture/image_io.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <fstream>
 
 namespace fs = std::filesystem;
+using namespace binosplat;
 using namespace binosplat::test;
 
 namespace {
@@ -165,6 +168,64 @@ TEST_CASE("aSceneCanBeWrittenAndDescribed") {
     CHECK(info.errors.empty());
     CHECK(info.output.find("splats             1\n") != std::string::npos);
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
+}
+
+TEST_CASE("renderWritesItsFilesAndNothingElse") {
+    const Workplace work;
+    const std::string float_extension = extensionOf(PictureKind::kFloat), display_extension = extensionOf(PictureKind::kDisplay);
+    for (const std::string mode : {"mono", "two-pass", "shared"}) {
+        const Outcome outcome =
+            work.run("render builtin:one-splat --size 40x24 --out a/" + mode + " --mode " + mode, "BINOSPLAT_VALIDATION=1");
+        INFO(outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        CHECK(outcome.errors.empty());
+        const fs::path folder = work.path / "a" / mode;
+        const std::vector<std::string> names =
+            mode == "mono" ? std::vector<std::string>{"mono"} : std::vector<std::string>{"left", "right"};
+        for (const std::string& name : names) {
+            const Image picture = readPicture(folder / (name + float_extension));
+            CHECK(picture.size_px == glm::uvec2(40, 24));
+            const Image display = readPicture(folder / (name + display_extension));
+            CHECK(display.channels == 3);
+            // The middle of the disc: opacity 0.8 and colour (0.9, 0.6, 0.3), a little less beside its centre.
+            const std::size_t middle = 12 * 40 + 20;
+            CHECK(picture.values[middle * static_cast<std::size_t>(picture.channels)] == doctest::Approx(0.72).epsilon(0.05));
+            CHECK(display.values[middle * 3] == doctest::Approx(0.72).epsilon(0.05));
+        }
+        const Image depth = readPicture(folder / ("dominant_depth" + float_extension));
+        CHECK(depth.channels == 1);
+        CHECK(depth.size_px == glm::uvec2(40, 24));
+        const nlohmann::json report = nlohmann::json::parse(std::ifstream(folder / "report.json"));
+        for (const char* key : {"device", "options", "gpu_ms", "gpu_total_ms", "counters", "peak_gpu_bytes", "left_out"}) {
+            CHECK(report.contains(key));
+        }
+        CHECK(report["options"]["mode"] == mode);
+        CHECK(report["options"]["size"] == "40x24");
+        CHECK(report["gpu_ms"].size() >= 7);
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            CHECK(!entry.path().filename().string().starts_with("."));
+        }
+    }
+}
+
+TEST_CASE("benchWritesTableJsonCsvAndPlot") {
+    const Workplace work;
+    write(work.path / "b.toml", "[bench]\nrepeats = 2\nwarm-up = 0\n[[series]]\nname = \"pixels\"\nsizes = [\"16x16\", \"32x32\"]\n");
+    const Outcome outcome = work.run("bench builtin:one-splat --out out --config b.toml");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.output.find("7_rasterize") != std::string::npos);
+    const nlohmann::json bench = nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"));
+    REQUIRE(bench["results"].size() == 6);
+    CHECK(bench["results"][1]["ratio_to_two_pass"] == 1.0);
+    CHECK(bench["results"][0]["frames"] == 2);
+    CHECK(fs::exists(work.path / "out" / "bench.csv"));
+    CHECK(fs::exists(work.path / "out" / "bench.svg"));
+    CHECK(std::distance(fs::directory_iterator(work.path / "out"), {}) == 3);
+    write(work.path / "b.toml", "[bench]\nrepeats = 0\n");
+    checkRefused(work.run("bench builtin:one-splat --out out --config b.toml"), 1, "b.toml:2: repeats is 0, must be a whole number from 1");
+    write(work.path / "b.toml", "[[series]]\nsizes = [\"8x8\"]\n");
+    checkRefused(work.run("bench builtin:one-splat --out out --config b.toml"), 1, "b.toml:1: name is missing");
 }
 
 TEST_CASE("helpExitsWithZero") {

@@ -1,0 +1,173 @@
+// Facts about options: defaults, the command line over the config, cameras out of both, and what a bench plans and reports.
+#include "app/options.h"
+#include "app/bench_plan.h"
+#include "app/bench_results.h"
+#include "app/camera_options.h"
+#include "engine/error.h"
+#include "engine/setup/output_files.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using binosplat::test::Workplace;
+
+namespace {
+
+const fs::path kConfigs = fs::path(BINOSPLAT_SOURCE_DIR) / "configs";
+
+template <typename Chosen>
+Chosen parse(std::vector<std::string> words) {
+    std::vector<const char*> arguments{"binosplat"};
+    for (const std::string& word : words) { arguments.push_back(word.c_str()); }
+    return std::get<Chosen>(parseOptions(static_cast<int>(arguments.size()), arguments.data()));
+}
+
+RunOptions render(std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", "builtin:one-splat", "--out", "out"});
+    return parse<RenderOptions>(words).run;
+}
+
+// A scene that fills the box from (-1, -2, -3) to (1, 2, 3).
+Scene makeBox() {
+    Scene scene;
+    scene.name = "box.ply";
+    for (int i = 0; i <= 100; ++i) {
+        const float t = static_cast<float>(i) / 50.0f - 1.0f;
+        scene.positions.emplace_back(t, 2.0f * t, 3.0f * t);
+    }
+    return scene;
+}
+
+BenchResult makeResult(const std::string& scene, const std::string& mode, std::uint64_t splats, double total_ms) {
+    BenchResult result;
+    result.series = "s";
+    result.scene = scene;
+    result.mode = mode;
+    result.splats = splats;
+    result.size_px = {8, 8};
+    result.total_ms = total_ms;
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("defaultConfigSaysTheDefaults") {
+    const RunOptions none = render({});
+    const RunOptions file = render({"--config", (kConfigs / "default.toml").string()});
+    CHECK(file.camera.near == none.camera.near);
+    CHECK(file.camera.background == none.camera.background);
+    CHECK(file.stereo.mode == none.stereo.mode);
+    CHECK(file.stereo.dominant == none.stereo.dominant);
+    CHECK(file.stereo.center_roi == none.stereo.center_roi);
+    CHECK(file.stereo.margin_px == none.stereo.margin_px);
+    CHECK(file.stereo.budget == none.stereo.budget);
+    CHECK(file.stereo.depth == none.stereo.depth);
+    CHECK(file.metres_per_unit == none.metres_per_unit);
+    CHECK(none.camera.near == 0.2);
+    CHECK(none.stereo.mode == "shared");
+}
+
+TEST_CASE("commandLineWinsOverConfig") {
+    const Workplace work;
+    writeText(work.path / "a.toml",
+              "near = 0.5\n[camera]\nsize = \"64x32\"\nheadset = \"quest2\"\n[stereo]\ncenter-roi = true\nipd = 0.07\n");
+    const std::string file = (work.path / "a.toml").string();
+    const RunOptions from_file = render({"--config", file});
+    CHECK(from_file.camera.near == 0.5);
+    CHECK(from_file.camera.size_px == glm::uvec2(64, 32));
+    CHECK(from_file.camera.headset == "quest2");
+    CHECK(from_file.stereo.center_roi);
+    CHECK(from_file.stereo.ipd_m == 0.07);
+    const RunOptions both = render({"--config", file, "--near", "0.1", "--size", "8x9", "--fov-x", "90", "--ipd", "0"});
+    CHECK(both.camera.near == 0.1);
+    CHECK(both.camera.size_px == glm::uvec2(8, 9));
+    CHECK(both.camera.fov_x_deg == 90.0);
+    CHECK(both.camera.headset.empty());  // an angle and a headset contradict each other
+    CHECK(both.stereo.ipd_m == 0.0);
+}
+
+TEST_CASE("vectorsMayBeginWithAMinus") {
+    CHECK(render({"--eye", "-1,0,0"}).camera.eye == glm::dvec3(-1.0, 0.0, 0.0));
+    CHECK(render({"--eye", "-.5,0,1e-3"}).camera.eye == glm::dvec3(-0.5, 0.0, 1e-3));
+    CHECK(render({"--eye=-1,-2,-3"}).camera.eye == glm::dvec3(-1.0, -2.0, -3.0));
+}
+
+TEST_CASE("eyesStandHalfTheirDistanceFromTheMiddle") {
+    RunOptions options = render({"--eye", "1,2,3", "--look", "1,2,5", "--ipd", "0.08", "--size", "200x100", "--fov-x", "90"});
+    options.metres_per_unit = 2.0;
+    const Cameras cameras = makeCameras(options, {}, makeBox());
+    CHECK(cameras.eye_distance == doctest::Approx(0.04));
+    // Up is -y by default, so camera x is world x here.
+    CHECK(glm::length(cameras.eyes[kLeft].world_from_camera.position - glm::dvec3(0.98, 2.0, 3.0)) < 1e-12);
+    CHECK(glm::length(cameras.eyes[kRight].world_from_camera.position - glm::dvec3(1.02, 2.0, 3.0)) < 1e-12);
+    CHECK(cameras.middle.intrinsics.fx == doctest::Approx(100.0));
+    CHECK(cameras.middle.intrinsics.fy == doctest::Approx(100.0));
+    CHECK(cameras.middle.intrinsics.cx == 100.0);
+    CHECK(cameras.middle.intrinsics.cy == 50.0);
+}
+
+TEST_CASE("aFileIsFramedWhole") {
+    const Scene scene = makeBox();
+    const Cameras cameras = makeCameras(render({}), {}, scene);
+    const Intrinsics& k = cameras.middle.intrinsics;
+    for (const glm::vec3& p : scene.positions) {
+        const glm::dvec3 c = transform(inverse(cameras.middle.world_from_camera), glm::dvec3(p));
+        CHECK(c.z > 0.2);
+        CHECK(std::abs(k.fx * c.x / c.z) < 512.0);
+        CHECK(std::abs(k.fy * c.y / c.z) < 512.0);
+    }
+    CHECK_NOTHROW(makeCameras(render({}), {}, Scene{}));
+}
+
+TEST_CASE("everyBenchConfigReads") {
+    int count = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(kConfigs / "bench")) {
+        const BenchPlan plan = planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", entry.path().string()}));
+        CHECK(!plan.scenes.empty());
+        CHECK(!plan.series.empty());
+        ++count;
+    }
+    CHECK(count > 0);
+    const BenchPlan named = planBench(
+        parse<BenchOptions>({"bench", "a.ply", "b.ply", "--out", "out", "--config", (kConfigs / "bench" / "demo.toml").string()}));
+    CHECK(named.scenes == std::vector<std::string>{"a.ply", "b.ply"});
+}
+
+TEST_CASE("medianIsTheMiddleOrTheMeanOfTwo") {
+    CHECK(median({3.0}) == 3.0);
+    CHECK(median({5.0, 1.0, 3.0}) == 3.0);
+    CHECK(median({4.0, 1.0, 3.0, 100.0}) == 3.5);
+}
+
+TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
+    std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 4.0), makeResult("a", "shared", 1, 2.0),
+                                     makeResult("a", "shared", 2, 3.0), makeResult("b,c", "mono", 1, 3.0)};
+    compareModes(results);
+    CHECK(results[1].ratio_to_two_pass == 0.5);
+    CHECK(results[0].ratio_to_shared == 2.0);
+    CHECK(!results[2].ratio_to_two_pass.has_value());
+    CHECK(!results[3].ratio_to_shared.has_value());
+    CHECK(benchCsv({"GPU", "", results}).find("\"b,c\"") != std::string::npos);
+}
+
+TEST_CASE("passesOfBothEyesAddUp") {
+    BenchResult result;
+    result.pass_ms = {{"both 1_cull", 1.0}, {"dominant 4_project", 2.0}, {"affiliated 4_project", 3.0}};
+    CHECK(byPass(result) == std::vector<std::pair<std::string, double>>{{"1_cull", 1.0}, {"4_project", 5.0}});
+}
+
+TEST_CASE("plotsOfFewOrBadPointsStayFinite") {
+    BenchResult result = makeResult("a&b", "shared", 1, 0.0);
+    result.pass_ms = {{"1_cull", 0.0}};
+    for (const double ms : {0.0, 1.0, 2.5}) {
+        result.total_ms = ms;
+        const std::string svg = benchPlot({"GPU", "", {result}});
+        CHECK(svg.find("nan") == std::string::npos);
+        CHECK(svg.find("inf") == std::string::npos);
+        CHECK(svg.find("a&amp;b") != std::string::npos);
+    }
+}
