@@ -388,6 +388,7 @@ TEST_CASE("errors of the source itself say what it is") {
     CHECK(contains(loadError(folder.file(".")), "is a directory"));
     CHECK(contains(loadError(folder.write("zero.ply", "")), "is empty"));
     CHECK(contains(loadError("/dev/null"), "not a regular file"));
+    CHECK(contains(loadError(std::string(5000, 'x')), "cannot be read"));
     const std::string other = loadError(folder.write("picture.ply", "P6 not a scene"));
     CHECK(contains(other, "not a scene file"));
     CHECK(contains(other, "PLY"));

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include <unistd.h>
 
@@ -20,7 +22,8 @@ namespace {
 class TemporaryFile {
 public:
     explicit TemporaryFile(const std::string& target) : target_(target), path_(fmt::format("{}.part{}", target, ::getpid())) {
-        check(!std::filesystem::is_directory(target), "{}: is a directory, expected a file name to write to", target);
+        std::error_code unreadable;  // opening says why
+        check(!std::filesystem::is_directory(target, unreadable), "{}: is a directory, expected a file name to write to", target);
         file_ = std::fopen(path_.c_str(), "wb");
         check(file_ != nullptr, "{}: cannot be written: {}", target, std::strerror(errno));
     }

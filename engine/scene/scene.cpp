@@ -8,25 +8,44 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
+#include <new>
+#include <system_error>
 
 namespace binosplat {
 
 namespace {
 
-// A file format: known by its content, never by its name. A new one is one more file and one more line below.
-struct FileFormat {
-    const char* name;
-    bool (*matches)(InputFile& file);
-    Scene (*read)(InputFile& file, LoadNotes& notes, const Progress& progress);
+// What the user named: a directory, or a file (then open, nothing read yet).
+struct Source {
+    std::string path;
+    std::unique_ptr<InputFile> file;  // null for a directory
 };
-constexpr std::array<FileFormat, 1> kFileFormats{{
-    {"PLY (2DGS or 3DGS)", isPly, readPly},
+
+// A format is known by its content, never by its name; the first that matches reads. A new one is one more file and one more line below.
+struct SceneFormat {
+    const char* name;
+    bool (*matches)(Source& source);
+    Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
+};
+constexpr std::array<SceneFormat, 1> kSceneFormats{{
+    {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readPly(*source.file, notes, progress); }},
 }};
 
 std::string listFormats() {
     std::string names;
-    for (const FileFormat& format : kFileFormats) { names += (names.empty() ? "" : ", ") + std::string(format.name); }
+    for (const SceneFormat& format : kSceneFormats) { names += (names.empty() ? "" : ", ") + std::string(format.name); }
     return names;
+}
+
+Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
+    for (const SceneFormat& format : kSceneFormats) {
+        if (format.matches(source)) { return format.read(source, notes, progress); }
+    }
+    check(source.file != nullptr, "{}: is a directory, expected a scene file: {}", source.path, listFormats());
+    check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
+    fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
 }
 
 }  // namespace
@@ -35,19 +54,17 @@ Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNot
     LoadNotes ignored;
     LoadNotes& met = notes != nullptr ? *notes : ignored;
     met = {};
-    if (isBuiltin(source)) {
-        Scene scene = makeBuiltin(source, builtin_splats, progress);
-        met.splats_in_file = scene.size();
-        met.sh_degree_in_file = scene.sh_degree;
-        return scene;
-    }
-    check(!std::filesystem::is_directory(source), "{}: is a directory, expected a scene file: {}", source, listFormats());
-    InputFile file(source);
-    check(file.sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source, listFormats());
-    for (const FileFormat& format : kFileFormats) {
-        if (format.matches(file)) { return format.read(file, met, progress); }
-    }
-    fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source, listFormats());
+    std::error_code unreadable;  // InputFile says why
+    try {
+        if (isBuiltin(source)) {
+            Scene scene = makeBuiltin(source, builtin_splats, progress);
+            met.splats_in_file = scene.size();
+            met.sh_degree_in_file = scene.sh_degree;
+            return scene;
+        }
+        Source opened{source, std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source)};
+        return loadFrom(opened, met, progress);
+    } catch (const std::bad_alloc&) { fail("{}: needs more memory than this machine gives", source); }
 }
 
 }  // namespace binosplat
