@@ -24,6 +24,9 @@ public:
     explicit TemporaryFile(const std::string& target) : target_(target), path_(fmt::format("{}.part{}", target, ::getpid())) {
         std::error_code unreadable;  // opening says why
         check(!std::filesystem::is_directory(target, unreadable), "{}: is a directory, expected a file name to write to", target);
+        // Renaming over a device would replace it.
+        const bool plain = !std::filesystem::exists(target, unreadable) || std::filesystem::is_regular_file(target, unreadable);
+        check(plain, "{}: is not a regular file, expected a file name to write to", target);
         file_ = std::fopen(path_.c_str(), "wb");
         check(file_ != nullptr, "{}: cannot be written: {}", target, std::strerror(errno));
     }
