@@ -1,0 +1,55 @@
+// Arrays to the device and back, and the verdict of the validation layers.
+#include "tests/gpu_fixture.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace binosplat::test {
+namespace {
+
+// Made by the first test that wants it; throws in every test if there is no device.
+const Context& sharedContext() {
+    static const Context context({.device = {}, .validation = true, .max_allocation_bytes = 0});
+    return context;
+}
+
+gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
+    const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
+    return {std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX, 1};
+}
+
+}  // namespace
+
+Gpu::Gpu() : context_(sharedContext()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
+
+Gpu::~Gpu() {
+    CHECK(context_.validates());
+    const std::vector<std::string> messages = context_.validationMessages();
+    for (std::size_t i = messages_before_; i < messages.size(); ++i) { FAIL_CHECK("validation: " << messages[i]); }
+}
+
+void Gpu::write(const Buffer& buffer, std::span<const std::byte> bytes) {
+    if (bytes.empty()) { return; }
+    REQUIRE(bytes.size() <= buffer.bytes());
+    const Buffer staging(context_, "upload", bytes.size(), MemoryKind::kUpload);
+    std::memcpy(staging.mapped<std::byte>().data(), bytes.data(), bytes.size());
+    run([&](Commands& commands) { commands.copy(staging, buffer, bytes.size()); });
+}
+
+void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t offset_bytes) {
+    if (bytes.empty()) { return; }
+    REQUIRE(offset_bytes + bytes.size() <= buffer.bytes());
+    const Buffer staging(context_, "read-back", bytes.size(), MemoryKind::kReadback);
+    run([&](Commands& commands) { commands.copy(buffer, staging, bytes.size(), offset_bytes); });
+    std::memcpy(bytes.data(), staging.mapped<std::byte>().data(), bytes.size());
+}
+
+gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
+    const std::uint32_t count = needed <= capacity ? needed : 0;
+    return {needed, count, dispatchOver(count, gpu::kGroupSize), dispatchOver(count, gpu::kScanBlock),
+            dispatchOver(count, gpu::kSortBlock)};
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,67 @@
+// What GPU tests start from: a device under the validation layers, arrays to it and back, and lists as the shaders make them.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat::test {
+
+// A test case's fixture. All of a program share one device; that there is none fails every test, and so does any message of the
+// validation layers during the test.
+class Gpu {
+public:
+    Gpu();
+    Gpu(const Gpu&) = delete;
+    Gpu& operator=(const Gpu&) = delete;
+    ~Gpu();
+
+    [[nodiscard]] const Context& context() const { return context_; }
+
+    // A device buffer with these values; of at least one value, so that it has an address.
+    template <typename T>
+    [[nodiscard]] Buffer upload(const std::string& name, const std::vector<T>& values) {
+        Buffer buffer(context_, name, std::max<std::size_t>(values.size(), 1) * sizeof(T));
+        write(buffer, std::as_bytes(std::span(values)));
+        return buffer;
+    }
+    template <typename T>
+    void upload(const Buffer& buffer, const std::vector<T>& values) {
+        write(buffer, std::as_bytes(std::span(values)));
+    }
+    template <typename T>
+    [[nodiscard]] Buffer allocate(const std::string& name, std::size_t count) {
+        return Buffer(context_, name, std::max<std::size_t>(count, 1) * sizeof(T));
+    }
+    template <typename T>
+    [[nodiscard]] std::vector<T> readBack(const Buffer& buffer, std::size_t count, std::uint64_t offset_bytes = 0) {
+        std::vector<T> values(count);
+        read(buffer, std::as_writable_bytes(std::span(values)), offset_bytes);
+        return values;
+    }
+
+    // Runs what `record(commands)` records, to its end.
+    template <typename Record>
+    void run(const Record& record) {
+        commands_.begin();
+        record(commands_);
+        commands_.submitAndWait();
+    }
+
+private:
+    void write(const Buffer& buffer, std::span<const std::byte> bytes);
+    void read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t offset_bytes);
+
+    const Context& context_;
+    Commands commands_;
+    std::size_t messages_before_;
+};
+
+// A list of `needed` items with room for `capacity`, as shaders/lib/list.glsl makes it.
+gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity);
+inline gpu::ListState makeList(std::size_t count) { return makeList(static_cast<std::uint32_t>(count), UINT32_MAX); }
+
+}  // namespace binosplat::test

@@ -1,0 +1,238 @@
+// The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
+// held against offsetof and sizeof.
+#include "shaders/embedded_shaders.h"
+#include "shaders/shared/passes.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+using namespace binosplat;
+
+namespace {
+
+struct Field {
+    std::string name;
+    std::size_t offset, bytes;
+    bool operator==(const Field&) const = default;
+};
+
+struct Layout {
+    std::string name;
+    std::size_t bytes;
+    std::vector<Field> fields;
+};
+
+// A struct of shaders/shared by its fields; one that is left out here is missed by the comparison.
+#define FIELD(name) \
+    { #name, offsetof(S, name), sizeof(S::name) }
+#define LAYOUT(Struct, ...)                               \
+    [] {                                                  \
+        using S = gpu::Struct;                            \
+        return Layout{#Struct, sizeof(S), {__VA_ARGS__}}; \
+    }()
+
+std::vector<Layout> hostLayouts() {
+    return {
+        LAYOUT(SceneChunk, FIELD(positions), FIELD(rotations), FIELD(scales), FIELD(opacities), FIELD(base_colours), FIELD(sh)),
+        LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
+               FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth)),
+        LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth),
+               FIELD(opacity_colour)),
+        LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),
+        LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(per_item), FIELD(per_scan_block), FIELD(per_sort_block)),
+        LAYOUT(EyeCounters, FIELD(square_box_pairs_low), FIELD(square_box_pairs_high)),
+        LAYOUT(CullPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_counts), FIELD(splat_count), FIELD(chunk_bits),
+               FIELD(first_eye), FIELD(eye_count)),
+        LAYOUT(CompactPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_offsets), FIELD(visible), FIELD(keys),
+               FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye)),
+        LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_boxes), FIELD(tile_counts),
+               FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
+        LAYOUT(BinPass, FIELD(eyes), FIELD(splats), FIELD(tile_boxes), FIELD(pair_offsets), FIELD(visible), FIELD(pairs), FIELD(tiles),
+               FIELD(ranks), FIELD(eye)),
+        LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges)),
+        LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(depths),
+               FIELD(inverse_depth_moments), FIELD(background), FIELD(eye)),
+        LAYOUT(ScanReducePass, FIELD(values), FIELD(block_sums), FIELD(list)),
+        LAYOUT(ScanSpinePass, FIELD(block_sums), FIELD(list), FIELD(result), FIELD(block_count), FIELD(capacity)),
+        LAYOUT(ScanApplyPass, FIELD(values), FIELD(block_sums), FIELD(list)),
+        LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(list), FIELD(shift), FIELD(digits)),
+        LAYOUT(SortSpinePass, FIELD(histograms), FIELD(totals), FIELD(list)),
+        LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(totals),
+               FIELD(list), FIELD(shift), FIELD(digits)),
+    };
+}
+
+// What a compiled shader says of its structs: those laid out in memory, by name.
+class ShaderLayouts {
+public:
+    explicit ShaderLayouts(std::span<const std::uint32_t> words) {
+        // SPIR-V: five words of header, then instructions of (length << 16 | opcode) and operands.
+        for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {
+            readInstruction(words[at] & 0xffff, words.subspan(at + 1, (words[at] >> 16) - 1));
+        }
+        for (const auto& [id, members] : structs_) {
+            if (!offsets_.contains(id)) { continue; }  // a local variable's, which has no layout
+            Layout layout{names_[id], strides_.contains(id) ? strides_[id] : 0, {}};
+            for (std::uint32_t m = 0; m < members.size(); ++m) {
+                layout.fields.push_back({member_names_[id][m], offsets_[id][m], bytesOf(members[m])});
+            }
+            layouts.push_back(layout);
+            if (layout.name == "Push") { push_struct = names_[members[0]]; }
+        }
+    }
+
+    std::vector<Layout> layouts;  // `bytes` is the distance of an array's elements, or 0 if there is no array of it
+    std::string push_struct;      // the struct of the push constants
+
+private:
+    using Words = std::span<const std::uint32_t>;
+
+    static std::string textOf(Words words) {
+        std::string text;
+        for (std::size_t i = 0; i < 4 * words.size(); ++i) {
+            const char c = static_cast<char>(words[i / 4] >> (8 * (i % 4)));
+            if (c == '\0') { break; }
+            text += c;
+        }
+        return text;
+    }
+
+    void readInstruction(std::uint32_t opcode, Words operands) {
+        constexpr std::uint32_t kName = 5, kMemberName = 6, kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeRuntimeArray = 29,
+                                kTypeStruct = 30, kTypePointer = 32, kDecorate = 71, kMemberDecorate = 72, kArrayStride = 6, kOffset = 35;
+        switch (opcode) {
+            case kName:
+                names_[operands[0]] = textOf(operands.subspan(1));
+                break;
+            case kMemberName:
+                member_names_[operands[0]][operands[1]] = textOf(operands.subspan(2));
+                break;
+            case kTypeInt:
+            case kTypeFloat:
+                bytes_[operands[0]] = operands[1] / 8;
+                break;
+            case kTypeVector:
+                bytes_[operands[0]] = bytes_[operands[1]] * operands[2];
+                break;
+            case kTypePointer:
+                bytes_[operands[0]] = 8;
+                break;
+            case kTypeStruct:
+                structs_[operands[0]].assign(operands.begin() + 1, operands.end());
+                break;
+            case kTypeRuntimeArray:
+                strides_[operands[1]] = array_strides_[operands[0]];
+                break;
+            case kDecorate:
+                if (operands[1] == kArrayStride) { array_strides_[operands[0]] = operands[2]; }
+                break;
+            case kMemberDecorate:
+                if (operands[2] == kOffset) { offsets_[operands[0]][operands[1]] = operands[3]; }
+                break;
+            default:
+                break;
+        }
+    }
+
+    std::size_t bytesOf(std::uint32_t type) {
+        if (!structs_.contains(type)) { return bytes_.contains(type) ? bytes_[type] : 8; }  // 8: a pointer that is only announced
+        const auto last = static_cast<std::uint32_t>(structs_[type].size() - 1);
+        return offsets_[type][last] + bytesOf(structs_[type][last]);
+    }
+
+    std::map<std::uint32_t, std::string> names_;
+    std::map<std::uint32_t, std::map<std::uint32_t, std::string>> member_names_;
+    std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> offsets_;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> structs_;
+    std::map<std::uint32_t, std::size_t> bytes_, strides_, array_strides_;
+};
+
+// What is wrong with a shader's struct; empty if nothing is. Blocks of the language itself have no twin in C++: the push
+// constants and the arrays behind an address.
+std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) {
+    if (shader.name == "Push" || (shader.fields.size() == 1 && shader.fields[0].name == "at")) { return {}; }
+    const auto twin = std::find_if(host.begin(), host.end(), [&](const Layout& layout) { return layout.name == shader.name; });
+    if (twin == host.end()) { return shader.name + " is missing in the table of this test"; }
+    if (shader.bytes != 0 && shader.bytes != twin->bytes) { return shader.name + " has another size"; }
+    if (shader.fields.size() != twin->fields.size()) { return shader.name + " has another number of fields"; }
+    for (std::size_t i = 0; i < shader.fields.size(); ++i) {
+        if (shader.fields[i] != twin->fields[i]) { return shader.name + "." + shader.fields[i].name + " differs"; }
+    }
+    return {};
+}
+
+// The names of shaders/NAME.comp.
+std::vector<std::string> shaderNames() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
+        if (entry.path().extension() == ".comp") { names.push_back(entry.path().stem().string()); }
+    }
+    return names;
+}
+
+// The pass of shaders/1_cull.comp is CullPass, that of shaders/sort_count.comp is SortCountPass.
+std::string passOf(const std::string& shader) {
+    const bool numbered = shader[0] >= '0' && shader[0] <= '9';
+    std::string name;
+    bool begins_word = true;
+    for (std::size_t i = numbered ? shader.find('_') + 1 : 0; i < shader.size(); ++i) {
+        if (shader[i] != '_') { name += begins_word ? static_cast<char>(shader[i] - 'a' + 'A') : shader[i]; }
+        begins_word = shader[i] == '_';
+    }
+    return name + "Pass";
+}
+
+}  // namespace
+
+TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gives them") {
+    const std::vector<Layout> host = hostLayouts();
+    std::set<std::string> seen;
+    REQUIRE(shaderNames().size() >= 12);
+    for (const std::string& name : shaderNames()) {
+        CAPTURE(name);
+        const auto words = embeddedShader(name);
+        REQUIRE_FALSE(words.empty());
+        const ShaderLayouts shader(words);
+        CHECK(shader.push_struct == passOf(name));
+        for (const Layout& layout : shader.layouts) {
+            CHECK(findMismatch(layout, host) == "");
+            seen.insert(layout.name);
+        }
+    }
+    for (const Layout& layout : host) {
+        INFO("no shader has " << layout.name);
+        CHECK(seen.contains(layout.name));
+    }
+}
+
+TEST_CASE("push constants fit into the 128 bytes that every device has") {
+    for (const Layout& layout : hostLayouts()) {
+        if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }
+    }
+}
+
+TEST_CASE("a wrong field is found") {
+    const Layout right{"Thing", 12, {{"a", 0, 4}, {"b", 4, 8}}};
+    const std::vector<Layout> host{right};
+    CHECK(findMismatch(right, host).empty());
+    const auto alter = [&](auto change) {
+        Layout wrong = right;
+        change(wrong);
+        return findMismatch(wrong, host);
+    };
+    CHECK(alter([](Layout& l) { l.fields[1].offset = 8; }) == "Thing.b differs");
+    CHECK(alter([](Layout& l) { l.fields[1].bytes = 4; }) == "Thing.b differs");
+    CHECK(alter([](Layout& l) { std::swap(l.fields[0].name, l.fields[1].name); }) == "Thing.b differs");
+    CHECK(alter([](Layout& l) { l.fields.pop_back(); }) == "Thing has another number of fields");
+    CHECK(alter([](Layout& l) { l.fields.push_back({"c", 12, 4}); }) == "Thing has another number of fields");
+    CHECK(alter([](Layout& l) { l.bytes = 16; }) == "Thing has another size");
+    CHECK(alter([](Layout& l) { l.name = "Other"; }) == "Other is missing in the table of this test");
+}
