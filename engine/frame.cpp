@@ -10,7 +10,8 @@
 namespace binosplat {
 namespace {
 
-glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
+// Components of holes that get a box of their own: 64 KiB.
+constexpr std::uint32_t kHoleBoxes = 4096;
 
 gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
     const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
@@ -36,12 +37,23 @@ bool haveSameDepths(const Eye& a, const Eye& b) {
     return glm::length(forward_a - forward_b) < 1e-9 && std::abs(glm::dot(shift, forward_a)) <= 1e-9 * std::max(1.0, glm::length(shift));
 }
 
+bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
+
+StereoSettings stereoSettingsOf(const FrameSettings& settings) {
+    StereoSettings stereo = settings.stereo;
+    stereo.patching = settings.mode == Mode::kPaper       ? Patching::kPaper
+                      : settings.mode == Mode::kPredicted ? Patching::kPredicted
+                                                          : Patching::kNone;
+    return stereo;
+}
+
 }  // namespace
 
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       scene_(scene),
       passes_(context, scene.shDegree(), options.threads_per_cell),
+      stereo_passes_(context),
       commands_(context),
       buffers_(makeFrameBuffers(context, scene.splatCount())),
       state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback) {
@@ -50,6 +62,9 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
+    check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px, "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal",
+          eyes[0].size_px.x, eyes[0].size_px.y, eyes.back().size_px.x, eyes.back().size_px.y);
+    mode_ = settings.mode;
     dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
     prepareImages(eyes, settings);
     do {
@@ -61,17 +76,19 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 }
 
 void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& settings) {
-    FrameState state{};
-    std::array<glm::uvec2, 2> tiles{};
-    for (std::size_t e = 0; e < eyes.size(); ++e) {
-        state.eyes[e] = viewOf(eyes[e], scene_.origin(), settings.near);
-        tiles[e] = tilesOf(eyes[e].size_px);
-    }
     const int first = dominant_, second = 1 - dominant_;
-    const Kept kept{/*depth=*/true, settings.inverse_depth_moments};
-    const glm::vec3 background(settings.background);
-    const auto recordEye = [&](int eye, int list, const Kept& kept_here, const std::string& role) {
-        passes_.recordEye(commands_, scene_, buffers_, eye, list, tiles[eye], images_[eye], background, kept_here, role);
+    const StereoSettings stereo = stereoSettingsOf(settings);
+    FrameState state{};
+    for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], scene_.origin(), settings.near); }
+    if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
+
+    const auto targetOf = [&](int eye, int list) {
+        return EyeTarget{eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
+    };
+    const auto dominantOf = [&](int list) {
+        EyeTarget target = targetOf(first, list);
+        target.kept = {images_[first].depths.bytes() > 0, settings.keep_moments, settings.keep_moments};
+        return target;
     };
 
     commands_.begin();
@@ -79,29 +96,51 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     switch (settings.mode) {
         case Mode::kMono:
             passes_.recordVisible(commands_, scene_, buffers_, 0, 1, 0, 0, "");
-            recordEye(0, 0, kept, "");
+            passes_.recordEye(commands_, scene_, buffers_, dominantOf(0), "");
             break;
         case Mode::kTwoPass:
             passes_.recordVisible(commands_, scene_, buffers_, first, 1, first, first, "dominant ");
-            recordEye(first, first, kept, "dominant ");
+            passes_.recordEye(commands_, scene_, buffers_, dominantOf(first), "dominant ");
             passes_.recordVisible(commands_, scene_, buffers_, second, 1, second, second, "affiliated ");
-            recordEye(second, second, {}, "affiliated ");
+            passes_.recordEye(commands_, scene_, buffers_, targetOf(second, second), "affiliated ");
             break;
         case Mode::kShared:
             passes_.recordVisible(commands_, scene_, buffers_, 0, 2, first, 0, "both ");
-            recordEye(first, 0, kept, "dominant ");
-            if (!haveSameDepths(eyes[0], eyes[1])) {
-                commands_.beginPass("affiliated 2_compact");
-                passes_.recordOrder(commands_, scene_, buffers_, second, 0, "affiliated ");
-            }
-            recordEye(second, 0, {}, "affiliated ");
+            passes_.recordEye(commands_, scene_, buffers_, dominantOf(0), "dominant ");
+            if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, second, 0, "affiliated "); }
+            passes_.recordEye(commands_, scene_, buffers_, targetOf(second, 0), "affiliated ");
             break;
+        case Mode::kReproject:
+        case Mode::kPaper:
+        case Mode::kPredicted: {
+            passes_.recordVisible(commands_, scene_, buffers_, 0, 2, first, 0, "both ");
+            EyeTarget dominant = dominantOf(0);
+            dominant.stereo_pixels = images_[second].colours.address<gpu::StereoPixel>();
+            dominant.kept.stereo_pixels = true;
+            dominant.kept.inverse_depth_moments = settings.mode == Mode::kPredicted || stereo.depth_choice == gpu::kDepthInverse;
+            passes_.recordEye(commands_, scene_, buffers_, dominant, "dominant ");
+            recordAffiliated(eyes, stereo, targetOf(second, 0));
+            break;
+        }
     }
     commands_.endPass();
     commands_.copy(buffers_.state, state_readback_, sizeof(FrameState));
 }
 
+void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
+    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo, dominant_, images_[dominant_], images_[target.eye]);
+    if (stereo.patching == Patching::kNone) { return; }
+    if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, target.eye, 0, "affiliated "); }
+    passes_.recordTiles(commands_, scene_, buffers_, target, {stereo_buffers_.tilesBefore(), stereo_buffers_.tileList()}, "affiliated ");
+}
+
 void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& settings) {
+    const auto resize = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
+        if (buffer.bytes() == bytes) { return; }
+        buffer = {};
+        buffer = Buffer(context_, name, bytes);
+    };
+    const bool read_depth = reprojects(settings.mode) && settings.stereo.depth_choice != gpu::kDepthInverse;
     std::uint64_t most_tiles = 0;
     for (int e = 0; e < 2; ++e) {
         const bool used = static_cast<std::size_t>(e) < eyes.size();
@@ -109,20 +148,17 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         const std::uint64_t pixels = std::uint64_t{sizes_px_[e].x} * sizes_px_[e].y;
         const glm::uvec2 tiles = tilesOf(sizes_px_[e]);
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
-        const auto resize = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
-            if (buffer.bytes() == bytes) { return; }
-            buffer = {};
-            buffer = Buffer(context_, name, bytes);
-        };
         const bool dominant = used && e == dominant_;
         resize(images_[e].colours, "colours", pixels * sizeof(gpu::vec4));
-        resize(images_[e].depths, "depths", dominant ? pixels * sizeof(float) : 0);
-        resize(images_[e].inverse_depth_moments, "inverse depth moments", dominant && settings.inverse_depth_moments ? pixels * sizeof(gpu::vec2) : 0);
+        resize(images_[e].depths, "depths", dominant && (settings.keep_depth || read_depth) ? pixels * sizeof(float) : 0);
+        if (dominant) { resize(moments_, "inverse depth moments", settings.keep_moments ? pixels * sizeof(gpu::StereoPixel) : 0); }
     }
-    const std::uint64_t range_bytes = (most_tiles + 1) * sizeof(gpu::uvec2);  // one more for pairs in no tile
-    if (buffers_.tile_ranges.bytes() != range_bytes) {
-        buffers_.tile_ranges = {};
-        buffers_.tile_ranges = Buffer(context_, "tile ranges", range_bytes);
+    resize(buffers_.tile_ranges, "tile ranges", (most_tiles + 1) * sizeof(gpu::uvec2));  // one more for pairs in no tile
+    const glm::uvec2 stereo_px = reprojects(settings.mode) ? sizes_px_[0] : glm::uvec2(0);
+    const std::uint32_t boxes = settings.mode == Mode::kPaper && settings.stereo.center_rois ? kHoleBoxes : 0;
+    if (stereo_buffers_.sizePx() != stereo_px || stereo_buffers_.boxCapacity() != boxes) {
+        stereo_buffers_ = {};
+        if (stereo_px.x > 0) { stereo_buffers_ = StereoBuffers(context_, stereo_px, boxes); }
     }
 }
 
@@ -159,40 +195,92 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
     counters["pair_bytes"] = buffers_.pairs.bytes();
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::string suffix = settings.mode == Mode::kMono ? "" : e == kLeft ? "_left" : "_right";
+        const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         counters["splats_visible" + suffix] = state_.visible[settings.mode == Mode::kTwoPass ? e : 0].count;
         counters["tile_pairs" + suffix] = state_.pairs[e].count;
         counters["square_box_tile_pairs" + suffix] =
             (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
-        const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
         counters["pixels" + suffix] = std::uint64_t{eyes[e].size_px.x} * eyes[e].size_px.y;
-        counters["pixel_bytes" + suffix] = images_[e].colours.bytes() + images_[e].depths.bytes() + images_[e].inverse_depth_moments.bytes();
+        counters["pixel_bytes" + suffix] = images_[e].colours.bytes() + images_[e].depths.bytes();
     }
-    if (scene_.shDegree() < kMaxShDegree) {
-        result.left_out.push_back(fmt::format("SH bands above {}: the scene has none", scene_.shDegree()));
+    if (reprojects(settings.mode)) {
+        const gpu::StereoCounters& stereo = state_.stereo_counters;
+        counters["pixels_covered"] = stereo.covered_pixels;
+        counters["pixels_gap"] = stereo.gap_pixels;
+        counters["pixels_hole"] = stereo.hole_pixels;
+        counters["tiles_patched"] = state_.masked_tiles.count;
+        counters["tiles_edge"] = stereo.edge_tiles;
+        counters["tiles_center"] = stereo.center_tiles;
+        counters["tiles_predicted"] = stereo.predicted_tiles;
+        counters["hole_components"] = stereo.components;
+        counters["splats_newcomers"] = stereo.newcomers;
+        counters["stereo_bytes"] = stereo_buffers_.bytes();
     }
-    if (!settings.inverse_depth_moments) { result.left_out.emplace_back("moments of inverse depth: no stage of this mode reads them"); }
-    if (eyes.size() == 2) { result.left_out.emplace_back("depth of the affiliated eye: nothing reads it"); }
-    if (settings.mode == Mode::kShared && haveSameDepths(eyes[0], eyes[1])) {
-        result.left_out.emplace_back("culling and depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
-    }
+    explainLeftOut(eyes, settings, result);
     return result;
 }
 
-Image StereoFrame::readBuffer(const Buffer& buffer, glm::uvec2 size_px, int channels) {
-    Image image{size_px, channels, {}};
-    if (buffer.bytes() == 0) { return image; }
+void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const {
+    const auto leaveOut = [&](bool condition, std::string sentence) {
+        if (condition) { result.left_out.push_back(std::move(sentence)); }
+    };
+    const bool reprojected = reprojects(settings.mode);
+    const bool patched = settings.mode == Mode::kPaper || settings.mode == Mode::kPredicted;
+    const bool moments = settings.keep_moments || settings.mode == Mode::kPredicted || (reprojected && settings.stereo.depth_choice == gpu::kDepthInverse);
+    const gpu::StereoCounters& stereo = state_.stereo_counters;
+    leaveOut(scene_.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_.shDegree()));
+    leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
+    leaveOut(eyes.size() == 2, "depth of the affiliated eye: nothing reads it");
+    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
+    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && haveSameDepths(eyes[0], eyes.back()),
+             "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    leaveOut(patched && state_.masked_tiles.count == 0, "patching: no tile needs to be rendered again");
+    leaveOut(settings.mode == Mode::kPaper && !settings.stereo.center_rois, "centre ROIs: not asked for");
+    leaveOut(settings.mode == Mode::kPaper && settings.stereo.center_rois && stereo.hole_pixels == 0, "centre ROIs: the picture has no holes");
+    leaveOut(settings.mode == Mode::kPredicted && stereo.newcomers == 0, "errors of newcomers: the affiliated eye sees no splat that the dominant one does not");
+}
+
+template <typename T>
+std::vector<T> StereoFrame::readBuffer(const Buffer& buffer) {
+    if (buffer.bytes() == 0) { return {}; }
     const Buffer readback(context_, "read-back", buffer.bytes(), MemoryKind::kReadback);
     commands_.begin();
     commands_.copy(buffer, readback, buffer.bytes());
     commands_.submitAndWait();
-    const auto values = readback.mapped<float>();
-    image.values.assign(values.begin(), values.end());
+    const auto values = readback.mapped<T>();
+    return {values.begin(), values.end()};
+}
+
+Image StereoFrame::readPicture(int eye) { return {sizes_px_[eye], 4, readBuffer<float>(images_[eye].colours)}; }
+Image StereoFrame::readDominantDepth() { return {sizes_px_[dominant_], 1, readBuffer<float>(images_[dominant_].depths)}; }
+
+Image StereoFrame::readInverseDepthMoments() {
+    const std::vector<gpu::StereoPixel> pixels = readBuffer<gpu::StereoPixel>(moments_);
+    Image image{sizes_px_[dominant_], 2, {}};
+    for (const gpu::StereoPixel& pixel : pixels) { image.values.insert(image.values.end(), {pixel.inverse_depth_sum, pixel.inverse_depth_square_sum}); }
     return image;
 }
 
-Image StereoFrame::readPicture(int eye) { return readBuffer(images_[eye].colours, sizes_px_[eye], 4); }
-Image StereoFrame::readDominantDepth() { return readBuffer(images_[dominant_].depths, sizes_px_[dominant_], 1); }
-Image StereoFrame::readInverseDepthMoments() { return readBuffer(images_[dominant_].inverse_depth_moments, sizes_px_[dominant_], 2); }
+std::vector<std::uint32_t> StereoFrame::readTileKinds() {
+    if (!reprojects(mode_)) { return {}; }
+    const std::vector<std::uint32_t> tiles = readBuffer<std::uint32_t>(stereo_buffers_.tiles());
+    const auto kinds = tiles.begin() + static_cast<std::ptrdiff_t>(stereo_buffers_.tileCount());
+    return {kinds, kinds + static_cast<std::ptrdiff_t>(stereo_buffers_.tileCount())};
+}
+
+std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
+    if (!reprojects(mode_)) { return {}; }
+    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(stereo_buffers_.pixelClasses());
+    const glm::uvec2 size = sizes_px_[0];
+    const std::size_t row_words = tilesOf(size).x;
+    std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);
+    for (std::size_t y = 0; y < size.y; ++y) {
+        for (std::size_t x = 0; x < size.x; ++x) {
+            classes[y * size.x + x] = static_cast<std::uint8_t>((words[y * row_words + x / gpu::kTileSize] >> (2 * (x % gpu::kTileSize))) & 3);
+        }
+    }
+    return classes;
+}
 
 }  // namespace binosplat

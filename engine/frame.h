@@ -3,6 +3,7 @@
 
 #include "engine/geometry.h"
 #include "engine/passes/passes.h"
+#include "engine/passes/stereo_passes.h"
 #include "engine/picture/image.h"
 
 #include <array>
@@ -16,17 +17,22 @@ namespace binosplat {
 
 // DESIGN, "the stereo methods".
 enum class Mode {
-    kMono,     // one eye
-    kTwoPass,  // both eyes in full, nothing shared: the paper's reference
-    kShared,   // both eyes in full, culled once and sorted by depth once
+    kMono,       // one eye
+    kTwoPass,    // both eyes in full, nothing shared: the paper's reference
+    kShared,     // both eyes in full, culled once and sorted by depth once
+    kReproject,  // the affiliated eye from the dominant one's picture alone
+    kPaper,      // and its borders, on request also its holes, rendered again (the paper)
+    kPredicted,  // and the tiles with the greatest expected error rendered again
 };
 
 struct FrameSettings {
-    Mode mode = Mode::kShared;
+    Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
     double near = 0.2;            // scene units
     glm::dvec3 background{0.0};
-    bool inverse_depth_moments = false;  // keep I and J of the dominant eye
+    StereoSettings stereo;        // how one eye is made from the other; `patching` follows from the mode
+    bool keep_depth = true;       // D of the dominant eye, for readDominantDepth
+    bool keep_moments = false;    // I and J of the dominant eye, for readInverseDepthMoments
 };
 
 struct FrameResult {
@@ -55,26 +61,37 @@ public:
     [[nodiscard]] Image readPicture(int eye);
     // D = sum w z of the dominant eye, one channel.
     [[nodiscard]] Image readDominantDepth();
-    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; only if the settings asked for them.
+    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; only of a mode that renders every eye in full.
     [[nodiscard]] Image readInverseDepthMoments();
+    // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
+    [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
+    // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; likewise.
+    [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
 private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
+    void recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
     [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    [[nodiscard]] Image readBuffer(const Buffer& buffer, glm::uvec2 size_px, int channels);
+    void explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const;
+    template <typename T>
+    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer);
 
     const Context& context_;
     const GpuScene& scene_;
     Passes passes_;
+    StereoPasses stereo_passes_;
     Commands commands_;
     FrameBuffers buffers_;
+    StereoBuffers stereo_buffers_;
     std::array<EyeImage, 2> images_;
+    Buffer moments_;  // StereoPixels of the dominant eye, where keep_moments asks for them
     std::array<glm::uvec2, 2> sizes_px_{};
     Buffer state_readback_;
     FrameState state_{};
+    Mode mode_ = Mode::kMono;  // of the last frame
     int dominant_ = 0;
     int regrowths_ = 0;
 };

@@ -6,31 +6,18 @@
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
+#include "lib/tile_box.glsl"
 #include "lib/sh.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
+layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
 
-// The tiles that hold what the splat covers: x0, y0, x1, y1, half open.
-ivec4 tileBox(CameraSplat splat, EyeView eye, Outline outline) {
-    vec4 bounds_px = vec4(-1e9, -1e9, 1e9, 1e9);
-    const vec2 circle_px = vec2(outline.circle_px);
-    if (outline.ellipse) {
-        const vec2 x_px = boundsBetweenRows(outline, -1e9, 1e9);
-        bounds_px = vec4(x_px.x, min(outline.rows.x, -circle_px.y) + outline.centre_px.y, x_px.y, max(outline.rows.y, circle_px.y) + outline.centre_px.y);
-    }
-    const float radius = sqrt(outline.cut);
-    const float reach = radius * length(splat.scale * vec2(splat.t_u.z, splat.t_v.z));
-    if (!outline.ellipse || splat.centre.z - reach < eye.near) {
-        vec4 front_px = frontPartBounds(splat, eye, radius);
-        if (outline.circle_px > 0) {
-            front_px = vec4(min(front_px.xy, outline.centre_px - circle_px), max(front_px.zw, outline.centre_px + circle_px));
-        }
-        bounds_px = vec4(max(bounds_px.xy, front_px.xy), min(bounds_px.zw, front_px.zw));
-    }
-    const ivec2 x_tiles = unitsBetween(bounds_px.xz, kTileSize, eye.size_tiles.x);
-    const ivec2 y_tiles = unitsBetween(bounds_px.yw, kTileSize, eye.size_tiles.y);
-    return ivec4(x_tiles.x, y_tiles.x, x_tiles.y, y_tiles.y);
+// The tiles of a row, of those from x to y (exclusive), that count.
+uint countInRow(uint row, ivec2 in_row, uint row_tiles) {
+    if (in_row.y <= in_row.x) { return 0; }
+    if (!kMasked) { return uint(in_row.y - in_row.x); }
+    return pass.tiles_before.at[row * row_tiles + in_row.y] - pass.tiles_before.at[row * row_tiles + in_row.x];
 }
 
 // How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
@@ -66,19 +53,18 @@ void main() {
 
         bool has_reference;
         ProjectedSplat p = projectGeometry(splat, eye, has_reference);
-        const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
-        p.opacity_colour = packOpacityColour(splat.opacity, has_reference, colour);
-        pass.splats.at[rank] = p;
-
+        p.opacity_colour = packOpacityColour(splat.opacity, has_reference, vec3(0));
         const Outline outline = outlineOfProjected(p);
         const ivec4 box = tileBox(splat, eye, outline);
         uint tiles = 0;
-        for (int row = box.y; row < box.w; ++row) {
-            const ivec2 in_row = tilesInRow(outline, uint(row), box);
-            tiles += uint(max(in_row.y - in_row.x, 0));
-        }
-        pass.tile_boxes.at[rank] = uvec2(packTiles(box.xy), packTiles(box.zw));
+        for (int row = box.y; row < box.w; ++row) { tiles += countInRow(uint(row), tilesInRow(outline, uint(row), box), eye.size_tiles.x); }
         pass.tile_counts.at[rank] = tiles;
+        if (tiles > 0) {
+            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
+            p.opacity_colour = packOpacityColour(splat.opacity, has_reference, colour);
+            pass.splats.at[rank] = p;
+            pass.tile_boxes.at[rank] = uvec2(packTiles(box.xy), packTiles(box.zw));
+        }
         square_tiles = squareBoxTiles(splat, eye);
     }
     const uint subgroup_square_tiles = subgroupAdd(square_tiles);

@@ -9,6 +9,7 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
+layout(constant_id = 0) const bool kMasked = false;  // pairs in tiles of the mask alone
 
 shared uint group_splats[2];  // the splats of this group's first and last pair
 
@@ -46,9 +47,12 @@ void main() {
     uint tile = size_tiles.x * size_tiles.y;  // no tile: sorted behind all others, blended nowhere
     for (int row = box.y; row < box.w; ++row) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        const uint tiles = uint(max(in_row.y - in_row.x, 0));
+        if (in_row.y <= in_row.x) { continue; }
+        const uint row_begin = uint(row) * size_tiles.x;
+        const uint before = kMasked ? pass.tiles_before.at[row_begin + in_row.x] : row_begin + in_row.x;
+        const uint tiles = kMasked ? pass.tiles_before.at[row_begin + in_row.y] - before : uint(in_row.y - in_row.x);
         if (left < tiles) {
-            tile = uint(row) * size_tiles.x + uint(in_row.x) + left;
+            tile = kMasked ? pass.tile_list.at[before + left] : before + left;
             break;
         }
         left -= tiles;

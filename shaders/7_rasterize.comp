@@ -12,8 +12,10 @@
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
 layout(constant_id = 1) const bool kDepth = true;
-layout(constant_id = 2) const bool kInverseDepthMoments = false;
-layout(local_size_x_id = 3) in;  // kCellsPerTile * kThreadsPerCell
+layout(constant_id = 2) const bool kStereoPixels = false;         // start the affiliated eye's pixels, too
+layout(constant_id = 3) const bool kInverseDepthMoments = false;  // with the moments of the inverse depth
+layout(constant_id = 4) const bool kMasked = false;               // the tiles of pass.tile_list alone
+layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
 
@@ -71,8 +73,10 @@ void main() {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
     const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
-    const uint tile = gl_WorkGroupID.y * eye.size_tiles.x + gl_WorkGroupID.x;
-    const uvec2 tile_px = gl_WorkGroupID.xy * kTileSize;
+    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (kMasked && group >= pass.masked_tiles.at[0].count) { return; }
+    const uint tile = kMasked ? pass.tile_list.at[group] : group;
+    const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
     const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
     const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize);
@@ -164,7 +168,7 @@ void main() {
             const uint at = pixel.y * size_px.x + pixel.x;
             pass.colours.at[at] = vec4(colour[p] + transmittance[p] * pass.background, 1 - transmittance[p]);
             if (kDepth) { pass.depths.at[at] = depth[p]; }
-            if (kInverseDepthMoments) { pass.inverse_depth_moments.at[at] = moments[p]; }
+            if (kStereoPixels) { pass.moments.at[at] = StereoPixel(moments[p].x, moments[p].y, 0, 0); }
         }
     }
 }

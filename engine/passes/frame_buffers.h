@@ -18,6 +18,10 @@ struct FrameState {
     std::array<gpu::ListState, 2> visible;  // [0] is both eyes' where they share it
     std::array<gpu::ListState, 2> pairs;
     std::array<gpu::EyeCounters, 2> counters;
+    gpu::StereoView stereo;
+    gpu::StereoCounters stereo_counters;
+    gpu::ListState masked_tiles;    // those of the affiliated eye that are rendered again
+    gpu::ListState masked_visible;  // visible[0], or empty if there is no such tile
 };
 
 struct FrameCapacity {
@@ -29,8 +33,7 @@ struct FrameCapacity {
 // An eye's picture in device memory, rows top to bottom.
 struct EyeImage {
     Buffer colours;  // vec4 a pixel
-    Buffer depths;   // float a pixel, where a mode wants it
-    Buffer inverse_depth_moments;  // vec2 a pixel, likewise
+    Buffer depths;   // D, a float a pixel, where it is wanted
 };
 
 // The arrays over the visible splats lie in one buffer, one after the other.
@@ -95,6 +98,37 @@ struct FrameBuffers {
     static std::uint64_t visibleList(int i) { return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
     static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
 };
+
+// What reprojection and the choice of tiles work on. Arrays over the tiles lie in one buffer, one after the other.
+class StereoBuffers {
+public:
+    StereoBuffers() = default;
+    // `boxes`: room for that many components of holes, 0 where centre ROIs are off.
+    StereoBuffers(const Context& context, glm::uvec2 size_px, std::uint32_t boxes);
+
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tiles_.address<gpu::uint>(0); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileKinds() const { return tileErrors().at(tile_count_); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> depthBins() const { return tileErrors().at(2 * tile_count_); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return depthBins().at(gpu::kDepthBins); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesBefore() const { return tileList().at(tile_count_); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
+    [[nodiscard]] std::uint32_t boxCapacity() const { return box_capacity_; }
+    // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
+    [[nodiscard]] const Buffer& pixelClasses() const { return pixel_classes_; }
+    [[nodiscard]] const Buffer& tiles() const { return tiles_; }
+    [[nodiscard]] std::uint64_t tileKindsOffset() const { return tile_count_ * sizeof(gpu::uint); }
+    [[nodiscard]] std::uint64_t tileCount() const { return tile_count_; }
+    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes() + boxes_.bytes() + pixel_classes_.bytes(); }
+
+private:
+    glm::uvec2 size_px_{0, 0};
+    std::uint64_t tile_count_ = 0;
+    std::uint32_t box_capacity_ = 0;
+    Buffer tiles_, boxes_, pixel_classes_;
+};
+
+glm::uvec2 tilesOf(glm::uvec2 size_px);
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);
 // Makes room; what was in the lists before is lost, and no more than the new is held at any time.

@@ -5,27 +5,18 @@
 #include <bit>
 
 namespace binosplat {
-namespace {
-
-Kernel rasterizeKernelFor(const Context& context, std::uint32_t threads_per_cell, Kept kept) {
-    // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
-    const std::uint32_t threads = threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u);
-    return Kernel(context, "7_rasterize", sizeof(gpu::RasterizePass), {threads, kept.depth, kept.inverse_depth_moments, gpu::kCellsPerTile * threads});
-}
-
-}  // namespace
-
 Passes::Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell)
-    : scan_(context),
+    : context_(context),
+      sh_degree_(static_cast<std::uint32_t>(sh_degree)),
+      // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
+      threads_per_cell_(threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u)),
+      scan_(context),
       sort_(context),
       cull_(context, "1_cull", sizeof(gpu::CullPass)),
       compact_(context, "2_compact", sizeof(gpu::CompactPass)),
-      project_(context, "4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(sh_degree)}),
-      bin_(context, "5_bin", sizeof(gpu::BinPass)),
-      tile_ranges_(context, "6_tile_ranges", sizeof(gpu::TileRangesPass)),
-      rasterize_colour_(rasterizeKernelFor(context, threads_per_cell, {})),
-      rasterize_depth_(rasterizeKernelFor(context, threads_per_cell, {/*depth=*/true})),
-      rasterize_moments_(rasterizeKernelFor(context, threads_per_cell, {/*depth=*/true, /*inverse_depth_moments=*/true})) {}
+      project_(context, "4_project", sizeof(gpu::ProjectPass), {sh_degree_, /*masked=*/0}),
+      bin_(context, "5_bin", sizeof(gpu::BinPass), {/*masked=*/0}),
+      tile_ranges_(context, "6_tile_ranges", sizeof(gpu::TileRangesPass)) {}
 
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
                            const std::string& role) const {
@@ -52,43 +43,80 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                  FrameBuffers::visibleList(list), 32);
 }
 
-const Kernel& Passes::rasterizeKernel(Kept kept) const {
-    return kept.inverse_depth_moments ? rasterize_moments_ : kept.depth ? rasterize_depth_ : rasterize_colour_;
+const Kernel& Passes::rasterizeKernel(Kept kept, bool masked) {
+    const std::uint32_t variant = (kept.depth ? 1u : 0u) | (kept.stereo_pixels ? 2u : 0u) | (kept.inverse_depth_moments ? 4u : 0u) | (masked ? 8u : 0u);
+    auto found = rasterize_.find(variant);
+    if (found == rasterize_.end()) {
+        Kernel kernel(context_, "7_rasterize", sizeof(gpu::RasterizePass),
+                      {threads_per_cell_, kept.depth, kept.stereo_pixels, kept.inverse_depth_moments, masked, gpu::kCellsPerTile * threads_per_cell_});
+        found = rasterize_.emplace(variant, std::move(kernel)).first;
+    }
+    return found->second;
 }
 
-void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int eye, int list, glm::uvec2 size_tiles, const EyeImage& image,
-                       const glm::vec3& background, Kept kept, const std::string& role) const {
-    const auto eye_index = static_cast<gpu::uint>(eye);
-    const std::uint64_t visible_list = FrameBuffers::visibleList(list), pair_list = FrameBuffers::pairList(eye);
+const Kernel& Passes::maskedKernel(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
+    if (!kernel.pipeline()) { kernel = Kernel(context_, shader, push_bytes, constants); }
+    return kernel;
+}
+
+void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role) {
+    record(commands, scene, buffers, target, nullptr, role);
+}
+
+void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
+                         const std::string& role) {
+    record(commands, scene, buffers, target, &mask, role);
+}
+
+void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
+                    const std::string& role) {
+    const auto eye = static_cast<gpu::uint>(target.eye);
+    const std::uint64_t visible_list = mask != nullptr ? offsetof(FrameState, masked_visible) : FrameBuffers::visibleList(target.list);
+    const std::uint64_t pair_list = FrameBuffers::pairList(target.eye);
     const auto visible = buffers.state.address<gpu::ListState>(visible_list);
     const auto pairs = buffers.state.address<gpu::ListState>(pair_list);
-    const auto counters = buffers.state.address<gpu::EyeCounters>(offsetof(FrameState, counters)).at(eye_index);
+    const auto counters = buffers.state.address<gpu::EyeCounters>(offsetof(FrameState, counters)).at(eye);
     const auto per_visible = visible_list + offsetof(gpu::ListState, per_item);
     const auto per_pair = pair_list + offsetof(gpu::ListState, per_item);
     const auto scratch = buffers.scratch.address<gpu::uint>();
+    const TileMask tiles = mask != nullptr ? *mask : TileMask{};
 
     commands.beginPass(role + "4_project");
-    commands.dispatchIndirect(project_,
+    const Kernel& project = mask == nullptr ? project_ : maskedKernel(project_masked_, "4_project", sizeof(gpu::ProjectPass), {sh_degree_, /*masked=*/1});
+    commands.dispatchIndirect(project,
                               gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
-                                               buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, scene.chunkBits(), eye_index},
+                                               buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before, scene.chunkBits(), eye},
                               buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());
-    commands.dispatchIndirect(bin_,
+    const Kernel& bin = mask == nullptr ? bin_ : maskedKernel(bin_masked_, "5_bin", sizeof(gpu::BinPass), {/*masked=*/1});
+    commands.dispatchIndirect(bin,
                               gpu::BinPass{buffers.eyes(), buffers.visible.splats(), buffers.visible.tileBoxes(), buffers.visible.tileCounts(), visible, pairs,
-                                           buffers.pairs.pairs().keys, buffers.pairs.pairs().values, eye_index},
+                                           buffers.pairs.pairs().keys, buffers.pairs.pairs().values, tiles.tiles_before, tiles.tile_list, eye},
                               buffers.state, per_pair);
     commands.beginPass(role + "6_sort_tiles");
-    const unsigned tile_bits = static_cast<unsigned>(std::bit_width(size_tiles.x * size_tiles.y));
+    const unsigned tile_bits = static_cast<unsigned>(std::bit_width(target.size_tiles.x * target.size_tiles.y));
     const KeyValues sorted = sort_.record(commands, buffers.pairs.pairs(), buffers.pairs.spare(), scratch, buffers.state, pair_list, tile_bits);
     const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
     commands.fillZero(buffers.tile_ranges);
     commands.dispatchIndirect(tile_ranges_, gpu::TileRangesPass{sorted.keys, pairs, ranges}, buffers.state, per_pair);
     commands.beginPass(role + "7_rasterize");
-    commands.dispatch(rasterizeKernel(kept),
-                      gpu::RasterizePass{buffers.eyes(), buffers.visible.splats(), sorted.values, ranges, image.colours.address<gpu::vec4>(),
-                                         image.depths.address<float>(), image.inverse_depth_moments.address<gpu::vec2>(), background, eye_index},
-                      size_tiles.x, size_tiles.y);
+    const gpu::RasterizePass rasterize{buffers.eyes(),
+                                       buffers.visible.splats(),
+                                       sorted.values,
+                                       ranges,
+                                       target.image->colours.address<gpu::vec4>(),
+                                       target.image->depths.address<float>(),
+                                       target.stereo_pixels,
+                                       tiles.tile_list,
+                                       buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                       target.background,
+                                       eye};
+    if (mask == nullptr) {
+        commands.dispatch(rasterizeKernel(target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
+    } else {
+        commands.dispatchIndirect(rasterizeKernel(target.kept, true), rasterize, buffers.state, offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
+    }
 }
 
 }  // namespace binosplat

@@ -7,20 +7,39 @@
 //   5_bin         a (tile, splat) pair for each tile a splat meets
 //   6_sort_tiles  the pairs by tile, front to back within
 //   7_rasterize   blending: colour, alpha and depth
+//   8, 9          the other eye from this one: see stereo_passes.h
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/passes/frame_buffers.h"
 #include "shaders/shared/passes.h"
 
+#include <map>
 #include <string>
 
 namespace binosplat {
 
-// Which of an eye's values the rasterizer keeps beside the colour.
+// What the rasterizer writes beside the colour.
 struct Kept {
-    bool depth = false;
-    bool inverse_depth_moments = false;
+    bool depth = false;                  // D, to EyeImage::depths
+    bool stereo_pixels = false;          // StereoPixel of each pixel, as nothing has reached it yet
+    bool inverse_depth_moments = false;  // with I and J in it
+};
+
+// The tiles that are rendered; see 8g_select.
+struct TileMask {
+    gpu::DeviceAddress<gpu::uint> tiles_before, tile_list;
+};
+
+// One eye's part of a frame.
+struct EyeTarget {
+    int eye = 0;   // index into FrameState::eyes
+    int list = 0;  // of the visible splats
+    glm::uvec2 size_tiles{0, 0};
+    const EyeImage* image = nullptr;
+    gpu::DeviceAddress<gpu::StereoPixel> stereo_pixels;
+    glm::vec3 background{0.0f};
+    Kept kept;
 };
 
 class Passes {
@@ -34,17 +53,25 @@ public:
                        const std::string& role) const;
     // Passes 2 and 3 alone, once more, by the depths of another eye.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role) const;
-    // Passes 4 to 7: the picture of `eye` from the splats in list `list`.
-    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int eye, int list, glm::uvec2 size_tiles, const EyeImage& image,
-                   const glm::vec3& background, Kept kept, const std::string& role) const;
+    // Passes 4 to 7: the picture of an eye.
+    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role);
+    // The same under a mask: the other tiles stay as they are.
+    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
+                     const std::string& role);
 
 private:
-    [[nodiscard]] const Kernel& rasterizeKernel(Kept kept) const;
+    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
+                const std::string& role);
+    // Made when a mode first wants it.
+    const Kernel& rasterizeKernel(Kept kept, bool masked);
+    const Kernel& maskedKernel(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants);
 
+    const Context& context_;
+    std::uint32_t sh_degree_, threads_per_cell_;
     Scan scan_;
     Sort sort_;
-    Kernel cull_, compact_, project_, bin_, tile_ranges_;
-    Kernel rasterize_colour_, rasterize_depth_, rasterize_moments_;
+    Kernel cull_, compact_, project_, project_masked_, bin_, bin_masked_, tile_ranges_;
+    std::map<std::uint32_t, Kernel> rasterize_;
 };
 
 }  // namespace binosplat

@@ -29,3 +29,25 @@ uint scanGroup(uint value, out uint total) {
     total = subgroup_sums[kGroupSize];
     return subgroup_sums[gl_SubgroupID] + before_in_subgroup;
 }
+
+// The greatest `value` of the threads up to and with this one; `greatest` is that of all. Every thread must call it.
+uint scanGroupMax(uint value, out uint greatest) {
+    const uint in_subgroup = subgroupInclusiveMax(value);
+    barrier();
+    if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) { subgroup_sums[gl_SubgroupID] = in_subgroup; }
+    barrier();
+    if (gl_SubgroupID == 0) {
+        uint carry = 0;
+        for (uint first = 0; first < gl_NumSubgroups; first += gl_SubgroupSize) {
+            const uint s = first + gl_SubgroupInvocationID;
+            const uint own = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
+            const uint before = subgroupExclusiveMax(own);
+            if (s < gl_NumSubgroups) { subgroup_sums[s] = max(carry, before); }
+            carry = max(carry, subgroupMax(own));
+        }
+        if (gl_SubgroupInvocationID == 0) { subgroup_sums[kGroupSize] = carry; }
+    }
+    barrier();
+    greatest = subgroup_sums[kGroupSize];
+    return max(subgroup_sums[gl_SubgroupID], in_subgroup);
+}

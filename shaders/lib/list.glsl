@@ -8,5 +8,6 @@ DispatchSize dispatchOver(uint count, uint group_items) {
 // A list of `needed` items, or an empty one if that is more than `capacity`: the frame is then void and done again.
 ListState makeList(uint needed, uint capacity) {
     const uint count = needed <= capacity ? needed : 0;
-    return ListState(needed, count, dispatchOver(count, kGroupSize), dispatchOver(count, kScanBlock), dispatchOver(count, kSortBlock));
+    return ListState(needed, count, dispatchOver(count, kGroupSize), dispatchOver(count, kScanBlock), dispatchOver(count, kSortBlock),
+                     dispatchOver(count, 1));
 }

@@ -54,6 +54,33 @@ BINOSPLAT_CONSTANT float kMaxPlaneSlope = 1e15f;
 // Outlines are widened by this much, in pixels: a hundred times the rounding of a coordinate in a 2048 px image.
 BINOSPLAT_CONSTANT float kOutlinePadding = 1.0f / 64.0f;
 
+// What the reprojection takes for a pixel's depth: D as the paper writes it, D/A, or A/I, the mean of the disparity.
+BINOSPLAT_CONSTANT uint kDepthSum = 0;
+BINOSPLAT_CONSTANT uint kDepthMean = 1;
+BINOSPLAT_CONSTANT uint kDepthInverse = 2;
+
+// What made a pixel of the affiliated eye, before patching.
+BINOSPLAT_CONSTANT uint kCovered = 0;
+BINOSPLAT_CONSTANT uint kGap = 1;
+BINOSPLAT_CONSTANT uint kHole = 2;
+
+BINOSPLAT_CONSTANT uint kNoComponent = 0xffffffffu;
+
+// Why a tile is rendered again; 0: it is not.
+BINOSPLAT_CONSTANT uint kTileEdge = 1;
+BINOSPLAT_CONSTANT uint kTileCenter = 2;
+BINOSPLAT_CONSTANT uint kTilePredicted = 3;
+
+// Expected squared errors are summed in fixed point, so that the sum does not depend on the order: steps of 2^-16; a pixel's
+// is at most kMaxPixelError, so that a tile's sum stays under 2^31.
+BINOSPLAT_CONSTANT float kErrorSteps = 65536.0f;
+BINOSPLAT_CONSTANT float kMaxPixelError = 64.0f;
+// A spread of disparity beyond this many pixels is not a blur any more: the error stops growing with it.
+BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
+
+// Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
+BINOSPLAT_CONSTANT uint kDepthBins = 1024;
+
 BINOSPLAT_END_SHARED
 
 #endif

@@ -42,6 +42,7 @@ struct ProjectPass {
     UVec2s tile_boxes;       // out: x0 | y0 << 16, x1 | y1 << 16, half open
     Uints tile_counts;       // out
     EyeCounterss counters;   // out
+    Uints tiles_before;      // under a mask: how many masked tiles there are before each, and one more for all
     uint chunk_bits;
     uint eye;
 };
@@ -56,6 +57,8 @@ struct BinPass {
     ListStates pairs;
     Uints tiles;  // out
     Uints ranks;  // out: indices into `splats`
+    Uints tiles_before;  // under a mask, as in ProjectPass
+    Uints tile_list;     // likewise: the masked tiles
     uint eye;
 };
 
@@ -72,11 +75,96 @@ struct RasterizePass {
     ProjectedSplats splats;
     Uints ranks;
     UVec2s ranges;
-    Vec4s colours;                 // out, a value a pixel: sum w c + T background, and sum w
-    Floats depths;                 // out: D = sum w z
-    Vec2s inverse_depth_moments;   // out where asked for: I = sum w/z, J = sum w/z^2
+    Vec4s colours;         // out, a value a pixel: sum w c + T background, and sum w
+    Floats depths;         // out where asked for: D = sum w z
+    StereoPixels moments;  // out where asked for: I = sum w/z and J = sum w/z^2; nothing has reached the pixel yet
+    Uints tile_list;          // under a mask: the tiles to render
+    ListStates masked_tiles;  // likewise: how many
     vec3 background;
     uint eye;
+};
+
+// 8a_reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
+struct ReprojectPass {
+    StereoViews stereo;
+    Vec4s colours;  // dominant
+    Floats depths;
+    StereoPixels pixels;  // in: moments of the dominant pixel; out: `nearest` of the affiliated one
+};
+
+// 8b_resolve: every pixel of the affiliated eye gets a place in the dominant picture, and tiles their expected error.
+struct ResolvePass {
+    StereoViews stereo;
+    Vec4s colours;  // dominant
+    StereoPixels pixels;
+    Uints tile_errors;  // out, where errors are predicted
+    StereoCounterss counters;
+};
+
+// 8c_depth_bounds: how often each depth occurs in the dominant picture.
+struct DepthBoundsPass {
+    StereoViews stereo;
+    Vec4s colours;
+    Floats depths;
+    StereoPixels pixels;
+    Uints bins;  // out: kDepthBins counts
+};
+
+// 8d_edge_rois: the borders that the dominant eye does not see (paper, section 3.5, step 1).
+struct EdgeRoisPass {
+    StereoViews stereo;
+    Uints bins;
+    Uints tile_kinds;  // out
+    StereoCounterss counters;
+};
+
+// 8e_components: connected holes inside the picture (paper, section 3.5, step 2), in steps: see the shader.
+struct ComponentsPass {
+    StereoViews stereo;
+    ComponentPixels pixels;
+    PixelBoxes boxes;  // out: of each component
+    Uints tile_kinds;  // in and out
+    StereoCounterss counters;
+    uint box_capacity;
+};
+
+// 8f_newcomers: splats that only the affiliated eye sees, by the tiles they stand in.
+struct NewcomersPass {
+    SceneChunks chunks;
+    EyeViews eyes;
+    StereoViews stereo;
+    StereoPixels pixels;
+    Uints order;
+    ListStates visible;
+    Uints dominant_offsets;  // prefix sums of the dominant eye's tile counts
+    ListStates dominant_pairs;
+    Uints tile_errors;
+    StereoCounterss counters;
+    uint chunk_bits;
+    uint eye;
+};
+
+// 8g_select: the tiles that are rendered again, as a list and as prefix sums.
+struct SelectPass {
+    StereoViews stereo;
+    Uints tile_errors;
+    Uints tile_kinds;    // in or, where errors are predicted, out
+    Uints tile_list;     // out
+    Uints tiles_before;  // out
+    ListStates visible;
+    ListStates masked_tiles;    // out
+    ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
+    StereoCounterss counters;
+};
+
+// 9_resample: the colour of each pixel of the affiliated eye that no tile will render again.
+struct ResamplePass {
+    StereoViews stereo;
+    Vec4s dominant;
+    StereoPixels pixels;  // in
+    Vec4s affiliated;     // out, in the same place
+    Uints tile_kinds;
+    Uints pixel_classes;  // out: 2 bits a pixel, kCovered, kGap or kHole
 };
 
 // Exclusive prefix sums of `values` in place, in three steps: sums of blocks, their sums, and the blocks again.

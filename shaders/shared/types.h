@@ -70,8 +70,77 @@ struct ListState {
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_scan_block;  // workgroups of kScanBlock
     DispatchSize per_sort_block;  // workgroups of kSortBlock
+    DispatchSize per_tile;        // a workgroup an item, of lists of tiles
 };
 BINOSPLAT_ARRAY_OF(ListState, ListStates);
+
+// How pixels of one eye move into the other. With the pixel (x, y, 1) and its inverse depth w, the other eye sees it at
+//   ((x, y, 1) + excess (x, y, 1) + shift w), divided by its third component, which is also the ratio of the depths.
+// `excess` is K' R K^-1 less the identity, `shift` is K' t: both are exactly 0 for equal eyes, and so nothing moves.
+struct PixelMap {
+    vec3 excess_x;  // rows
+    vec3 excess_y;
+    vec3 excess_z;
+    vec3 shift;
+};
+
+// What the reprojection is told at the start of a frame.
+struct StereoView {
+    PixelMap affiliated_from_dominant;
+    PixelMap dominant_from_affiliated;
+    uvec2 size_px;     // of both eyes
+    uvec2 size_tiles;
+    uint depth_choice;   // kDepthSum, kDepthMean or kDepthInverse
+    uint gap_px;         // runs of uncovered pixels up to this long are gaps; longer ones are holes
+    uint margin_px;      // paper: around what needs rendering
+    uint edge_samples;   // paper: N, along each edge
+    uint tight_edges;    // 1: bounds of what near content uncovers as well
+    uint center_rois;    // paper: 1: also holes inside the picture
+    uint budget_tiles;   // predicted: at most so many tiles are rendered again
+    float hole_error;    // predicted: what a hole's pixel counts for
+    float newcomer_error;  // predicted: what full coverage by splats that the dominant eye does not see counts for
+};
+BINOSPLAT_ARRAY_OF(StereoView, StereoViews);
+
+// A pixel while one eye becomes the other: the dominant eye's moments and then, at the affiliated eye's pixel, what reached it.
+// It lies where the affiliated eye's colour comes to lie (a vec4).
+struct StereoPixel {
+    float inverse_depth_sum;         // I of the dominant pixel
+    float inverse_depth_square_sum;  // J of the dominant pixel
+    uint nearest;  // 0: nothing reached it; else 1 + the bits of the greatest inverse depth that did. Resolved: see packAnchor
+    float resolved_inverse_depth;    // after gaps and holes are filled
+};
+BINOSPLAT_ARRAY_OF(StereoPixel, StereoPixels);
+
+// The same sixteen bytes while holes are grouped.
+struct ComponentPixel {
+    uint parent;     // a pixel of the same component, or the pixel itself: the root; kNoComponent: no hole
+    uint component;  // of a root
+    uint nearest;
+    float resolved_inverse_depth;
+};
+BINOSPLAT_ARRAY_OF(ComponentPixel, ComponentPixels);
+
+// What a stage says of the affiliated picture, for the report and for later stages.
+struct StereoCounters {
+    uint covered_pixels;
+    uint gap_pixels;
+    uint hole_pixels;
+    uint components;
+    uint edge_tiles;
+    uint center_tiles;
+    uint predicted_tiles;
+    uint newcomers;
+    uvec4 borders_px;  // paper: left, top, right, bottom
+    DispatchSize component_groups;  // paper: workgroups over the pixels, none if there is no hole
+};
+BINOSPLAT_ARRAY_OF(StereoCounters, StereoCounterss);
+
+// A rectangle of pixels, half open; a component of holes.
+struct PixelBox {
+    uint x0, y0, x1, y1;
+};
+BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
 // Counters for the report that no list states.
 struct EyeCounters {

@@ -1,0 +1,125 @@
+// Recording the passes that make one eye from the other.
+#include "engine/passes/stereo_passes.h"
+
+#include "engine/geometry.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace binosplat {
+namespace {
+
+// Components of holes beyond this many stand for themselves, pixel by pixel.
+constexpr gpu::uint kMarkGroups = 64;
+
+glm::dmat3 matrixOf(const Intrinsics& k) { return glm::dmat3(k.fx, 0, 0, 0, k.fy, 0, k.cx, k.cy, 1); }
+
+// Target pixels from source pixels (paper, equations 3 to 5, with the pixel's inverse depth in place of its depth).
+gpu::PixelMap pixelMap(const Eye& target, const Eye& source) {
+    const Pose target_from_source = compose(inverse(target.world_from_camera), source.world_from_camera);
+    const Intrinsics &k = target.intrinsics, &l = source.intrinsics;
+    const bool same_intrinsics = k.fx == l.fx && k.fy == l.fy && k.cx == l.cx && k.cy == l.cy;
+    const glm::dquat& q = target.world_from_camera.orientation;
+    const glm::dquat& r = source.world_from_camera.orientation;
+    const bool parallel = q.w == r.w && q.x == r.x && q.y == r.y && q.z == r.z;
+    glm::dmat3 excess(0.0);
+    if (!(same_intrinsics && parallel)) {
+        const glm::dmat3 rotation = parallel ? glm::dmat3(1.0) : glm::mat3_cast(target_from_source.orientation);
+        excess = matrixOf(k) * rotation * glm::inverse(matrixOf(l)) - glm::dmat3(1.0);
+    }
+    const glm::dvec3 shift = matrixOf(k) * target_from_source.position;
+    const auto row = [&](int i) { return glm::vec3(excess[0][i], excess[1][i], excess[2][i]); };
+    return {row(0), row(1), row(2), glm::vec3(shift)};
+}
+
+}  // namespace
+
+gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const StereoSettings& settings) {
+    const glm::uvec2 tiles = tilesOf(dominant.size_px);
+    gpu::StereoView view{};
+    view.affiliated_from_dominant = pixelMap(affiliated, dominant);
+    view.dominant_from_affiliated = pixelMap(dominant, affiliated);
+    view.size_px = dominant.size_px;
+    view.size_tiles = tiles;
+    view.depth_choice = settings.depth_choice;
+    view.gap_px = settings.gap_px;
+    view.margin_px = settings.margin_px;
+    view.edge_samples = settings.edge_samples;
+    view.tight_edges = settings.tight_edges ? 1 : 0;
+    view.center_rois = settings.center_rois ? 1 : 0;
+    view.budget_tiles = static_cast<gpu::uint>(std::floor(settings.budget * tiles.x * tiles.y));
+    view.hole_error = static_cast<float>(settings.hole_error);
+    view.newcomer_error = static_cast<float>(settings.newcomer_error);
+    return view;
+}
+
+StereoPasses::StereoPasses(const Context& context) : context_(context) {}
+
+Kernel& StereoPasses::variant(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
+    if (!kernel.pipeline()) { kernel = Kernel(context_, shader, push_bytes, constants); }
+    return kernel;
+}
+
+void StereoPasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
+                          const StereoSettings& settings, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated) {
+    const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
+    const auto counters = buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
+    const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0));
+    const auto colours = dominant.colours.address<gpu::vec4>();
+    const auto depths = dominant.depths.address<float>();
+    const auto pixels = affiliated.colours.address<gpu::StereoPixel>();
+    const glm::uvec2 size_px = stereo.sizePx(), tiles = tilesOf(size_px);
+    const bool read_depth = settings.depth_choice != gpu::kDepthInverse;
+    const bool predict = settings.patching == Patching::kPredicted;
+    const bool paper = settings.patching == Patching::kPaper;
+
+    commands.beginPass("affiliated 8a_reproject");
+    commands.fillZero(stereo.tiles());
+    commands.dispatch(variant(reproject_[read_depth], "8a_reproject", sizeof(gpu::ReprojectPass), {read_depth}), gpu::ReprojectPass{view, colours, depths, pixels},
+                      tiles.x, tiles.y);
+    commands.beginPass("affiliated 8b_resolve");
+    commands.dispatch(variant(resolve_[predict], "8b_resolve", sizeof(gpu::ResolvePass), {predict}),
+                      gpu::ResolvePass{view, colours, pixels, stereo.tileErrors(), counters}, size_px.y);
+    if (paper) {
+        commands.beginPass("affiliated 8c_depth_bounds");
+        commands.dispatch(variant(depth_bounds_[read_depth], "8c_depth_bounds", sizeof(gpu::DepthBoundsPass), {read_depth}),
+                          gpu::DepthBoundsPass{view, colours, depths, pixels, stereo.depthBins()}, tiles.x, tiles.y);
+        commands.beginPass("affiliated 8d_edge_rois");
+        commands.dispatch(variant(edge_rois_, "8d_edge_rois", sizeof(gpu::EdgeRoisPass), {}),
+                          gpu::EdgeRoisPass{view, stereo.depthBins(), stereo.tileKinds(), counters}, 1);
+    }
+    if (paper && settings.center_rois) {
+        commands.beginPass("affiliated 8e_components");
+        const gpu::ComponentsPass pass{view, affiliated.colours.address<gpu::ComponentPixel>(), stereo.boxes(), stereo.tileKinds(), counters, stereo.boxCapacity()};
+        const std::uint64_t groups = offsetof(FrameState, stereo_counters) + offsetof(gpu::StereoCounters, component_groups);
+        for (std::uint32_t step = 0; step < 4; ++step) {
+            commands.dispatchIndirect(variant(components_[step], "8e_components", sizeof(gpu::ComponentsPass), {step}), pass, buffers.state, groups);
+        }
+        commands.dispatch(variant(components_[4], "8e_components", sizeof(gpu::ComponentsPass), {4u}), pass, kMarkGroups);
+    }
+    if (predict) {
+        commands.beginPass("affiliated 8f_newcomers");
+        const std::uint64_t visible_list = FrameBuffers::visibleList(0);
+        commands.dispatchIndirect(
+            variant(newcomers_, "8f_newcomers", sizeof(gpu::NewcomersPass), {}),
+            gpu::NewcomersPass{scene.chunks(), buffers.eyes(), view, pixels, buffers.visible.order().values, visible, buffers.visible.tileCounts(),
+                               buffers.state.address<gpu::ListState>(FrameBuffers::pairList(dominant_eye)), stereo.tileErrors(), counters, scene.chunkBits(),
+                               static_cast<gpu::uint>(1 - dominant_eye)},
+            buffers.state, visible_list + offsetof(gpu::ListState, per_item));
+    }
+    if (paper || predict) {
+        commands.beginPass("affiliated 8g_select");
+        commands.dispatch(variant(select_[predict], "8g_select", sizeof(gpu::SelectPass), {predict}),
+                          gpu::SelectPass{view, stereo.tileErrors(), stereo.tileKinds(), stereo.tileList(), stereo.tilesBefore(), visible,
+                                          buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                          buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters},
+                          1);
+    }
+    commands.beginPass("affiliated 9_resample");
+    commands.dispatch(variant(resample_, "9_resample", sizeof(gpu::ResamplePass), {}),
+                      gpu::ResamplePass{view, colours, pixels, affiliated.colours.address<gpu::vec4>(), stereo.tileKinds(),
+                                        stereo.pixelClasses().address<gpu::uint>()},
+                      tiles.x, tiles.y);
+}
+
+}  // namespace binosplat

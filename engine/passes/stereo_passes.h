@@ -1,0 +1,65 @@
+// One eye from the other: reprojection, and the tiles that must be rendered again.
+//
+//   8a_reproject     the dominant eye's pixels go to where the affiliated eye sees them
+//   8b_resolve       every pixel of the affiliated eye gets a place in the dominant picture; its expected error
+//   8c_depth_bounds  paper: how deep the picture is
+//   8d_edge_rois     paper: the borders that the dominant eye does not see
+//   8e_components    paper, on request: connected holes inside the picture
+//   8f_newcomers     predicted: splats that only the affiliated eye sees
+//   8g_select        the tiles that are rendered again
+//   9_resample       the colour of all other pixels
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/gpu/gpu_scene.h"
+#include "engine/passes/frame_buffers.h"
+#include "shaders/shared/passes.h"
+
+#include <array>
+
+namespace binosplat {
+
+// Who makes the affiliated picture's tiles.
+enum class Patching {
+    kNone,       // nobody: reprojection and interpolation alone
+    kPaper,      // edge ROIs, and centre ROIs if asked for
+    kPredicted,  // the tiles of the greatest expected error
+};
+
+// What the stereo passes are told beside the two cameras.
+struct StereoSettings {
+    Patching patching = Patching::kPredicted;
+    gpu::uint depth_choice = gpu::kDepthInverse;
+    gpu::uint gap_px = 2;
+    gpu::uint margin_px = 32;
+    gpu::uint edge_samples = 64;
+    bool tight_edges = false;
+    bool center_rois = false;
+    double budget = 0.15;  // share of the tiles
+    double hole_error = 0.7;
+    double newcomer_error = 0.3;
+};
+
+// How `settings` and the cameras look to the device.
+gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const StereoSettings& settings);
+
+class StereoPasses {
+public:
+    explicit StereoPasses(const Context& context);
+
+    // Passes 8 and 9. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo
+    // pixels, which the affiliated eye's colours replace but for the tiles that are masked.
+    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo, const StereoSettings& settings,
+                int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
+
+private:
+    Kernel& variant(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants);
+
+    const Context& context_;
+    // Made when a mode first wants them; [1]: the variant that reads D, predicts errors, and so on.
+    std::array<Kernel, 2> reproject_, resolve_, depth_bounds_, select_;
+    std::array<Kernel, 5> components_;
+    Kernel edge_rois_, newcomers_, resample_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,62 @@
+// 8f: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
+// so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/splat.glsl"
+#include "lib/outline.glsl"
+#include "lib/front_part.glsl"
+#include "lib/tile_box.glsl"
+#include "lib/stereo.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
+
+// Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
+const uint kMaxTiles = 1024;
+
+// Whether the splat's centre, held to the picture, is nearer than what reached that pixel.
+bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
+    const uvec2 at = uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1)));
+    return inverse_depth > pass.pixels.at[at.y * stereo.size_px.x + at.x].resolved_inverse_depth;
+}
+
+void main() {
+    const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
+    const uint count = pass.visible.at[0].count;
+    if (rank >= count) { return; }
+    const uint next = rank + 1 < count ? pass.dominant_offsets.at[rank + 1] : pass.dominant_pairs.at[0].count;
+    if (next != pass.dominant_offsets.at[rank]) { return; }  // the dominant eye sees it
+
+    const uint i = pass.order.at[rank];
+    SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
+    const EyeView eye = pass.eyes.at[pass.eye];
+    const StereoView stereo = pass.stereo.at[0];
+    const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
+    bool has_reference;
+    ProjectedSplat p = projectGeometry(splat, eye, has_reference);
+    p.opacity_colour = packOpacityColour(splat.opacity, has_reference, vec3(0));
+    const Outline outline = outlineOfProjected(p);
+    const ivec4 box = tileBox(splat, eye, outline);
+    const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));
+    if (tiles == 0) { return; }
+    const vec2 middle_px = has_reference ? p.reference_px : vec2(box.xy + box.zw) * (0.5 * float(kTileSize));
+    if (has_reference && !standsInFront(stereo, middle_px, p.inverse_depth)) { return; }
+    atomicAdd(pass.counters.at[0].newcomers, 1);
+
+    // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen and that of the low-pass.
+    const float area_px = 3.14159265 * (1 / kLowPass + p.inverse_depth * p.inverse_depth / (p.plane_from_pixel.x * abs(p.plane_from_pixel.z)));
+    const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
+    const float error = stereo.newcomer_error * splat.opacity;
+    const uint steps = uint(min(error * error * pixels, kMaxPixelError * 16) * kErrorSteps);
+    uint added = 0;
+    for (int row = box.y; row < box.w && added < kMaxTiles; ++row) {
+        const ivec2 in_row = tilesInRow(outline, uint(row), box);
+        for (int x = in_row.x; x < in_row.y && added < kMaxTiles; ++x, ++added) {
+            const uint tile = uint(row) * eye.size_tiles.x + uint(x);
+            // Sums stop at half of what a word holds; whatever gets there is rendered again anyway.
+            if (pass.tile_errors.at[tile] < 0x7fffffffu) { atomicAdd(pass.tile_errors.at[tile], steps); }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+// 8g: the tiles that are rendered again. Where errors are predicted: the worst of them, up to the budget, found by radix
+// selection. In one workgroup, which also lists them and sums the list up. 
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/list.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { SelectPass pass; };
+layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
+
+shared uint digit_counts[256];
+shared uint chosen_digit, left_to_choose;
+
+// The error that the `wanted`-th worst tile has (1 counts from the worst), and how many tiles of just that error are wanted.
+uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
+    uint prefix = 0;
+    left_to_choose = wanted;
+    for (int shift = 24; shift >= 0; shift -= 8) {
+        barrier();
+        digit_counts[gl_LocalInvocationIndex] = 0;
+        barrier();
+        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kGroupSize) {
+            const uint error = pass.tile_errors.at[tile];
+            if (shift == 24 || (error >> (shift + 8)) == (prefix >> (shift + 8))) { atomicAdd(digit_counts[(error >> shift) & 255], 1); }
+        }
+        barrier();
+        // From the greatest digit down: thread t holds digit 255 - t.
+        const uint digit = 255 - gl_LocalInvocationIndex;
+        const uint count = digit_counts[digit];
+        const uint wanted_here = left_to_choose;
+        uint total;
+        const uint before = scanGroup(count, total);
+        if (before < wanted_here && before + count >= wanted_here) {
+            chosen_digit = digit;
+            left_to_choose = wanted_here - before;
+        }
+        barrier();
+        prefix |= chosen_digit << shift;
+    }
+    barrier();
+    of_threshold = left_to_choose;
+    return prefix;
+}
+
+void main() {
+    const StereoView stereo = pass.stereo.at[0];
+    const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
+    const uint wanted = min(stereo.budget_tiles, tiles);
+    uint of_threshold = 0;
+    const uint threshold = kPredicted && wanted > 0 ? findThreshold(tiles, wanted, of_threshold) : 0;
+
+    uint listed = 0, at_threshold = 0;
+    for (uint begin = 0; begin < tiles; begin += kGroupSize) {
+        const uint tile = begin + gl_LocalInvocationIndex;
+        bool selected = false;
+        if (kPredicted) {
+            const uint error = tile < tiles ? pass.tile_errors.at[tile] : 0;
+            const bool equal = error == threshold && error > 0;
+            uint equal_here;
+            const uint equal_before = at_threshold + scanGroup(equal ? 1 : 0, equal_here);
+            at_threshold += equal_here;
+            selected = wanted > 0 && error > 0 && (error > threshold || (equal && equal_before < of_threshold));
+            if (tile < tiles) { pass.tile_kinds.at[tile] = selected ? kTilePredicted : 0; }
+        } else {
+            selected = tile < tiles && pass.tile_kinds.at[tile] != 0;
+        }
+        uint listed_here;
+        const uint place = listed + scanGroup(selected ? 1 : 0, listed_here);
+        if (tile < tiles) { pass.tiles_before.at[tile] = place; }
+        if (selected) { pass.tile_list.at[place] = tile; }
+        listed += listed_here;
+    }
+    if (gl_LocalInvocationIndex == 0) {
+        pass.tiles_before.at[tiles] = listed;
+        pass.masked_tiles.at[0] = makeList(listed, tiles);
+        const uint visible = listed > 0 ? pass.visible.at[0].count : 0;
+        pass.masked_visible.at[0] = makeList(visible, visible);
+        if (kPredicted) { pass.counters.at[0].predicted_tiles = listed; }
+    }
+}

@@ -1,0 +1,26 @@
+// Between the eyes: where a pixel with a given inverse depth lies in the other eye, and what is known of its depth.
+
+// Third component: depth there over depth here; not positive behind the other eye.
+vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
+    const vec3 at = vec3(pixel_px, 1);
+    const vec3 excess = vec3(dot(map.excess_x, at), dot(map.excess_y, at), dot(map.excess_z, at)) + map.shift * inverse_depth;
+    const float depth_ratio = 1 + excess.z;
+    return vec3(pixel_px + (excess.xy - pixel_px * excess.z) / depth_ratio, depth_ratio);
+}
+
+// Pixels that the other eye's view moves by for a unit of inverse depth, as a vector.
+vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return map.shift.xy - pixel_px * map.shift.z; }
+
+// The inverse depth that stands for a dominant pixel; 0, i.e. infinitely far, where nothing was blended.
+float chosenInverseDepth(uint choice, float alpha, float depth_sum, float inverse_depth_sum) {
+    if (!(alpha > 0)) { return 0; }
+    if (choice == kDepthInverse) { return inverse_depth_sum / alpha; }
+    return choice == kDepthMean ? alpha / depth_sum : 1 / depth_sum;
+}
+
+// What StereoPixel::nearest says once the pixel is resolved: covered pixels keep what reached them, the others have the highest
+// bit set, and below it their class and the column whose place they repeat.
+uint packUncovered(uint column, uint pixel_class) { return 0x80000000u | (pixel_class << 24) | column; }
+bool isUncovered(uint packed) { return (packed & 0x80000000u) != 0; }
+uint anchorColumn(uint packed) { return packed & 0xffffffu; }
+uint pixelClass(uint packed) { return isUncovered(packed) ? (packed >> 24) & 3 : kCovered; }
