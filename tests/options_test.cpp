@@ -44,7 +44,7 @@ Scene makeBox() {
 
 BenchResult makeResult(const std::string& scene, const std::string& mode, std::uint64_t splats, double total_ms) {
     BenchResult result;
-    result.series = "s";
+    result.series = std::string("s");
     result.scene = scene;
     result.mode = mode;
     result.splats = splats;
