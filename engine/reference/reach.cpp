@@ -136,7 +136,7 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
     const glm::dvec2 grid(tileGrid(size_px));
     const auto countTiles = [&](double middle, double last) {
         const double begin = std::clamp(std::floor((middle - radius) / kTileSize), 0.0, last);
-        const double end = std::clamp(std::ceil((middle + radius) / kTileSize), 0.0, last);
+        const double end = std::clamp(std::floor((middle + radius + kTileSize - 1) / kTileSize), 0.0, last);
         return end > begin ? static_cast<std::uint64_t>(end - begin) : std::uint64_t{0};
     };
     if (!std::isfinite(centre.x) || !std::isfinite(centre.y) || !std::isfinite(radius)) {

@@ -1,0 +1,138 @@
+// A scene as every stage of the twin leaves it, and what the device needs to take over at any of them.
+#pragma once
+
+#include "engine/gpu/gpu_scene.h"
+#include "shaders/shared/passes.h"
+#include "tests/gpu_fixture.h"
+#include "tests/gpu_scenes.h"
+
+#include <bit>
+#include <cstddef>
+#include <glm/gtc/packing.hpp>
+
+namespace binosplat::test {
+
+// Outputs of the twin's passes, in frame order.
+struct TwinStages {
+    TwinStages(const ViewedScene& view, const reference::Settings& settings)
+        : visible(reference::cull(view.scene, {&view.eye, 1}, settings)),
+          compacted(reference::compact(view.scene, visible, view.eye, settings)),
+          order(reference::sortDepth(compacted, settings)),
+          splats(reference::project(view.scene, order, view.eye, settings)),
+          pairs(reference::bin(splats, view.eye.size_px, settings)),
+          sorted_pairs(pairs) {
+        reference::sortTiles(sorted_pairs, settings);
+        ranges = reference::tileRanges(sorted_pairs, view.eye.size_px);
+    }
+
+    std::vector<std::uint8_t> visible;
+    reference::Visible compacted;
+    std::vector<std::uint32_t> order;
+    std::vector<reference::ProjectedSplat> splats;
+    std::vector<reference::TilePair> pairs, sorted_pairs;
+    std::vector<reference::TileRange> ranges;
+};
+
+inline gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
+    const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
+    gpu::EyeView view{};
+    view.camera_from_world_x = world_from_camera[0];
+    view.camera_from_world_y = world_from_camera[1];
+    view.camera_from_world_z = world_from_camera[2];
+    view.position = eye.world_from_camera.position - scene_origin;
+    view.focal_px = {eye.intrinsics.fx, eye.intrinsics.fy};
+    view.principal_px = {eye.intrinsics.cx, eye.intrinsics.cy};
+    view.size_px = eye.size_px;
+    view.size_tiles = (eye.size_px + 15u) / 16u;
+    view.near = static_cast<float>(near);
+    view.max_inverse_depth = static_cast<float>(1.0 / near);
+    return view;
+}
+
+// A scene and its eyes on the device.
+struct SceneOnDevice {
+    SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
+        : scene(gpu.context(), host_scene), eyes(gpu.upload("eyes", [&] {
+              std::vector<gpu::EyeView> views;
+              for (const Eye& eye : host_eyes) { views.push_back(viewOf(eye, scene.origin(), near)); }
+              return views;
+          }())) {}
+
+    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyeViews() const { return eyes.address<gpu::EyeView>(); }
+
+    GpuScene scene;
+    Buffer eyes;
+};
+
+// The depth's key and back (shaders/2_compact.comp): integers in the order of the floats.
+inline std::uint32_t sortableBits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
+}
+inline float floatOfKey(std::uint32_t key) { return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
+
+// ProjectedSplat::opacity_colour: 18 bits -log2(opacity) in steps of 2^-15, a bit "no reference", three half floats without sign.
+struct OpacityColour {
+    double opacity;
+    bool has_reference;
+    glm::dvec3 colour;
+};
+inline OpacityColour unpack(glm::uvec2 packed) {
+    const std::uint64_t bits = (std::uint64_t{packed.y} << 32) | packed.x;
+    const auto half = [&](int first_bit) {
+        return static_cast<double>(glm::unpackHalf1x16(static_cast<std::uint16_t>((bits >> first_bit) & 0x7fff)));
+    };
+    return {std::exp2(-static_cast<double>(bits & 0x3ffff) / 32768.0), ((bits >> 18) & 1) == 0, {half(19), half(34), half(49)}};
+}
+inline glm::uvec2 pack(const OpacityColour& value) {
+    const auto half = [&](int channel) { return std::uint64_t{glm::packHalf1x16(static_cast<float>(value.colour[channel]))} & 0x7fff; };
+    const auto opacity = static_cast<std::uint64_t>(std::min(std::round(-std::log2(value.opacity) * 32768.0), 262143.0));
+    const std::uint64_t bits =
+        opacity | (std::uint64_t{value.has_reference ? 0u : 1u} << 18) | (half(0) << 19) | (half(1) << 34) | (half(2) << 49);
+    return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+}
+
+// The twin's splat as the device holds one.
+inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
+    gpu::ProjectedSplat result{};
+    result.reference_px = splat.low_pass ? splat.reference_px : splat.plane_offset;
+    result.plane_from_pixel = splat.disc ? glm::vec3(splat.plane_from_pixel) : glm::vec3(gpu::kMaxPlaneSlope, 0.0f, gpu::kMaxPlaneSlope);
+    result.perspective = splat.perspective;
+    result.inverse_depth = static_cast<float>(splat.disc ? splat.inverse_depth : 1.0 / splat.depth);
+    result.opacity_colour = pack({splat.opacity, splat.low_pass, splat.colour});
+    return result;
+}
+
+// What 4_project leaves for a list of splats, on the device.
+struct ProjectedOnDevice {
+    std::uint32_t count;
+    Buffer list, order, splats, tile_boxes, tile_counts, counters;
+
+    [[nodiscard]] std::vector<gpu::ProjectedSplat> readSplats(Gpu& gpu) const { return gpu.readBack<gpu::ProjectedSplat>(splats, count); }
+};
+
+inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order) {
+    const Kernel kernel(gpu.context(), "4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(device.scene.shDegree())});
+    const std::size_t count = order.size();
+    ProjectedOnDevice result{static_cast<std::uint32_t>(count),
+                             gpu.upload("list", std::vector{makeList(count)}),
+                             gpu.upload("order", order),
+                             gpu.allocate<gpu::ProjectedSplat>("splats", count),
+                             gpu.allocate<glm::uvec2>("tile boxes", count),
+                             gpu.allocate<std::uint32_t>("tile counts", count),
+                             gpu.upload("counters", std::vector{gpu::EyeCounters{}})};
+    gpu::ProjectPass pass{};
+    pass.chunks = device.scene.chunks();
+    pass.eyes = device.eyeViews();
+    pass.order = result.order.address<gpu::uint>();
+    pass.visible = result.list.address<gpu::ListState>();
+    pass.splats = result.splats.address<gpu::ProjectedSplat>();
+    pass.tile_boxes = result.tile_boxes.address<gpu::uvec2>();
+    pass.tile_counts = result.tile_counts.address<gpu::uint>();
+    pass.counters = result.counters.address<gpu::EyeCounters>();
+    pass.chunk_bits = device.scene.chunkBits();
+    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_item)); });
+    return result;
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,264 @@
+// Facts about the passes over splats, 1_cull to 4_project, each started from what the twin's pass before it left.
+#include "engine/passes/sort.h"
+#include "tests/pass_stages.h"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <map>
+
+using namespace binosplat;
+using test::Gpu;
+using test::SceneOnDevice;
+using test::TwinStages;
+using test::ViewedScene;
+
+namespace {
+
+constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
+
+const reference::Settings kSettings{};
+
+std::vector<ViewedScene> realScenes() {
+    return {test::viewBuiltin("builtin:atelier", {256, 256}, 20000), test::viewBuiltin("builtin:fence", {250, 190}),
+            test::viewBuiltin("builtin:slanted-wall", {256, 256}), test::viewBuiltin("builtin:step-edge", {256, 256})};
+}
+
+std::vector<ViewedScene> allScenes() {
+    std::vector<ViewedScene> scenes = realScenes();
+    scenes.push_back(test::viewCloud({200, 150}));
+    return scenes;
+}
+
+// What the device rounds when it takes a splat to the camera: both it and the eye are relative to the scene's origin.
+double distanceToRound(const glm::dvec3& origin, const glm::dvec3& position, const Eye& eye) {
+    return glm::length(position - origin) + glm::length(eye.world_from_camera.position - origin);
+}
+
+struct Culled {
+    std::vector<std::uint32_t> bits, group_counts;
+    [[nodiscard]] bool has(std::size_t splat) const { return ((bits[splat / 32] >> (splat % 32)) & 1) != 0; }
+};
+
+Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_count) {
+    const std::uint32_t count = device.scene.splatCount();
+    const std::size_t groups = (count + gpu::kGroupSize - 1) / gpu::kGroupSize;
+    const Kernel kernel(gpu.context(), "1_cull", sizeof(gpu::CullPass));
+    const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * 8), counts = gpu.allocate<std::uint32_t>("counts", groups);
+    gpu::CullPass pass{};
+    pass.chunks = device.scene.chunks();
+    pass.eyes = device.eyeViews();
+    pass.visible_bits = bits.address<gpu::uint>();
+    pass.group_counts = counts.address<gpu::uint>();
+    pass.splat_count = count;
+    pass.chunk_bits = device.scene.chunkBits();
+    pass.eye_count = eye_count;
+    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count); });
+    return {gpu.readBack<std::uint32_t>(bits, groups * 8), gpu.readBack<std::uint32_t>(counts, groups)};
+}
+
+// How far projected splats are from the twin's, in units of what rounding can do.
+struct FieldErrors {
+    std::map<std::string, double> worst;
+    std::size_t other_kind = 0, edge_on = 0;
+
+    void note(const std::string& field, double error, double unit) {
+        worst[field] = std::max(worst[field], std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error) / unit);
+    }
+
+    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
+              const glm::dvec3& origin) {
+        const test::OpacityColour packed = test::unpack(splat.opacity_colour);
+        if (packed.has_reference != truth.low_pass) {
+            ++other_kind;
+            return;
+        }
+        noteColour(packed, truth, view.scene, i);
+        const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
+        const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
+        const double rounding = kEpsilon * distanceToRound(origin, position, view.eye);  // of the centre in camera space
+        const double z = truth.depth;
+        if (truth.low_pass) {
+            const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
+            for (int axis = 0; axis < 2; ++axis) {
+                const double unit = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + kEpsilon * principal[axis];
+                note("reference_px", static_cast<double>(splat.reference_px[axis]) - truth.reference_px[axis], unit);
+            }
+            note("1/z", static_cast<double>(splat.inverse_depth) * z - 1.0, rounding / z);
+        }
+        if (splat.plane_from_pixel.x >= gpu::kMaxPlaneSlope) {
+            ++edge_on;
+            return;
+        }
+        // Everything else is divided by delta = t_w . c, whose relative error is rounding / delta. u/z and v/z are cross products of
+        // the length of c, over s delta and the focal length.
+        const glm::quat& q = view.scene.rotations[i];
+        const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
+        const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
+        const double row = rounding / delta * distanceToRound(origin, position, view.eye) / (scale * delta * std::min(focal.x, focal.y));
+        const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
+        note("A", plane_error.x, row);
+        note("B", plane_error.y, row);
+        note("D", plane_error.z, row);
+        for (int axis = 0; axis < 2; ++axis) {
+            const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
+            note("perspective", error * focal[axis], rounding / (delta * delta));
+        }
+        if (!truth.low_pass) {
+            const double size = std::max(view.eye.size_px.x, view.eye.size_px.y);
+            for (int axis = 0; axis < 2; ++axis) {
+                note("offset", static_cast<double>(splat.reference_px[axis]) - truth.plane_offset[axis], row * size);
+            }
+            note("1/z", static_cast<double>(splat.inverse_depth) - truth.inverse_depth, 3.0 * rounding / (delta * delta));
+        }
+    }
+
+private:
+    void noteColour(const test::OpacityColour& packed, const reference::ProjectedSplat& truth, const Scene& scene, std::uint32_t i) {
+        // Half a step of 2^-15 of -log2(opacity) is 1.06e-5 of the opacity.
+        note("opacity", packed.opacity / truth.opacity - 1.0, 1.1e-5);
+        // Half floats lose up to 2^-11 of themselves, in each coefficient and in the colour. No harmonic is above 1.1.
+        const auto stride = 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+        for (int channel = 0; channel < 3; ++channel) {
+            double size = truth.colour[channel];
+            for (std::size_t k = static_cast<std::size_t>(channel); k < stride; k += 3) {
+                size += 1.1 * std::abs(static_cast<double>(scene.sh[i * stride + k]));
+            }
+            note("colour", packed.colour[channel] - truth.colour[channel], size * 0x1p-11 + 1e-6);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "1_cull misses no splat that the twin sees, and keeps hardly one that the twin's culling does not") {
+    for (const ViewedScene& view : allScenes()) {
+        CAPTURE(view.name);
+        const TwinStages twin(view, kSettings);
+        const Culled culled = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye}, kSettings.near), 1);
+        std::size_t missed = 0, kept = 0;
+        for (const reference::TilePair& pair : twin.pairs) { missed += culled.has(twin.order[pair.splat]) ? 0 : 1; }
+        for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i) ? 1 : 0; }
+        CHECK(missed == 0);
+        CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
+        std::size_t wrong_counts = 0;
+        for (std::size_t g = 0; g < culled.group_counts.size(); ++g) {
+            std::uint32_t ones = 0;
+            for (std::size_t w = 0; w < 8; ++w) { ones += static_cast<std::uint32_t>(std::popcount(culled.bits[8 * g + w])); }
+            wrong_counts += culled.group_counts[g] == ones ? 0 : 1;
+        }
+        CHECK(wrong_counts == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "1_cull for two eyes keeps what either keeps") {
+    const ViewedScene view = test::viewBuiltin("builtin:atelier", {256, 256}, 20000);
+    Eye other = view.eye;
+    other.world_from_camera.orientation = other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
+    const Culled one = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye}, kSettings.near), 1);
+    const Culled two = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {other}, kSettings.near), 1);
+    const Culled both = cullOnDevice(*this, SceneOnDevice(*this, view.scene, {view.eye, other}, kSettings.near), 2);
+    CHECK(one.bits != two.bits);
+    for (std::size_t w = 0; w < both.bits.size(); ++w) { REQUIRE(both.bits[w] == (one.bits[w] | two.bits[w])); }
+}
+
+TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order with keys that order as their depths") {
+    const Kernel kernel(context(), "2_compact", sizeof(gpu::CompactPass));
+    for (const ViewedScene& view : allScenes()) {
+        CAPTURE(view.name);
+        const TwinStages twin(view, kSettings);
+        const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
+        const std::size_t groups = (view.scene.size() + gpu::kGroupSize - 1) / gpu::kGroupSize, visible = twin.compacted.splats.size();
+        std::vector<std::uint32_t> bits(groups * 8), offsets(groups + 1);
+        for (const std::uint32_t splat : twin.compacted.splats) {
+            bits[splat / 32] |= 1u << (splat % 32);
+            ++offsets[splat / gpu::kGroupSize + 1];
+        }
+        for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
+        const Buffer bit_buffer = upload("bits", bits), offset_buffer = upload("offsets", offsets),
+                     list = upload("list", std::vector{test::makeList(visible)});
+        const Buffer keys = allocate<std::uint32_t>("keys", visible), splats = allocate<std::uint32_t>("splats", visible);
+        gpu::CompactPass pass{};
+        pass.chunks = device.scene.chunks();
+        pass.eyes = device.eyeViews();
+        pass.visible_bits = bit_buffer.address<gpu::uint>();
+        pass.group_offsets = offset_buffer.address<gpu::uint>();
+        pass.visible = list.address<gpu::ListState>();
+        pass.keys = keys.address<gpu::uint>();
+        pass.splats = splats.address<gpu::uint>();
+        pass.splat_count = device.scene.splatCount();
+        pass.chunk_bits = device.scene.chunkBits();
+        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, view.scene.size()); });
+        CHECK(readBack<std::uint32_t>(splats, visible) == twin.compacted.splats);
+        // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance.
+        const auto key_values = readBack<std::uint32_t>(keys, visible);
+        double worst = 0.0;
+        for (std::size_t i = 0; i < visible; ++i) {
+            const glm::dvec3 position(view.scene.positions[twin.compacted.splats[i]]);
+            const double distance = distanceToRound(device.scene.origin(), position, view.eye);
+            worst = std::max(
+                worst, std::abs(static_cast<double>(test::floatOfKey(key_values[i])) - twin.compacted.depths[i]) / (kEpsilon * distance));
+        }
+        CHECK(worst <= 8.0);  // measured: 2.4
+    }
+}
+
+TEST_CASE("keys of depths order as the depths, behind the eye too") {
+    const std::vector<float> ascending{-1e30f, -2.0f, -1.0f, -1e-30f, 0.0f, 1e-30f, 1.0f, 1.0000001f, 2.0f, 1e30f};
+    for (std::size_t i = 1; i < ascending.size(); ++i) { CHECK(test::sortableBits(ascending[i - 1]) < test::sortableBits(ascending[i])); }
+    for (const float value : ascending) { CHECK(test::floatOfKey(test::sortableBits(value)) == value); }
+}
+
+TEST_CASE_FIXTURE(Gpu, "3_sort_depth puts the twin's depths front to back, ties by index") {
+    const Sort sort(context());
+    for (const ViewedScene& view : allScenes()) {
+        CAPTURE(view.name);
+        const TwinStages twin(view, kSettings);
+        const std::size_t count = twin.order.size();
+        std::vector<std::uint32_t> keys;
+        for (const double depth : twin.compacted.depths) { keys.push_back(test::sortableBits(static_cast<float>(depth))); }
+        const Buffer key_buffer = upload("keys", keys), values = upload("splats", twin.compacted.splats),
+                     list = upload("list", std::vector{test::makeList(count)});
+        const Buffer spare_keys = allocate<gpu::uint>("spare keys", count), spare_values = allocate<gpu::uint>("spare", count);
+        const Buffer histograms(context(), "histograms", Sort::histogramBytes(count));
+        KeyValues sorted;
+        run([&](Commands& commands) {
+            sorted = sort.record(commands, {key_buffer.address<gpu::uint>(), values.address<gpu::uint>()},
+                                 {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(),
+                                 list, 0, 32);
+        });
+        CHECK(sorted.values.value == values.address<gpu::uint>().value);
+        // The twin's order but for splats whose depths are one and the same float32: those are in the order of their indices.
+        std::vector<std::uint32_t> expected = twin.order;
+        std::vector<float> depth_of(view.scene.size());
+        for (std::size_t i = 0; i < count; ++i) { depth_of[twin.compacted.splats[i]] = static_cast<float>(twin.compacted.depths[i]); }
+        for (auto begin = expected.begin(); begin != expected.end();) {
+            const auto end = std::find_if(begin, expected.end(), [&](std::uint32_t splat) { return depth_of[splat] != depth_of[*begin]; });
+            std::sort(begin, end);
+            begin = end;
+        }
+        CHECK(readBack<std::uint32_t>(values, count) == expected);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "4_project gives the twin's fields, up to roundings times the condition of each") {
+    // Measured: reference 1.3, A and B 15, D 5, perspective 5, 1/z 2.6, offset 0.2, in roundings.
+    const std::map<std::string, double> bounds{{"opacity", 1.0}, {"colour", 1.0}, {"reference_px", 4.0}, {"1/z", 8.0},   {"A", 32.0},
+                                               {"B", 32.0},      {"D", 16.0},     {"perspective", 16.0}, {"offset", 2.0}};
+    for (const ViewedScene& view : allScenes()) {
+        CAPTURE(view.name);
+        const TwinStages twin(view, kSettings);
+        const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
+        const std::vector<gpu::ProjectedSplat> splats = test::projectOnDevice(*this, device, twin.order).readSplats(*this);
+        FieldErrors errors;
+        for (std::size_t rank = 0; rank < splats.size(); ++rank) {
+            errors.note(splats[rank], twin.splats[rank], view, twin.order[rank], device.scene.origin());
+        }
+        CHECK(errors.other_kind == 0);
+        CHECK(errors.edge_on <= (view.name == "cloud" ? 40 : 0));
+        for (const auto& [field, error] : errors.worst) {
+            CAPTURE(field);
+            CHECK(error <= bounds.at(field));
+        }
+    }
+}
