@@ -152,9 +152,11 @@ void main() {
                     most_open = max(most_open, open[p]);
                     transmittance[p] -= weight;
                     colour[p] += weight * splat_colour;
-                    const float hit_z = on_disc ? z : centre_z;
-                    if (kDepth) { depth[p] += weight * hit_z; }
-                    if (kInverseDepthMoments) { moments[p] += weight / hit_z * vec2(1, 1 / hit_z); }
+                    if (kDepth) { depth[p] += weight * (on_disc ? z : centre_z); }
+                    if (kInverseDepthMoments) {
+                        const float inverse_z = on_disc ? q_p : depth_form.x;
+                        moments[p] += weight * inverse_z * vec2(1, inverse_z);
+                    }
                 }
                 any_open = most_open > 0;
                 if (!any_open) { break; }

@@ -7,7 +7,7 @@
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
-layout(constant_id = 0) const bool kReadDepth = false;  // the choice of depth wants D
+layout(constant_id = 1) const bool kReadDepth = false;  // the choice of depth wants D
 
 void main() {
     const uvec2 size_px = pass.stereo.at[0].size_px;

@@ -10,7 +10,7 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ResolvePass pass; };
-layout(constant_id = 0) const bool kPredictErrors = false;
+layout(constant_id = 1) const bool kPredictErrors = false;
 
 const uint kTilesPerStep = kGroupSize / kTileSize;
 shared uint step_errors[kTilesPerStep];
@@ -37,9 +37,12 @@ float mixedDepthError(StereoView stereo, vec2 pixel_px, float inverse_depth) {
     const float length_px = length(disparity);
     if (!(length_px > 0)) { return 0; }
     const float spread_px = min(sqrt(variance) * length_px, kMaxSpread);
-    const vec2 direction = disparity / length_px;
-    const vec3 gradient = 0.5 * (direction.x * (dominantColour(source + ivec2(1, 0), last) - dominantColour(source - ivec2(1, 0), last)) +
-                                 direction.y * (dominantColour(source + ivec2(0, 1), last) - dominantColour(source - ivec2(0, 1), last)));
+    vec3 gradient = 0.5 * (dominantColour(source + ivec2(1, 0), last) - dominantColour(source - ivec2(1, 0), last));
+    if (!kRectified) {
+        const vec2 direction = disparity / length_px;
+        gradient = direction.x * gradient +
+                   direction.y * (0.5 * (dominantColour(source + ivec2(0, 1), last) - dominantColour(source - ivec2(0, 1), last)));
+    }
     return spread_px * spread_px * dot(gradient, gradient) / 3;
 }
 

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(push_constant, scalar) uniform Push { DepthBoundsPass pass; };
-layout(constant_id = 0) const bool kReadDepth = false;
+layout(constant_id = 1) const bool kReadDepth = false;
 
 shared uint group_bins[kDepthBins];
 

@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
 // The steps, each a dispatch over the pixels but for the last, which strides over the boxes.
 const uint kStepInit = 0, kStepUnite = 1, kStepCount = 2, kStepBound = 3, kStepMark = 4;
-layout(constant_id = 0) const uint kStep = kStepInit;
+layout(constant_id = 1) const uint kStep = kStepInit;
 
 // Other threads change parents meanwhile; every value one may see leads to the same root.
 uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[pixel].parent, 0); }

@@ -15,6 +15,16 @@ vec4 cubicWeights(float t) {
     return 0.5 * vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
 }
 
+// Rectified pixels keep their row, where the vertical kernel is exactly 1.
+vec4 sampleCubicInRow(float place_px, int row, int width) {
+    const float from_first = clamp(place_px, 0.5, float(width) - 0.5) - 0.5;
+    const int base = int(floor(from_first));
+    const vec4 weights = cubicWeights(from_first - float(base));
+    vec4 sum = vec4(0);
+    for (int x = 0; x < 4; ++x) { sum += weights[x] * pass.dominant.at[row * width + clamp(base + x - 1, 0, width - 1)]; }
+    return max(sum, vec4(0));
+}
+
 vec4 sampleCubic(vec2 place_px, ivec2 size) {
     const vec2 from_first = clamp(place_px, vec2(0.5), vec2(size) - 0.5) - 0.5;
     const ivec2 base = ivec2(floor(from_first));
@@ -43,7 +53,7 @@ void main() {
             const float column = float(isUncovered(nearest) ? anchorColumn(nearest) : at.x);
             const vec2 pixel_px = vec2(column, float(at.y)) + 0.5;
             const vec2 source_px = movePixel(stereo.dominant_from_affiliated, pixel_px, pass.pixels.at[i].resolved_inverse_depth).xy;
-            pass.affiliated.at[i] = sampleCubic(source_px, ivec2(stereo.size_px));
+            pass.affiliated.at[i] = kRectified ? sampleCubicInRow(source_px.x, int(at.y), int(stereo.size_px.x)) : sampleCubic(source_px, ivec2(stereo.size_px));
         }
     }
     barrier();

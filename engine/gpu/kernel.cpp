@@ -4,8 +4,6 @@
 #include "shaders/embedded_shaders.h"
 
 #include <cassert>
-#include <string>
-#include <vector>
 
 namespace binosplat {
 
@@ -22,6 +20,13 @@ Kernel::Kernel(const Context& context, std::string_view shader, std::uint32_t pu
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
     pipeline_ = vk::raii::Pipeline(context.device(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
     context.name(pipeline_, std::string(shader));
+}
+
+const Kernel& KernelCache::get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
+    auto key = std::make_pair(std::string(shader), std::vector<std::uint32_t>(constants));
+    auto found = kernels_.find(key);
+    if (found == kernels_.end()) { found = kernels_.emplace(std::move(key), Kernel(context_, shader, push_bytes, constants)).first; }
+    return found->second;
 }
 
 }  // namespace binosplat

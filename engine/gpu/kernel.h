@@ -5,7 +5,11 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <map>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace binosplat {
 
@@ -24,6 +28,18 @@ private:
     vk::raii::PipelineLayout layout_{nullptr};
     vk::raii::Pipeline pipeline_{nullptr};
     std::uint32_t push_bytes_ = 0;
+};
+
+// Kernels, made when they are first wanted: a mode does not pay for another's.
+class KernelCache {
+public:
+    explicit KernelCache(const Context& context) : context_(context) {}
+    // The kernel of a shader and its specialization constants; the reference stays valid.
+    const Kernel& get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+
+private:
+    const Context& context_;
+    std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> kernels_;
 };
 
 }  // namespace binosplat

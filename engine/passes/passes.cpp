@@ -6,22 +6,17 @@
 
 namespace binosplat {
 Passes::Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell)
-    : context_(context),
-      sh_degree_(static_cast<std::uint32_t>(sh_degree)),
+    : sh_degree_(static_cast<std::uint32_t>(sh_degree)),
       // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
       threads_per_cell_(threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u)),
       scan_(context),
       sort_(context),
-      cull_(context, "1_cull", sizeof(gpu::CullPass)),
-      compact_(context, "2_compact", sizeof(gpu::CompactPass)),
-      project_(context, "4_project", sizeof(gpu::ProjectPass), {sh_degree_, /*masked=*/0}),
-      bin_(context, "5_bin", sizeof(gpu::BinPass), {/*masked=*/0}),
-      tile_ranges_(context, "6_tile_ranges", sizeof(gpu::TileRangesPass)) {}
+      kernels_(context) {}
 
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
-                           const std::string& role) const {
+                           const std::string& role) {
     commands.beginPass(role + "1_cull");
-    commands.dispatchOver(cull_,
+    commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass)),
                           gpu::CullPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), scene.splatCount(), scene.chunkBits(),
                                         static_cast<gpu::uint>(first_eye), static_cast<gpu::uint>(eye_count)},
                           scene.splatCount());
@@ -31,9 +26,9 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
     recordOrder(commands, scene, buffers, order_eye, list, role);
 }
 
-void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role) const {
+void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role) {
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(list));
-    commands.dispatchOver(compact_,
+    commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass)),
                           gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible, buffers.visible.order().keys,
                                            buffers.visible.order().values, scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(order_eye)},
                           scene.splatCount());
@@ -44,19 +39,8 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
 }
 
 const Kernel& Passes::rasterizeKernel(Kept kept, bool masked) {
-    const std::uint32_t variant = (kept.depth ? 1u : 0u) | (kept.stereo_pixels ? 2u : 0u) | (kept.inverse_depth_moments ? 4u : 0u) | (masked ? 8u : 0u);
-    auto found = rasterize_.find(variant);
-    if (found == rasterize_.end()) {
-        Kernel kernel(context_, "7_rasterize", sizeof(gpu::RasterizePass),
-                      {threads_per_cell_, kept.depth, kept.stereo_pixels, kept.inverse_depth_moments, masked, gpu::kCellsPerTile * threads_per_cell_});
-        found = rasterize_.emplace(variant, std::move(kernel)).first;
-    }
-    return found->second;
-}
-
-const Kernel& Passes::maskedKernel(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
-    if (!kernel.pipeline()) { kernel = Kernel(context_, shader, push_bytes, constants); }
-    return kernel;
+    return kernels_.get("7_rasterize", sizeof(gpu::RasterizePass),
+                        {threads_per_cell_, kept.depth, kept.stereo_pixels, kept.inverse_depth_moments, masked, gpu::kCellsPerTile * threads_per_cell_});
 }
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role) {
@@ -82,15 +66,14 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     const TileMask tiles = mask != nullptr ? *mask : TileMask{};
 
     commands.beginPass(role + "4_project");
-    const Kernel& project = mask == nullptr ? project_ : maskedKernel(project_masked_, "4_project", sizeof(gpu::ProjectPass), {sh_degree_, /*masked=*/1});
-    commands.dispatchIndirect(project,
+    const std::uint32_t masked = mask != nullptr ? 1 : 0;
+    commands.dispatchIndirect(kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked}),
                               gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
                                                buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before, scene.chunkBits(), eye},
                               buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());
-    const Kernel& bin = mask == nullptr ? bin_ : maskedKernel(bin_masked_, "5_bin", sizeof(gpu::BinPass), {/*masked=*/1});
-    commands.dispatchIndirect(bin,
+    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}),
                               gpu::BinPass{buffers.eyes(), buffers.visible.splats(), buffers.visible.tileBoxes(), buffers.visible.tileCounts(), visible, pairs,
                                            buffers.pairs.pairs().keys, buffers.pairs.pairs().values, tiles.tiles_before, tiles.tile_list, eye},
                               buffers.state, per_pair);
@@ -99,7 +82,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     const KeyValues sorted = sort_.record(commands, buffers.pairs.pairs(), buffers.pairs.spare(), scratch, buffers.state, pair_list, tile_bits);
     const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
     commands.fillZero(buffers.tile_ranges);
-    commands.dispatchIndirect(tile_ranges_, gpu::TileRangesPass{sorted.keys, pairs, ranges}, buffers.state, per_pair);
+    commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges}, buffers.state, per_pair);
     commands.beginPass(role + "7_rasterize");
     const gpu::RasterizePass rasterize{buffers.eyes(),
                                        buffers.visible.splats(),

@@ -14,7 +14,6 @@
 #include "engine/passes/frame_buffers.h"
 #include "shaders/shared/passes.h"
 
-#include <map>
 #include <string>
 
 namespace binosplat {
@@ -50,9 +49,9 @@ public:
     // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
     // the depths of `order_eye`. `role` goes before the passes' names.
     void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
-                       const std::string& role) const;
+                       const std::string& role);
     // Passes 2 and 3 alone, once more, by the depths of another eye.
-    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role) const;
+    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role);
     // Passes 4 to 7: the picture of an eye.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role);
     // The same under a mask: the other tiles stay as they are.
@@ -62,16 +61,12 @@ public:
 private:
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
                 const std::string& role);
-    // Made when a mode first wants it.
     const Kernel& rasterizeKernel(Kept kept, bool masked);
-    const Kernel& maskedKernel(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants);
 
-    const Context& context_;
     std::uint32_t sh_degree_, threads_per_cell_;
     Scan scan_;
     Sort sort_;
-    Kernel cull_, compact_, project_, project_masked_, bin_, bin_masked_, tile_ranges_;
-    std::map<std::uint32_t, Kernel> rasterize_;
+    KernelCache kernels_;
 };
 
 }  // namespace binosplat

@@ -53,15 +53,14 @@ gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const S
     return view;
 }
 
-StereoPasses::StereoPasses(const Context& context) : context_(context) {}
-
-Kernel& StereoPasses::variant(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
-    if (!kernel.pipeline()) { kernel = Kernel(context_, shader, push_bytes, constants); }
-    return kernel;
+bool isRectified(const gpu::StereoView& view) {
+    const glm::vec3 zero(0.0f);
+    const auto alongRows = [&](const gpu::PixelMap& map) { return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f; };
+    return alongRows(view.affiliated_from_dominant) && alongRows(view.dominant_from_affiliated);
 }
 
 void StereoPasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
-                          const StereoSettings& settings, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated) {
+                          const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated) {
     const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
     const auto counters = buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0));
@@ -69,23 +68,24 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     const auto depths = dominant.depths.address<float>();
     const auto pixels = affiliated.colours.address<gpu::StereoPixel>();
     const glm::uvec2 size_px = stereo.sizePx(), tiles = tilesOf(size_px);
+    const std::uint32_t along_rows = rectified ? 1 : 0;
     const bool read_depth = settings.depth_choice != gpu::kDepthInverse;
     const bool predict = settings.patching == Patching::kPredicted;
     const bool paper = settings.patching == Patching::kPaper;
 
     commands.beginPass("affiliated 8a_reproject");
     commands.fillZero(stereo.tiles());
-    commands.dispatch(variant(reproject_[read_depth], "8a_reproject", sizeof(gpu::ReprojectPass), {read_depth}), gpu::ReprojectPass{view, colours, depths, pixels},
+    commands.dispatch(kernels_.get("8a_reproject", sizeof(gpu::ReprojectPass), {along_rows, read_depth}), gpu::ReprojectPass{view, colours, depths, pixels},
                       tiles.x, tiles.y);
     commands.beginPass("affiliated 8b_resolve");
-    commands.dispatch(variant(resolve_[predict], "8b_resolve", sizeof(gpu::ResolvePass), {predict}),
+    commands.dispatch(kernels_.get("8b_resolve", sizeof(gpu::ResolvePass), {along_rows, predict}),
                       gpu::ResolvePass{view, colours, pixels, stereo.tileErrors(), counters}, size_px.y);
     if (paper) {
         commands.beginPass("affiliated 8c_depth_bounds");
-        commands.dispatch(variant(depth_bounds_[read_depth], "8c_depth_bounds", sizeof(gpu::DepthBoundsPass), {read_depth}),
+        commands.dispatch(kernels_.get("8c_depth_bounds", sizeof(gpu::DepthBoundsPass), {along_rows, read_depth}),
                           gpu::DepthBoundsPass{view, colours, depths, pixels, stereo.depthBins()}, tiles.x, tiles.y);
         commands.beginPass("affiliated 8d_edge_rois");
-        commands.dispatch(variant(edge_rois_, "8d_edge_rois", sizeof(gpu::EdgeRoisPass), {}),
+        commands.dispatch(kernels_.get("8d_edge_rois", sizeof(gpu::EdgeRoisPass), {along_rows}),
                           gpu::EdgeRoisPass{view, stereo.depthBins(), stereo.tileKinds(), counters}, 1);
     }
     if (paper && settings.center_rois) {
@@ -93,15 +93,15 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
         const gpu::ComponentsPass pass{view, affiliated.colours.address<gpu::ComponentPixel>(), stereo.boxes(), stereo.tileKinds(), counters, stereo.boxCapacity()};
         const std::uint64_t groups = offsetof(FrameState, stereo_counters) + offsetof(gpu::StereoCounters, component_groups);
         for (std::uint32_t step = 0; step < 4; ++step) {
-            commands.dispatchIndirect(variant(components_[step], "8e_components", sizeof(gpu::ComponentsPass), {step}), pass, buffers.state, groups);
+            commands.dispatchIndirect(kernels_.get("8e_components", sizeof(gpu::ComponentsPass), {along_rows, step}), pass, buffers.state, groups);
         }
-        commands.dispatch(variant(components_[4], "8e_components", sizeof(gpu::ComponentsPass), {4u}), pass, kMarkGroups);
+        commands.dispatch(kernels_.get("8e_components", sizeof(gpu::ComponentsPass), {along_rows, 4u}), pass, kMarkGroups);
     }
     if (predict) {
         commands.beginPass("affiliated 8f_newcomers");
         const std::uint64_t visible_list = FrameBuffers::visibleList(0);
         commands.dispatchIndirect(
-            variant(newcomers_, "8f_newcomers", sizeof(gpu::NewcomersPass), {}),
+            kernels_.get("8f_newcomers", sizeof(gpu::NewcomersPass)),
             gpu::NewcomersPass{scene.chunks(), buffers.eyes(), view, pixels, buffers.visible.order().values, visible, buffers.visible.tileCounts(),
                                buffers.state.address<gpu::ListState>(FrameBuffers::pairList(dominant_eye)), stereo.tileErrors(), counters, scene.chunkBits(),
                                static_cast<gpu::uint>(1 - dominant_eye)},
@@ -109,14 +109,14 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     }
     if (paper || predict) {
         commands.beginPass("affiliated 8g_select");
-        commands.dispatch(variant(select_[predict], "8g_select", sizeof(gpu::SelectPass), {predict}),
+        commands.dispatch(kernels_.get("8g_select", sizeof(gpu::SelectPass), {predict}),
                           gpu::SelectPass{view, stereo.tileErrors(), stereo.tileKinds(), stereo.tileList(), stereo.tilesBefore(), visible,
                                           buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
                                           buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters},
                           1);
     }
     commands.beginPass("affiliated 9_resample");
-    commands.dispatch(variant(resample_, "9_resample", sizeof(gpu::ResamplePass), {}),
+    commands.dispatch(kernels_.get("9_resample", sizeof(gpu::ResamplePass), {along_rows}),
                       gpu::ResamplePass{view, colours, pixels, affiliated.colours.address<gpu::vec4>(), stereo.tileKinds(),
                                         stereo.pixelClasses().address<gpu::uint>()},
                       tiles.x, tiles.y);

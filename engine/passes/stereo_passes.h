@@ -15,8 +15,6 @@
 #include "engine/passes/frame_buffers.h"
 #include "shaders/shared/passes.h"
 
-#include <array>
-
 namespace binosplat {
 
 // Who makes the affiliated picture's tiles.
@@ -42,24 +40,20 @@ struct StereoSettings {
 
 // How `settings` and the cameras look to the device.
 gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const StereoSettings& settings);
+// Whether pixels move along their row alone and keep their depth: the eyes are parallel, side by side, and share cy and fy.
+bool isRectified(const gpu::StereoView& view);
 
 class StereoPasses {
 public:
-    explicit StereoPasses(const Context& context);
+    explicit StereoPasses(const Context& context) : kernels_(context) {}
 
     // Passes 8 and 9. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo
     // pixels, which the affiliated eye's colours replace but for the tiles that are masked.
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo, const StereoSettings& settings,
-                int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
+                bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
 
 private:
-    Kernel& variant(Kernel& kernel, const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants);
-
-    const Context& context_;
-    // Made when a mode first wants them; [1]: the variant that reads D, predicts errors, and so on.
-    std::array<Kernel, 2> reproject_, resolve_, depth_bounds_, select_;
-    std::array<Kernel, 5> components_;
-    Kernel edge_rois_, newcomers_, resample_;
+    KernelCache kernels_;
 };
 
 }  // namespace binosplat
