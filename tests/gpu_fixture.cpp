@@ -48,8 +48,12 @@ void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t o
 
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
     const std::uint32_t count = needed <= capacity ? needed : 0;
-    return {needed, count, dispatchOver(count, gpu::kGroupSize), dispatchOver(count, gpu::kScanBlock),
-            dispatchOver(count, gpu::kSortBlock)};
+    return {needed,
+            count,
+            dispatchOver(count, gpu::kGroupSize),
+            dispatchOver(count, gpu::kScanBlock),
+            dispatchOver(count, gpu::kSortBlock),
+            dispatchOver(count, 1)};
 }
 
 }  // namespace binosplat::test

@@ -107,12 +107,11 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
 struct ProjectedOnDevice {
     std::uint32_t count;
     Buffer list, order, splats, tile_boxes, tile_counts, counters;
-
-    [[nodiscard]] std::vector<gpu::ProjectedSplat> readSplats(Gpu& gpu) const { return gpu.readBack<gpu::ProjectedSplat>(splats, count); }
 };
 
 inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order) {
-    const Kernel kernel(gpu.context(), "4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(device.scene.shDegree())});
+    const Kernel kernel(gpu.context(), "4_project", sizeof(gpu::ProjectPass),
+                        {static_cast<std::uint32_t>(device.scene.shDegree()), /*masked=*/0});
     const std::size_t count = order.size();
     ProjectedOnDevice result{static_cast<std::uint32_t>(count),
                              gpu.upload("list", std::vector{makeList(count)}),
