@@ -1,5 +1,7 @@
 // 8a: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
 // threads; the source's place follows from it again in 9, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
+// A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
+// already, since what lies behind would otherwise show through the cracks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -9,16 +11,65 @@ layout(local_size_x = 16, local_size_y = 16) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
 layout(constant_id = 1) const bool kReadDepth = false;  // the choice of depth wants D
 
-void main() {
-    const uvec2 size_px = pass.stereo.at[0].size_px;
-    const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= size_px.x || pixel.y >= size_px.y) { return; }
-    const uint i = pixel.y * size_px.x + pixel.x;
-    const float inverse_depth = chosenInverseDepth(pass.stereo.at[0].depth_choice, pass.colours.at[i].w, kReadDepth ? pass.depths.at[i] : 1.0,
+struct Moved {
+    vec2 place_px;
+    float inverse_depth;
+    bool valid;
+};
+
+// A dominant pixel as the affiliated eye sees it. Comparisons are written so that NaN goes nowhere.
+Moved moveDominant(StereoView stereo, uvec2 pixel) {
+    const uint i = pixel.y * stereo.size_px.x + pixel.x;
+    const float inverse_depth = chosenInverseDepth(stereo.depth_choice, pass.colours.at[i].w, kReadDepth ? pass.depths.at[i] : 1.0,
                                                    pass.pixels.at[i].inverse_depth_sum);
-    const vec3 moved = movePixel(pass.stereo.at[0].affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
-    // Written so that NaN goes nowhere.
-    if (!(moved.z > 0 && moved.x >= 0 && moved.y >= 0 && moved.x < float(size_px.x) && moved.y < float(size_px.y))) { return; }
-    const uvec2 target = min(uvec2(moved.xy), size_px - 1);
-    atomicMax(pass.pixels.at[target.y * size_px.x + target.x].nearest, floatBitsToUint(inverse_depth / moved.z) + 1);
+    const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
+    return Moved(moved.xy, inverse_depth / moved.z, moved.z > 0 && inverse_depth >= 0 && inverse_depth < 1e30);
+}
+
+void put(StereoView stereo, ivec2 at, float inverse_depth, bool covered) {
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(stereo.size_px)))) { return; }
+    atomicMax(pass.pixels.at[uint(at.y) * stereo.size_px.x + uint(at.x)].nearest, packNearest(inverse_depth, covered));
+}
+
+// Along a row: the pixels between `here` and its right neighbour.
+void putBetween(StereoView stereo, Moved here, Moved right, int row) {
+    const float reach = right.place_px.x - here.place_px.x;
+    if (!(right.valid && reach > 1 && reach <= float(stereo.gap_px + 1))) { return; }
+    const int first = int(floor(here.place_px.x)) + 1, end = int(floor(right.place_px.x));
+    for (int x = first; x < end; ++x) {
+        put(stereo, ivec2(x, row), mix(here.inverse_depth, right.inverse_depth, (float(x) + 0.5 - here.place_px.x) / reach), false);
+    }
+}
+
+// In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower neighbour.
+void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
+    const vec2 u = right.place_px - here.place_px, v = below.place_px - here.place_px;
+    const float area = u.x * v.y - u.y * v.x;
+    const vec2 low = min(vec2(0), u) + min(vec2(0), v), high = max(vec2(0), u) + max(vec2(0), v);
+    if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(stereo.gap_px + 2))))) { return; }
+    const ivec2 first = ivec2(floor(here.place_px + low)), last = ivec2(floor(here.place_px + high));
+    for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) {
+            const vec2 d = vec2(x, y) + 0.5 - here.place_px;
+            const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
+            if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
+            put(stereo, ivec2(x, y), here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), false);
+        }
+    }
+}
+
+void main() {
+    const StereoView stereo = pass.stereo.at[0];
+    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, stereo.size_px))) { return; }
+    const Moved here = moveDominant(stereo, pixel);
+    if (!here.valid || any(lessThan(here.place_px, vec2(-8))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + 8))) { return; }
+    put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, true);
+    if (pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
+    const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));
+    if (kRectified) {
+        putBetween(stereo, here, right, int(pixel.y));
+    } else if (pixel.y + 1 < stereo.size_px.y) {
+        putWithin(stereo, here, right, moveDominant(stereo, pixel + uvec2(0, 1)));
+    }
 }

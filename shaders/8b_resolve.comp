@@ -16,8 +16,6 @@ const uint kTilesPerStep = kGroupSize / kTileSize;
 shared uint step_errors[kTilesPerStep];
 shared uint row_counts[3];
 
-float inverseDepthOf(uint nearest) { return uintBitsToFloat(nearest - 1); }
-
 vec3 dominantColour(ivec2 pixel, ivec2 last) {
     const ivec2 at = clamp(pixel, ivec2(0), last);
     return pass.colours.at[at.y * (last.x + 1) + at.x].rgb;
@@ -82,6 +80,7 @@ void main() {
             float inverse_depth = 0;
             if (nearest != 0) {
                 inverse_depth = inverseDepthOf(nearest);
+                pixel_class = pixelClass(nearest);
             } else {
                 const bool has_left = last != 0, has_right = first != 0;
                 const uint left = last - 1, right = width - first;

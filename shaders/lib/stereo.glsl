@@ -22,9 +22,14 @@ float chosenInverseDepth(uint choice, float alpha, float depth_sum, float invers
     return choice == kDepthMean ? alpha / depth_sum : 1 / depth_sum;
 }
 
+// What StereoPixel::nearest says while pixels arrive: greater for what is nearer, the lowest bit tells a pixel that arrived from
+// one interpolated between two; 0: nothing arrived.
+uint packNearest(float inverse_depth, bool covered) { return ((floatBitsToUint(inverse_depth) + 2) & ~1u) | (covered ? 1 : 0); }
+float inverseDepthOf(uint nearest) { return uintBitsToFloat((nearest & ~1u) - 2); }
+
 // What StereoPixel::nearest says once the pixel is resolved: covered pixels keep what reached them, the others have the highest
 // bit set, and below it their class and the column whose place they repeat.
 uint packUncovered(uint column, uint pixel_class) { return 0x80000000u | (pixel_class << 24) | column; }
 bool isUncovered(uint packed) { return (packed & 0x80000000u) != 0; }
 uint anchorColumn(uint packed) { return packed & 0xffffffu; }
-uint pixelClass(uint packed) { return isUncovered(packed) ? (packed >> 24) & 3 : kCovered; }
+uint pixelClass(uint packed) { return isUncovered(packed) ? (packed >> 24) & 3 : (packed & 1) != 0 ? kCovered : kGap; }

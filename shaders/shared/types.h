@@ -107,7 +107,7 @@ BINOSPLAT_ARRAY_OF(StereoView, StereoViews);
 struct StereoPixel {
     float inverse_depth_sum;         // I of the dominant pixel
     float inverse_depth_square_sum;  // J of the dominant pixel
-    uint nearest;  // 0: nothing reached it; else 1 + the bits of the greatest inverse depth that did. Resolved: see packAnchor
+    uint nearest;  // what reached it, see packNearest; once it is resolved, see packUncovered
     float resolved_inverse_depth;    // after gaps and holes are filled
 };
 BINOSPLAT_ARRAY_OF(StereoPixel, StereoPixels);
