@@ -47,13 +47,17 @@ void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
     const float area = u.x * v.y - u.y * v.x;
     const vec2 low = min(vec2(0), u) + min(vec2(0), v), high = max(vec2(0), u) + max(vec2(0), v);
     if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(stereo.gap_px + 2))))) { return; }
+    // The neighbours cover their own pixels.
+    const ivec2 own = ivec2(floor(here.place_px)), own_right = ivec2(floor(right.place_px)), own_below = ivec2(floor(below.place_px));
     const ivec2 first = ivec2(floor(here.place_px + low)), last = ivec2(floor(here.place_px + high));
     for (int y = first.y; y <= last.y; ++y) {
         for (int x = first.x; x <= last.x; ++x) {
-            const vec2 d = vec2(x, y) + 0.5 - here.place_px;
+            const ivec2 at = ivec2(x, y);
+            if (at == own || at == own_right || at == own_below) { continue; }
+            const vec2 d = vec2(at) + 0.5 - here.place_px;
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
-            put(stereo, ivec2(x, y), here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), false);
+            put(stereo, at, here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), false);
         }
     }
 }

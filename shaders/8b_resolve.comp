@@ -105,7 +105,10 @@ void main() {
             if (nearest == 0) { pass.pixels.at[row + x].nearest = packUncovered(anchor, pixel_class); }
             atomicAdd(row_counts[pixel_class], 1);
             if (kPredictErrors) {
-                const float error = pixel_class == kHole ? stereo.hole_error * stereo.hole_error : mixedDepthError(stereo, vec2(x, y) + 0.5, inverse_depth);
+                // Mixed pixels are many and alike: every other row stands for two.
+                const float error = pixel_class == kHole ? stereo.hole_error * stereo.hole_error
+                                    : (y & 1) == 0       ? 2 * mixedDepthError(stereo, vec2(x, y) + 0.5, inverse_depth)
+                                                         : 0;
                 const uint steps_of_error = uint(min(error, kMaxPixelError) * kErrorSteps);
                 if (steps_of_error > 0) { atomicAdd(step_errors[(x - begin) / kTileSize], steps_of_error); }
             }

@@ -27,7 +27,11 @@ gpu::PixelMap pixelMap(const Eye& target, const Eye& source) {
         const glm::dmat3 rotation = parallel ? glm::dmat3(1.0) : glm::mat3_cast(target_from_source.orientation);
         excess = matrixOf(k) * rotation * glm::inverse(matrixOf(l)) - glm::dmat3(1.0);
     }
-    const glm::dvec3 shift = matrixOf(k) * target_from_source.position;
+    glm::dvec3 shift = matrixOf(k) * target_from_source.position;
+    // Eyes side by side differ along x alone, up to the rounding of their positions.
+    for (int i = 1; i < 3; ++i) {
+        if (std::abs(shift[i]) < 1e-12 * (std::abs(shift.x) + glm::length(source.world_from_camera.position))) { shift[i] = 0.0; }
+    }
     const auto row = [&](int i) { return glm::vec3(excess[0][i], excess[1][i], excess[2][i]); };
     return {row(0), row(1), row(2), glm::vec3(shift)};
 }
