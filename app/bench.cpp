@@ -42,11 +42,11 @@ public:
     }
 
     FrameResult render(StereoFrame& frame, const std::string& name) {
-        const Mode mode = frameMode(name);
-        const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras_.middle, 1) : std::span<const Eye>(cameras_.eyes);
-        return frame.render(
-            eyes,
-            {.mode = mode, .dominant = options_.stereo.dominant, .near = options_.camera.near, .background = options_.camera.background});
+        FrameSettings settings = frameSettings(options_, name);
+        settings.keep_depth = false;  // nobody reads it here, so no mode pays for it unless it needs it itself
+        const std::span<const Eye> eyes =
+            settings.mode == Mode::kMono ? std::span(&cameras_.middle, 1) : std::span<const Eye>(cameras_.eyes);
+        return frame.render(eyes, settings);
     }
 
     void count(Runner& runner) {

@@ -1,6 +1,7 @@
-// Which stereo modes this build can render.
+// Which stereo modes this build can render, and the frame's settings out of the options.
 #pragma once
 
+#include "app/options.h"
 #include "engine/frame.h"
 
 #include <string>
@@ -9,5 +10,8 @@ namespace binosplat {
 
 // Throws Error (bad input) for a mode that is known but not built in.
 Mode frameMode(const std::string& name);
+
+// The settings of a frame in the named mode; everything else as the options say.
+FrameSettings frameSettings(const RunOptions& options, const std::string& mode);
 
 }  // namespace binosplat

@@ -56,8 +56,7 @@ void runRender(const RenderOptions& options) {
 
     StereoFrame frame(context, gpu_scene);
     const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    const FrameSettings settings{
-        .mode = mode, .dominant = stereo.dominant, .near = options.run.camera.near, .background = options.run.camera.background};
+    const FrameSettings settings = frameSettings(options.run, stereo.mode);
     FrameResult result = frame.render(eyes, settings);
     // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
     if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }
