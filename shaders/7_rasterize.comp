@@ -129,7 +129,7 @@ void main() {
                 const vec2 d = first_px - reference.xy;
                 const float u = reference.z + plane.x * d.x;
                 const float q = depth_form.x + depth_form.y * d.x;
-                const float rho2_x = plane.w * (d.x * d.x);
+                const float rho2_x = plane.w < kFar ? plane.w * (d.x * d.x) : kFar;
                 const float centre_z = 1 / depth_form.x;
                 float most_open = 0;
                 // Without branches: pixels that the splat does not reach blend it with weight 0.

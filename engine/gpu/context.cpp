@@ -47,7 +47,7 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     const auto operations = vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
     if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
-    if (vulkan11.subgroupSize < 8 || vulkan11.subgroupSize > 128) { return "subgroups of 8 to 128 invocations"; }
+    if (vulkan11.subgroupSize < 8 || vulkan11.subgroupSize > 64) { return "subgroups of 8 to 64 invocations"; }
     return {};
 }
 
@@ -138,6 +138,9 @@ void Context::createDevice() {
     vk::PhysicalDeviceVulkan12Features features;
     features.bufferDeviceAddress = VK_TRUE;
     features.scalarBlockLayout = VK_TRUE;
+    const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    features.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
+    dynamic_broadcast_ = features.subgroupBroadcastDynamicId == VK_TRUE;
     device_ = vk::raii::Device(physical_device_, vk::DeviceCreateInfo({}, queue_info, {}, {}, nullptr, &features));
     queue_ = device_.getQueue(queue_family_, 0);
     command_pool_ = device_.createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_});

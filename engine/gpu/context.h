@@ -40,6 +40,7 @@ public:
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
+    [[nodiscard]] bool hasDynamicBroadcast() const { return dynamic_broadcast_; }
     [[nodiscard]] bool validates() const { return validates_; }
     // What the validation layers said so far; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
@@ -67,7 +68,7 @@ private:
         std::vector<std::string> lines;
     };
 
-    bool validates_ = false;
+    bool validates_ = false, dynamic_broadcast_ = false;
     Messages messages_;
     vk::raii::Context loader_;
     vk::raii::Instance instance_{nullptr};

@@ -11,7 +11,7 @@ Sort::Sort(const Context& context)
       spine_(context, "sort_spine", sizeof(gpu::SortSpinePass)),
       scatter_(context, "sort_scatter", sizeof(gpu::SortScatterPass),
                {/*max_subgroups=*/gpu::kSortGroupSize / std::min(context.minSubgroupSize(), gpu::kSortGroupSize),
-                /*narrow_subgroups=*/context.maxSubgroupSize() <= 8}) {}
+                /*narrow_subgroups=*/context.maxSubgroupSize() <= 8 && context.hasDynamicBroadcast()}) {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
     return ((items + gpu::kSortBlock - 1) / gpu::kSortBlock + 1) * gpu::kMaxDigits * sizeof(gpu::uint);
