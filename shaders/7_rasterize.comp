@@ -69,13 +69,20 @@ void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
     }
 }
 
+// Even rows of tiles first, then the odd ones: pictures are often full below and empty above, and a device that deals out
+// workgroups in runs gets runs of like work.
+uint spreadRows(uint row, uint rows) {
+    const uint even_rows = (rows + 1) / 2;
+    return row < even_rows ? 2 * row : 2 * (row - even_rows) + 1;
+}
+
 void main() {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
     const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
     const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (kMasked && group >= pass.masked_tiles.at[0].count) { return; }
-    const uint tile = kMasked ? pass.tile_list.at[group] : group;
+    const uint tile = kMasked ? pass.tile_list.at[group] : spreadRows(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
     const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
@@ -86,16 +93,14 @@ void main() {
     vec3 colour[kPixels];
     float depth[kPixels];
     vec2 moments[kPixels];
-    float transmittance[kPixels];
-    float open[kPixels];  // the transmittance of a pixel that still takes light, otherwise 0
+    float transmittance[kPixels];  // negated once the pixel takes no more light
     bool any_open = false;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         colour[p] = vec3(0);
         depth[p] = 0;
         moments[p] = vec2(0);
-        transmittance[p] = 1;
         const bool inside = first_pixel.x < size_px.x && first_pixel.y + p * kRowStep < size_px.y;
-        open[p] = inside ? 1 : 0;
+        transmittance[p] = inside ? 1 : -1;
         any_open = any_open || inside;
     }
     if (gl_LocalInvocationIndex == 0) { cells_done = 0; }
@@ -144,13 +149,12 @@ void main() {
                     const float rho2 = rho2_x + plane.w * (dy * dy);
                     const bool on_disc = rho3 <= rho2;
                     const float alpha = min(kMaxAlpha, exp2(-depth_form.w - (on_disc ? rho3 : rho2)));
-                    const float full_weight = alpha >= kMinAlpha ? alpha * open[p] : 0;
-                    const float after = open[p] - full_weight;
-                    const bool closes = after < kMinTransmittance;  // or is closed
+                    const float full_weight = alpha >= kMinAlpha ? alpha * max(transmittance[p], 0) : 0;
+                    const float after = transmittance[p] - full_weight;
+                    const bool closes = after < kMinTransmittance && after >= 0;
                     const float weight = closes ? 0 : full_weight;
-                    open[p] = closes ? 0 : after;
-                    most_open = max(most_open, open[p]);
-                    transmittance[p] -= weight;
+                    transmittance[p] = closes ? -transmittance[p] : after;
+                    most_open = max(most_open, transmittance[p]);
                     colour[p] += weight * splat_colour;
                     if (kDepth) { depth[p] += weight * (on_disc ? z : centre_z); }
                     if (kInverseDepthMoments) {
@@ -168,7 +172,8 @@ void main() {
         const uvec2 pixel = first_pixel + uvec2(0, p * kRowStep);
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
-            pass.colours.at[at] = vec4(colour[p] + transmittance[p] * pass.background, 1 - transmittance[p]);
+            const float left = abs(transmittance[p]);
+            pass.colours.at[at] = vec4(colour[p] + left * pass.background, 1 - left);
             if (kDepth) { pass.depths.at[at] = depth[p]; }
             if (kStereoPixels) { pass.moments.at[at] = StereoPixel(moments[p].x, moments[p].y, 0, 0); }
         }
