@@ -1,0 +1,97 @@
+// Facts about the picture of what made each tile.
+#include "engine/picture/roi_picture.h"
+#include "engine/error.h"
+#include "shaders/shared/constants.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace binosplat;
+
+namespace {
+
+Image makeGrey(glm::uvec2 size_px, int channels, float value) {
+    Image image{size_px, channels, {}};
+    image.values.assign(image.pixelCount() * static_cast<std::size_t>(channels), value);
+    return image;
+}
+
+glm::vec3 pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
+    const float* values = image.values.data() + (std::size_t{y} * image.size_px.x + x) * static_cast<std::size_t>(image.channels);
+    return {values[0], values[1], values[2]};
+}
+
+glm::vec3 tinted(PixelOrigin origin, float grey) { return (1.0f - kTintShare) * glm::vec3(grey) + kTintShare * tintOf(origin); }
+
+bool near(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 1e-6f; }
+
+constexpr PixelOrigin kTintedOrigins[]{PixelOrigin::kGap, PixelOrigin::kHole, PixelOrigin::kEdgeRoi, PixelOrigin::kCenterRoi,
+                                       PixelOrigin::kPredictedRoi};
+
+}  // namespace
+
+TEST_CASE("tilesAreTintedUpToTheirLastPixel") {
+    // 3 x 2 tiles over 33 x 17 pixels: the last column and the last row of tiles are one pixel wide.
+    const std::vector<std::uint32_t> kinds{gpu::kTileEdge, 0, gpu::kTileCenter, gpu::kTilePredicted, 0, 0};
+    const Image picture = makeRoiPicture(makeGrey({33, 17}, 4, 0.5f), kinds, {});
+    CHECK(picture.channels == 3);
+    CHECK(picture.size_px == glm::uvec2(33, 17));
+    CHECK(near(pixelOf(picture, 0, 0), tinted(PixelOrigin::kEdgeRoi, 0.5f)));
+    CHECK(near(pixelOf(picture, 15, 15), tinted(PixelOrigin::kEdgeRoi, 0.5f)));
+    CHECK(near(pixelOf(picture, 16, 15), glm::vec3(0.5f)));
+    CHECK(near(pixelOf(picture, 31, 0), glm::vec3(0.5f)));
+    CHECK(near(pixelOf(picture, 32, 15), tinted(PixelOrigin::kCenterRoi, 0.5f)));
+    CHECK(near(pixelOf(picture, 15, 16), tinted(PixelOrigin::kPredictedRoi, 0.5f)));
+    CHECK(near(pixelOf(picture, 32, 16), glm::vec3(0.5f)));
+}
+
+TEST_CASE("interpolatedPixelsAreTintedWhereNoTileWasRenderedAgain") {
+    std::vector<std::uint32_t> kinds{0, gpu::kTilePredicted};
+    std::vector<std::uint8_t> classes(32 * 16, gpu::kCovered);
+    classes[0] = gpu::kGap;
+    classes[1] = gpu::kHole;
+    classes[20] = gpu::kHole;  // in the tile that was rendered again
+    const std::vector<std::uint8_t> origins = pixelOrigins({32, 16}, kinds, classes);
+    CHECK(origins[0] == static_cast<std::uint8_t>(PixelOrigin::kGap));
+    CHECK(origins[1] == static_cast<std::uint8_t>(PixelOrigin::kHole));
+    CHECK(origins[2] == static_cast<std::uint8_t>(PixelOrigin::kReprojected));
+    CHECK(origins[20] == static_cast<std::uint8_t>(PixelOrigin::kPredictedRoi));
+    CHECK(std::ranges::count(origins, static_cast<std::uint8_t>(PixelOrigin::kPredictedRoi)) == 256);
+    const Image picture = makeRoiPicture(makeGrey({32, 16}, 3, 0.25f), kinds, classes);
+    CHECK(near(pixelOf(picture, 0, 0), tinted(PixelOrigin::kGap, 0.25f)));
+    CHECK(near(pixelOf(picture, 1, 0), tinted(PixelOrigin::kHole, 0.25f)));
+}
+
+TEST_CASE("reprojectedPixelsStayAsTheyAre") {
+    Image image = makeGrey({5, 4}, 4, 0.0f);
+    for (std::size_t i = 0; i < image.values.size(); ++i) { image.values[i] = static_cast<float>(i) / 100.0f; }
+    const Image picture = makeRoiPicture(image, {}, {});
+    CHECK(near(pixelOf(picture, 0, 0), pixelOf(image, 0, 0)));
+    CHECK(near(pixelOf(picture, 4, 3), pixelOf(image, 4, 3)));
+}
+
+TEST_CASE("tintsCanBeToldApartOnAnyPicture") {
+    // Whatever grey is below, the tints differ by more than an eye needs; and a picture brighter than the display keeps them.
+    for (const PixelOrigin a : kTintedOrigins) {
+        for (const PixelOrigin b : kTintedOrigins) {
+            if (a != b) { CHECK(kTintShare * glm::length(tintOf(a) - tintOf(b)) > 0.2f); }
+        }
+        // A tint has colour: no grey looks like it.
+        const glm::vec3 tint = tintOf(a);
+        CHECK(std::max({tint.r, tint.g, tint.b}) - std::min({tint.r, tint.g, tint.b}) > 0.7f);
+    }
+    const std::vector<std::uint32_t> kinds{gpu::kTileEdge};
+    CHECK(near(pixelOf(makeRoiPicture(makeGrey({1, 1}, 3, 7.0f), kinds, {}), 0, 0), tinted(PixelOrigin::kEdgeRoi, 1.0f)));
+}
+
+TEST_CASE("listsThatDoNotFitAreRefused") {
+    const std::vector<std::uint32_t> one_kind{0}, unknown_kind{4};
+    const std::vector<std::uint8_t> one_class{gpu::kHole}, unknown_class{3};
+    CHECK_THROWS_AS(pixelOrigins({17, 1}, one_kind, {}), Error);
+    CHECK_THROWS_AS(pixelOrigins({2, 1}, {}, one_class), Error);
+    CHECK_THROWS_AS(pixelOrigins({1, 1}, unknown_kind, {}), Error);
+    CHECK_THROWS_AS(pixelOrigins({1, 1}, {}, unknown_class), Error);
+    CHECK_THROWS_AS(makeRoiPicture(makeGrey({1, 1}, 1, 0.0f), {}, {}), Error);
+    CHECK(pixelOrigins({0, 0}, {}, {}).empty());
+}
