@@ -1,0 +1,120 @@
+// The stereo passes on the device, one at a time, over arrays that come from the host and go back to it.
+#pragma once
+
+#include "engine/passes/frame_buffers.h"
+#include "engine/passes/stereo_passes.h"
+#include "tests/gpu_fixture.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace binosplat::test {
+
+// What passes 8 and 9 share. Each call runs one of them; between calls every array may be read or replaced.
+class StereoOnDevice {
+public:
+    // `depths` may be empty where the choice of depth reads none.
+    StereoOnDevice(Gpu& gpu, const gpu::StereoView& view, const std::vector<gpu::vec4>& colours, const std::vector<float>& depths,
+                   const std::vector<gpu::StereoPixel>& pixels, std::uint32_t boxes = 64)
+        : view_(view),
+          view_buffer_(gpu.upload("stereo view", std::vector{view})),
+          counters_(gpu.upload("stereo counters", std::vector{gpu::StereoCounters{}})),
+          colours_(gpu.upload("dominant colours", colours)),
+          depths_(gpu.upload("dominant depths", depths)),
+          pixels_(gpu.upload("stereo pixels", pixels)),
+          buffers_(gpu.context(), view.size_px, boxes),
+          gpu_(gpu) {
+        gpu.run([&](Commands& commands) {
+            commands.fillZero(buffers_.tiles());
+            commands.fillZero(buffers_.pixelClasses());
+        });
+    }
+
+    void reproject() {
+        dispatch("8a_reproject", {alongRows(), readDepth()}, gpu::ReprojectPass{view(), colours(), depths(), stereoPixels()},
+                 view_.size_tiles);
+    }
+    void resolve(bool predict) {
+        dispatch("8b_resolve", {alongRows(), predict ? 1u : 0u},
+                 gpu::ResolvePass{view(), colours(), stereoPixels(), buffers_.tileErrors(), counters()}, {view_.size_px.y, 1});
+    }
+    void boundDepths() {
+        dispatch("8c_depth_bounds", {alongRows(), readDepth()},
+                 gpu::DepthBoundsPass{view(), colours(), depths(), stereoPixels(), buffers_.depthBins()}, view_.size_tiles);
+    }
+    void findEdgeRois() {
+        dispatch("8d_edge_rois", {alongRows()}, gpu::EdgeRoisPass{view(), buffers_.depthBins(), buffers_.tileKinds(), counters()}, {1, 1});
+    }
+    // All steps of the pass, whatever the counters say of holes.
+    void findComponents() {
+        const gpu::ComponentsPass pass{
+            view(), pixels_.address<gpu::ComponentPixel>(), buffers_.boxes(), buffers_.tileKinds(), counters(), buffers_.boxCapacity()};
+        for (std::uint32_t step = 0; step < 4; ++step) { dispatch("8e_components", {alongRows(), step}, pass, view_.size_tiles); }
+        dispatch("8e_components", {alongRows(), 4u}, pass, {3, 1});
+    }
+    void resample() {
+        dispatch("9_resample", {alongRows()},
+                 gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), buffers_.tileKinds(),
+                                   buffers_.pixelClasses().address<gpu::uint>()},
+                 view_.size_tiles);
+    }
+
+    [[nodiscard]] std::vector<gpu::StereoPixel> readPixels() { return gpu_.readBack<gpu::StereoPixel>(pixels_, pixelCount()); }
+    [[nodiscard]] std::vector<gpu::vec4> readAffiliated() { return gpu_.readBack<gpu::vec4>(pixels_, pixelCount()); }
+    [[nodiscard]] gpu::StereoCounters readCounters() { return gpu_.readBack<gpu::StereoCounters>(counters_, 1)[0]; }
+    [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return readTiles(buffers_.tileErrors(), tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return readTiles(buffers_.tileKinds(), tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readDepthBins() { return readTiles(buffers_.depthBins(), gpu::kDepthBins); }
+    [[nodiscard]] std::vector<std::uint8_t> readClasses() {
+        const std::size_t row_words = view_.size_tiles.x;
+        const auto words = gpu_.readBack<gpu::uint>(buffers_.pixelClasses(), row_words * view_.size_px.y);
+        std::vector<std::uint8_t> classes;
+        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
+            for (std::size_t x = 0; x < view_.size_px.x; ++x) {
+                classes.push_back(static_cast<std::uint8_t>((words[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
+            }
+        }
+        return classes;
+    }
+
+    void writePixels(const std::vector<gpu::StereoPixel>& pixels) { gpu_.upload(pixels_, pixels); }
+    void writeCounters(const gpu::StereoCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
+    void writeTileKinds(const std::vector<gpu::uint>& kinds) { writeTiles(buffers_.tileKinds(), kinds); }
+    void writeDepthBins(const std::vector<gpu::uint>& bins) { writeTiles(buffers_.depthBins(), bins); }
+
+    [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
+    [[nodiscard]] std::size_t tileCount() const { return buffers_.tileCount(); }
+
+private:
+    [[nodiscard]] std::uint32_t alongRows() const { return isRectified(view_) ? 1 : 0; }
+    [[nodiscard]] std::uint32_t readDepth() const { return view_.depth_choice != gpu::kDepthInverse ? 1 : 0; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::StereoView> view() const { return view_buffer_.address<gpu::StereoView>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::StereoCounters> counters() const { return counters_.address<gpu::StereoCounters>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::vec4> colours() const { return colours_.address<gpu::vec4>(); }
+    [[nodiscard]] gpu::DeviceAddress<float> depths() const { return depths_.address<float>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::StereoPixel> stereoPixels() const { return pixels_.address<gpu::StereoPixel>(); }
+
+    template <typename Pass>
+    void dispatch(const char* shader, std::initializer_list<std::uint32_t> constants, const Pass& pass, glm::uvec2 groups) {
+        const Kernel kernel(gpu_.context(), shader, sizeof(Pass), constants);
+        gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
+    }
+    // The arrays over the tiles lie in one buffer.
+    [[nodiscard]] std::uint64_t offsetOf(gpu::DeviceAddress<gpu::uint> array) const { return array.value - buffers_.tileErrors().value; }
+    [[nodiscard]] std::vector<gpu::uint> readTiles(gpu::DeviceAddress<gpu::uint> array, std::size_t count) {
+        return gpu_.readBack<gpu::uint>(buffers_.tiles(), count, offsetOf(array));
+    }
+    void writeTiles(gpu::DeviceAddress<gpu::uint> array, const std::vector<gpu::uint>& values) {
+        auto all = gpu_.readBack<gpu::uint>(buffers_.tiles(), buffers_.tiles().bytes() / sizeof(gpu::uint));
+        std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(offsetOf(array) / sizeof(gpu::uint)));
+        gpu_.upload(buffers_.tiles(), all);
+    }
+
+    gpu::StereoView view_;
+    Buffer view_buffer_, counters_, colours_, depths_, pixels_;
+    StereoBuffers buffers_;
+    Gpu& gpu_;
+};
+
+}  // namespace binosplat::test
