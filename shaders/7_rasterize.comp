@@ -23,10 +23,11 @@ const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread, in a column
 const uint kRowStep = kThreadsPerCell / kCellSize;             // rows from one to the next
 const float kFar = 3e38;                                       // a rho that is no hit
+const float kNoLowPass = 1e30;                                 // likewise, but nearer than a hit at no depth (z infinite)
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
 shared vec4 batch_reference[kBatchSize];  // reference_px, u/z and v/z there
-shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or kFar
+shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or 0
 shared vec4 batch_depth[kBatchSize];      // 1/z there, its slopes, -log2(opacity)
 shared uvec2 batch_colour[kBatchSize];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];
@@ -53,7 +54,7 @@ void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
     const bool has_reference = hasReference(splat.opacity_colour);
     const float scale = sqrt(kLog2PerRho);
     batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, scale * splat.reference_px);
-    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : kFar);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat.opacity_colour));
     batch_colour[slot] = splat.opacity_colour;
     // A subgroup's slots follow one another, so that one lane can set the bits of all; 32 divides the slot of lane 0 or is
@@ -134,8 +135,10 @@ void main() {
                 const vec2 d = first_px - reference.xy;
                 const float u = reference.z + plane.x * d.x;
                 const float q = depth_form.x + depth_form.y * d.x;
-                const float rho2_x = plane.w < kFar ? plane.w * (d.x * d.x) : kFar;
-                const float centre_z = 1 / depth_form.x;
+                // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not even 0.
+                const bool low_pass = plane.w > 0;
+                const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
+                const float centre_z = low_pass ? 1 / depth_form.x : 0;
                 float most_open = 0;
                 // Without branches: pixels that the splat does not reach blend it with weight 0.
                 [[unroll]] for (uint p = 0; p < kPixels; ++p) {

@@ -1,0 +1,200 @@
+// Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
+#include "engine/frame.h"
+#include "engine/picture/metrics.h"
+#include "tests/frame_runs.h"
+#include "tests/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace binosplat;
+using test::Gpu;
+using test::renderMono;
+using test::ViewedScene;
+
+namespace {
+
+FrameSettings makeSettings(const glm::dvec3& background = glm::dvec3(0.0), bool moments = false) {
+    FrameSettings settings;
+    settings.mode = Mode::kMono;
+    settings.background = background;
+    settings.keep_moments = moments;
+    return settings;
+}
+
+reference::Picture renderTwin(const ViewedScene& view, const FrameSettings& settings) {
+    reference::Settings twin;
+    twin.near = settings.near;
+    twin.background = settings.background;
+    twin.inverse_depth_moments = settings.keep_moments;
+    return reference::render(view.scene, view.eye, twin);
+}
+
+// How far the depths of opaque pixels are from the twin's: which are off by more than 1e-3 of themselves, and the greatest
+// difference.
+struct DepthErrors {
+    std::uint64_t opaque = 0, off = 0;
+    double greatest = 0.0;
+};
+DepthErrors compareDepths(const Image& image, const reference::Picture& twin) {
+    DepthErrors errors;
+    for (std::size_t i = 0; i < twin.depth.size(); ++i) {
+        if (twin.rgba[i].a <= 0.5) { continue; }
+        const double difference = std::abs(static_cast<double>(image.values[i]) - twin.depth[i]);
+        ++errors.opaque;
+        errors.off += difference <= 1e-3 * twin.depth[i] ? 0 : 1;
+        errors.greatest = std::max(errors.greatest, std::isnan(difference) ? HUGE_VAL : difference);
+    }
+    return errors;
+}
+
+double farthestDepth(const ViewedScene& view) {
+    double farthest = 0.0;
+    const Pose camera_from_world = inverse(view.eye.world_from_camera);
+    for (const glm::vec3& position : view.scene.positions) {
+        farthest = std::max(farthest, transform(camera_from_world, glm::dvec3(position)).z);
+    }
+    return farthest;
+}
+
+// A frame must be the twin's but for rounding. Hard thresholds flip on rounding in a few pixels: alpha >= 1/255, and T < 1e-4,
+// where T may have been as much as 1e-2, since alpha is at most 0.99: a flip moves a weight of up to 1e-2. The opacity's 18 bits
+// let T err by 1e-5 alpha / (1 - alpha) a layer, which is why there are such pixels at all (measured: 6e-5 of them).
+void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings) {
+    CAPTURE(view.name);
+    const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
+    const reference::Picture twin = renderTwin(view, settings);
+    const Difference difference = compare(frame.picture, test::toImage(twin), 4);
+    const DepthErrors depth = compareDepths(frame.depth, twin);
+    CHECK(difference.not_finite == 0);
+    CHECK(difference.psnrDb() >= 55.0);
+    CHECK(difference.shareOff() <= 0.0002);
+    CHECK(compare(frame.depth, frame.depth, 1).not_finite == 0);
+    CHECK(static_cast<double>(depth.off) <= 2.0 + 1e-4 * static_cast<double>(depth.opaque));
+    CHECK(depth.greatest <= 0.0101 * farthestDepth(view));
+    MESSAGE(view.name << ": " << difference.psnrDb() << " dB, largest " << difference.largest
+                      << ", off by more than 2/255: " << difference.off << " of " << difference.values << "; depth: " << depth.off << " of "
+                      << depth.opaque << " off, greatest " << depth.greatest);
+}
+
+View viewAlong(const glm::dvec3& eye, const glm::dvec3& look, double fov_x_deg) { return {eye, look, {0.0, -1.0, 0.0}, fov_x_deg}; }
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them") {
+    const auto data = test::sharedData();
+    if (!data) { return; }
+    const struct {
+        const char* file;
+        View view;
+    } cases[] = {
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0)},
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0)},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0)},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0)},
+        {"statues/angel_2dgs_sh0.ply", viewAlong({0.0, -2.0, -5.0}, {0.0, -2.0, 0.0}, 60.0)},
+    };
+    for (const auto& [file, view] : cases) {
+        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {768, 768})}, makeSettings());
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the atelier is rendered as the twin renders it") {
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}));
+}
+
+TEST_CASE_FIXTURE(Gpu, "a cloud about the eye is rendered as the twin renders it") {
+    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings());
+}
+
+TEST_CASE_FIXTURE(Gpu, "moments of inverse depth are the twin's, on a background that shows") {
+    const ViewedScene view = test::viewBuiltin("builtin:atelier", {320, 200}, 20000);
+    for (const glm::dvec3& background : {glm::dvec3(0.0), glm::dvec3(1.0, 0.5, 0.25)}) {
+        const FrameSettings settings = makeSettings(background, true);
+        checkAgainstTwin(*this, view, settings);
+        const auto frame = renderMono(context(), view.scene, view.eye, settings);
+        const reference::Picture twin = renderTwin(view, settings);
+        const Image truth = test::toImage(twin.size_px, twin.inverse_depth, twin.inverse_depth_squared);
+        const Difference difference = compare(frame.moments, truth, 2);
+        CHECK(difference.not_finite == 0);
+        CHECK(difference.psnrDb() >= 80.0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "one splat is the Gaussian that its parameters say, at every pixel") {
+    // Disc at z = 2 facing the eye, scales 0.2 and 0.1, opacity 0.8: with f in pixels u = 2 dx / (0.2 f), v = 2 dy / (0.1 f). It is far
+    // wider than the low-pass.
+    const ViewedScene view = test::viewBuiltin("builtin:one-splat", {255, 255});
+    const glm::dvec3 background(0.25, 0.5, 0.75), colour(0.9, 0.6, 0.3);
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(background));
+    double worst_colour = 0.0, worst_depth = 0.0;
+    for (int i = 0; i < 255 * 255; ++i) {
+        const glm::dvec2 d(i % 255 - 127, i / 255 - 127);
+        const glm::dvec2 uv = 2.0 * d / (glm::dvec2(0.2, 0.1) * view.eye.intrinsics.fx);
+        double alpha = 0.8 * std::exp(-0.5 * glm::dot(uv, uv));
+        if (std::abs(alpha * 255.0 - 1.0) < 1e-3) { continue; }  // too near the cut to call
+        if (alpha < 1.0 / 255.0) { alpha = 0.0; }
+        const float* rgba = &frame.picture.values[static_cast<std::size_t>(4 * i)];
+        for (int channel = 0; channel < 3; ++channel) {
+            worst_colour = std::max(
+                worst_colour, std::abs(static_cast<double>(rgba[channel]) - alpha * colour[channel] - (1.0 - alpha) * background[channel]));
+        }
+        worst_colour = std::max(worst_colour, std::abs(static_cast<double>(rgba[3]) - alpha));
+        worst_depth = std::max(worst_depth, std::abs(static_cast<double>(frame.depth.values[static_cast<std::size_t>(i)]) - 2.0 * alpha));
+    }
+    CHECK(worst_colour <= 3e-4);  // colours are half floats
+    CHECK(worst_depth <= 3e-5);   // opacities have steps of 1.06e-5
+}
+
+TEST_CASE_FIXTURE(Gpu, "two layers blend front to back, in colour, depth and its inverse moments") {
+    // Opacities 0.5 at z = 2 and 0.9 at z = 4, with the same u and v at every pixel.
+    const ViewedScene view = test::viewBuiltin("builtin:two-layers", {255, 255});
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(glm::dvec3(0.0), true));
+    for (const glm::ivec2 d : {glm::ivec2(0, 0), glm::ivec2(20, 0), glm::ivec2(-30, 41), glm::ivec2(7, -60)}) {
+        const double f = view.eye.intrinsics.fx, rho = glm::dot(glm::dvec2(d), glm::dvec2(d)) * 16.0 / (f * f);
+        const double near = 0.5 * std::exp(-0.5 * rho), far = (1.0 - near) * 0.9 * std::exp(-0.5 * rho);
+        const auto pixel = static_cast<std::size_t>((127 + d.y) * 255 + 127 + d.x);
+        const glm::dvec3 colour = near * glm::dvec3(0.8) + far * glm::dvec3(0.1, 0.2, 0.6);
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            CHECK(static_cast<double>(frame.picture.values[4 * pixel + channel]) ==
+                  doctest::Approx(colour[static_cast<int>(channel)]).epsilon(5e-4));
+        }
+        CHECK(static_cast<double>(frame.depth.values[pixel]) == doctest::Approx(2.0 * near + 4.0 * far).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel]) == doctest::Approx(near / 2.0 + far / 4.0).epsilon(5e-5));
+        CHECK(static_cast<double>(frame.moments.values[2 * pixel + 1]) == doctest::Approx(near / 4.0 + far / 16.0).epsilon(5e-5));
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "D/A is the depth of a plane that all splats lie in, slanted too") {
+    // z = 4 + x meets the ray (x, y, 1) z at z = 4 / (1 - x). Each splat is hit there and not at its centre's depth.
+    const ViewedScene view = test::viewBuiltin("builtin:slanted-wall", {256, 256});
+    const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
+    double worst = 0.0;
+    int opaque = 0;
+    for (std::size_t i = 0; i < frame.depth.values.size(); ++i) {
+        const double alpha = static_cast<double>(frame.picture.values[4 * i + 3]);
+        if (alpha < 0.5) { continue; }
+        const double x = (static_cast<double>(i % 256) + 0.5 - view.eye.intrinsics.cx) / view.eye.intrinsics.fx;
+        worst = std::max(worst, std::abs(static_cast<double>(frame.depth.values[i]) / alpha * (1.0 - x) / 4.0 - 1.0));
+        ++opaque;
+    }
+    CHECK(opaque > 20000);
+    CHECK(worst <= 1e-5);
+}
+
+TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
+    for (const auto& [name, place] :
+         {std::pair("builtin:fence", std::pair(0.1, 3.0)), std::pair("builtin:step-edge", std::pair(0.4, 4.0))}) {
+        CAPTURE(name);
+        const ViewedScene view = test::viewBuiltin(name, {256, 256});
+        const auto frame = renderMono(context(), view.scene, view.eye, makeSettings());
+        // A column between two bars, and one right of the edge, by x on the plane z = 1, and the wall that it meets.
+        const auto column = static_cast<std::size_t>(view.eye.intrinsics.cx + view.eye.intrinsics.fx * place.first);
+        for (std::size_t row = 32; row < 224; ++row) {
+            const std::size_t pixel = row * 256 + column;
+            CHECK(static_cast<double>(frame.depth.values[pixel] / frame.picture.values[4 * pixel + 3]) ==
+                  doctest::Approx(place.second).epsilon(1e-5));
+        }
+    }
+}
