@@ -42,7 +42,9 @@ public:
     }
 
     FrameResult render(StereoFrame& frame, const std::string& name) {
-        FrameSettings settings = frameSettings(options_, name);
+        StereoOptions stereo = options_.stereo;
+        stereo.mode = name;
+        FrameSettings settings = frameSettings(options_.camera, stereo);
         settings.keep_depth = false;  // nobody reads it here, so no mode pays for it unless it needs it itself
         const std::span<const Eye> eyes =
             settings.mode == Mode::kMono ? std::span(&cameras_.middle, 1) : std::span<const Eye>(cameras_.eyes);

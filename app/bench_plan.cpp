@@ -25,7 +25,9 @@ auto readEach(const Setting& setting, Read&& read) {
     return values;
 }
 
-std::string readMode(const Setting& setting) { return readChoice(setting, {"mono", "two-pass", "shared"}); }
+std::string readMode(const Setting& setting) {
+    return readChoice(setting, {"mono", "two-pass", "shared", "reproject", "paper", "predicted"});
+}
 
 void readBench(const SettingsTable& table, BenchPlan& plan) {
     refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up"});

@@ -20,7 +20,7 @@ struct BenchSeries {
 
 struct BenchPlan {
     std::vector<std::string> scenes;
-    std::vector<std::string> modes{"mono", "two-pass", "shared"};
+    std::vector<std::string> modes{"two-pass", "shared", "reproject", "paper", "predicted"};
     std::uint32_t repeats = 5;
     std::uint32_t warm_up = 1;  // frames of each mode before those that count
     std::vector<BenchSeries> series;

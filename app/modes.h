@@ -1,4 +1,4 @@
-// Which stereo modes this build can render, and the frame's settings out of the options.
+// From the options to a frame's mode and settings.
 #pragma once
 
 #include "app/options.h"
@@ -8,10 +8,13 @@
 
 namespace binosplat {
 
-// Throws Error (bad input) for a mode that is known but not built in.
+// Throws Error (bad input) for a name that is no mode.
 Mode frameMode(const std::string& name);
 
-// The settings of a frame in the named mode; everything else as the options say.
-FrameSettings frameSettings(const RunOptions& options, const std::string& mode);
+// Whether the mode makes one eye out of the other.
+bool reprojects(Mode mode);
+
+// The settings of a frame as the options say.
+FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo);
 
 }  // namespace binosplat

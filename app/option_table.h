@@ -24,13 +24,19 @@ inline constexpr OptionRow kCameraRows[] = {
 };
 
 inline constexpr OptionRow kStereoRows[] = {
-    {"mode", "stereo", "MODE", "mono, two-pass, shared, reproject, paper or predicted (default shared)"},
+    {"mode", "stereo", "MODE", "mono, two-pass, shared, reproject, paper or predicted (default predicted)"},
     {"dominant", "stereo", "SIDE", "eye that is rendered in full, left or right (default left)"},
     {"ipd", "stereo", "METRES", "distance of the eyes (default 0.063, or the headset's)"},
     {"center-roi", "stereo", "", "paper mode: also render again what is still unfilled inside the picture"},
     {"margin", "stereo", "PX", "paper mode: pixels added around what is rendered again (default 32)"},
     {"budget", "stereo", "FRACTION", "predicted mode: share of the tiles that is rendered again (default 0.15)"},
     {"depth", "stereo", "KIND", "depth that reprojects a pixel: sum, mean or inverse (default inverse)"},
+    {"gap-px", "stereo", "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes (default 2)"},
+    {"edge-samples", "stereo", "N", "paper mode: samples along each edge of the picture (default 64)"},
+    {"edge-bounds", "stereo", "KIND", "paper mode: paper, or tight: at the edges also what near content uncovers (default paper)"},
+    {"hole-error", "stereo", "E", "predicted mode: error that a pixel of a hole counts for (default 0.7)"},
+    {"newcomer-error", "stereo", "E",
+     "predicted mode: error of a pixel that splats cover which the dominant eye does not see (default 0.3)"},
 };
 
 inline constexpr OptionRow kRunRows[] = {

@@ -17,6 +17,11 @@ namespace binosplat {
 
 namespace {
 
+// A gap is filled pixel by pixel from its two ends; beyond this it is no crack in a surface but something hidden.
+constexpr std::uint64_t kMaxGapPx = 64;
+// Values lie between 0 and a few; the passes hold a pixel's squared error under 64.
+constexpr double kMaxExpectedError = 8.0;
+
 // What CLI11 fills in; values stay text until both layers are merged.
 struct CommandLine {
     std::map<std::string, std::string> values;
@@ -113,6 +118,11 @@ RunOptions runOptions(const Settings& settings) {
     read("margin", [&](const Setting& s) { stereo.margin_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxSide)); });
     read("budget", [&](const Setting& s) { stereo.budget = readNumber(s, 0.0, 1.0); });
     read("depth", [&](const Setting& s) { stereo.depth = readChoice(s, {"sum", "mean", "inverse"}); });
+    read("gap-px", [&](const Setting& s) { stereo.gap_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxGapPx)); });
+    read("edge-samples", [&](const Setting& s) { stereo.edge_samples = static_cast<std::uint32_t>(readCount(s, 1, kMaxSide)); });
+    read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });
+    read("hole-error", [&](const Setting& s) { stereo.hole_error = readNumber(s, 0.0, kMaxExpectedError); });
+    read("newcomer-error", [&](const Setting& s) { stereo.newcomer_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
     read("device", [&](const Setting& s) { options.device = readText(s); });
     return options;

@@ -26,13 +26,18 @@ struct CameraOptions {
 };
 
 struct StereoOptions {
-    std::string mode = "shared";
+    std::string mode = "predicted";
     Side dominant = kLeft;
     std::optional<double> ipd_m;
     bool center_roi = false;
     std::uint32_t margin_px = 32;
     double budget = 0.15;
     std::string depth = "inverse";
+    std::uint32_t gap_px = 2;
+    std::uint32_t edge_samples = 64;
+    std::string edge_bounds = "paper";
+    double hole_error = 0.7;
+    double newcomer_error = 0.3;
 };
 
 inline constexpr double kDefaultIpdMetres = 0.063;

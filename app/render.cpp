@@ -56,7 +56,7 @@ void runRender(const RenderOptions& options) {
 
     StereoFrame frame(context, gpu_scene);
     const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    const FrameSettings settings = frameSettings(options.run, stereo.mode);
+    const FrameSettings settings = frameSettings(options.run.camera, stereo);
     FrameResult result = frame.render(eyes, settings);
     // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
     if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }

@@ -54,6 +54,11 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["margin"] = stereo.margin_px;
     json["budget"] = stereo.budget;
     json["depth"] = stereo.depth;
+    json["gap-px"] = stereo.gap_px;
+    json["edge-samples"] = stereo.edge_samples;
+    json["edge-bounds"] = stereo.edge_bounds;
+    json["hole-error"] = stereo.hole_error;
+    json["newcomer-error"] = stereo.newcomer_error;
     json["metres-per-unit"] = options.run.metres_per_unit;
     return json;
 }

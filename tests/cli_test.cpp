@@ -66,16 +66,12 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--dominant middle"), 1, "--dominant is middle, must be left or right");
     checkRefused(work.run(render + "--depth median"), 1, "--depth is median, must be sum, mean or inverse");
     checkRefused(work.run(render + "--mode fast"), 1, "--mode is fast, must be mono");
+    checkRefused(work.run(render + "--gap-px 65"), 1, "--gap-px is 65, must be a whole number from 0 to 64");
+    checkRefused(work.run(render + "--edge-samples 0"), 1, "--edge-samples is 0, must be a whole number from 1");
+    checkRefused(work.run(render + "--edge-bounds loose"), 1, "--edge-bounds is loose, must be paper or tight");
+    checkRefused(work.run(render + "--hole-error nan"), 1, "--hole-error is nan, must be a number from 0 to 8");
+    checkRefused(work.run(render + "--newcomer-error -1"), 1, "--newcomer-error is -1, must be a number from 0 to 8");
     checkRefused(work.run(render + "--headset nobody"), 1, "must be one of");
-    CHECK(work.isEmpty());
-}
-
-TEST_CASE("modesThatAreNotBuiltSaySo") {
-    const Workplace work;
-    for (const std::string mode : {"reproject", "paper", "predicted"}) {
-        checkRefused(work.run("render builtin:one-splat --out out --mode " + mode), 1,
-                     "mode " + mode + " is not available in this build yet");
-    }
     CHECK(work.isEmpty());
 }
 
@@ -130,6 +126,8 @@ TEST_CASE("configErrorsNameFileAndLine") {
     refuse("[camera]\neye = [1, 2]\n", "a.toml:2: eye is 1,2, must be three");
     refuse("[stereo]\nmargin = -1\n", "a.toml:2: margin is -1");
     refuse("[stereo]\ncenter-roi = 1\n", "a.toml:2: center-roi is 1, must be true or false");
+    refuse("[stereo]\ngap_px = 1.5\n", "a.toml:2: gap_px is 1.5, must be a whole number from 0 to 64");
+    refuse("[stereo]\nedge_bounds = 3\n", "a.toml:2: edge_bounds is 3, must be paper or tight");
     refuse("[stereo]\nmargins = 1\n", "a.toml:2: margins is not a known key");
     refuse("[stereo]\nnear = 1\n", "a.toml:2: near stands in [stereo], must stand in [camera]");
     refuse("[stereoo]\nmargin = 1\n", "a.toml:1: [stereoo] is not a known table");
@@ -173,7 +171,7 @@ TEST_CASE("aSceneCanBeWrittenAndDescribed") {
 TEST_CASE("renderWritesItsFilesAndNothingElse") {
     const Workplace work;
     const std::string float_extension = extensionOf(PictureKind::kFloat), display_extension = extensionOf(PictureKind::kDisplay);
-    for (const std::string mode : {"mono", "two-pass", "shared"}) {
+    for (const std::string mode : {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}) {
         const Outcome outcome =
             work.run("render builtin:one-splat --size 40x24 --out a/" + mode + " --mode " + mode, "BINOSPLAT_VALIDATION=1");
         INFO(outcome.errors);
@@ -201,11 +199,28 @@ TEST_CASE("renderWritesItsFilesAndNothingElse") {
         }
         CHECK(report["options"]["mode"] == mode);
         CHECK(report["options"]["size"] == "40x24");
+        CHECK(report["options"]["gap-px"] == 2);
+        CHECK(report["counters"].contains("tiles_patched") == (mode == "reproject" || mode == "paper" || mode == "predicted"));
         CHECK(report["gpu_ms"].size() >= 7);
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
             CHECK(!entry.path().filename().string().starts_with("."));
         }
     }
+}
+
+TEST_CASE("theDefaultModeIsPredictedAndTheBudgetCountsTiles") {
+    const Workplace work;
+    const auto tilesPatched = [&](const std::string& options) {
+        const Outcome outcome = work.run("render builtin:step-edge --size 64x64 --out a " + options, "BINOSPLAT_VALIDATION=1");
+        INFO(outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        const nlohmann::json report = nlohmann::json::parse(std::ifstream(work.path / "a" / "report.json"));
+        return std::pair(report["options"]["mode"].get<std::string>(), report["counters"]["tiles_patched"].get<int>());
+    };
+    CHECK(tilesPatched("") == std::pair<std::string, int>("predicted", 2));  // 15 % of 16 tiles
+    CHECK(tilesPatched("--budget 0").second == 0);
+    CHECK(tilesPatched("--mode reproject").second == 0);
+    CHECK(tilesPatched("--mode paper --center-roi --edge-bounds tight --dominant right --depth mean").second > 0);
 }
 
 TEST_CASE("benchWritesTableJsonCsvAndPlot") {
@@ -216,8 +231,8 @@ TEST_CASE("benchWritesTableJsonCsvAndPlot") {
     REQUIRE(outcome.exit_code == 0);
     CHECK(outcome.output.find("7_rasterize") != std::string::npos);
     const nlohmann::json bench = nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"));
-    REQUIRE(bench["results"].size() == 6);
-    CHECK(bench["results"][1]["ratio_to_two_pass"] == 1.0);
+    REQUIRE(bench["results"].size() == 10);
+    CHECK(bench["results"][0]["ratio_to_two_pass"] == 1.0);
     CHECK(bench["results"][0]["frames"] == 2);
     CHECK(fs::exists(work.path / "out" / "bench.csv"));
     CHECK(fs::exists(work.path / "out" / "bench.svg"));

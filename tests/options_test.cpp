@@ -66,9 +66,14 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.stereo.margin_px == none.stereo.margin_px);
     CHECK(file.stereo.budget == none.stereo.budget);
     CHECK(file.stereo.depth == none.stereo.depth);
+    CHECK(file.stereo.gap_px == none.stereo.gap_px);
+    CHECK(file.stereo.edge_samples == none.stereo.edge_samples);
+    CHECK(file.stereo.edge_bounds == none.stereo.edge_bounds);
+    CHECK(file.stereo.hole_error == none.stereo.hole_error);
+    CHECK(file.stereo.newcomer_error == none.stereo.newcomer_error);
     CHECK(file.metres_per_unit == none.metres_per_unit);
     CHECK(none.camera.near == 0.2);
-    CHECK(none.stereo.mode == "shared");
+    CHECK(none.stereo.mode == "predicted");
 }
 
 TEST_CASE("commandLineWinsOverConfig") {
