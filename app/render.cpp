@@ -7,6 +7,7 @@
 #include "engine/error.h"
 #include "engine/frame.h"
 #include "engine/picture/image_io.h"
+#include "engine/picture/roi_picture.h"
 #include "engine/setup/output_files.h"
 
 namespace binosplat {
@@ -21,16 +22,21 @@ void requireNoValidationMessages(const Context& context) {
     check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
 }
 
-void writePictures(OutputFiles& files, StereoFrame& frame, const std::string& mode) {
+void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings) {
     const auto write = [&](const char* name, const Image& image) {
         writePicture(files.staging() / name, PictureKind::kFloat, image);
         writePicture(files.staging() / name, PictureKind::kDisplay, image);
     };
-    if (mode == "mono") {
+    if (settings.mode == Mode::kMono) {
         write("mono", frame.readPicture(0));
     } else {
-        write("left", frame.readPicture(kLeft));
-        write("right", frame.readPicture(kRight));
+        const std::array<Image, 2> pictures{frame.readPicture(kLeft), frame.readPicture(kRight)};
+        write("left", pictures[kLeft]);
+        write("right", pictures[kRight]);
+        // Tinted by what made each tile; a mode that renders every eye in full has nothing to tint.
+        const Image& affiliated = pictures[static_cast<std::size_t>(1 - settings.dominant)];
+        writePicture(files.staging() / "roi", PictureKind::kDisplay,
+                     makeRoiPicture(affiliated, frame.readTileKinds(), frame.readPixelClasses()));
     }
     writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
 }
@@ -63,7 +69,7 @@ void runRender(const RenderOptions& options) {
 
     FrameReport report{context.deviceName(),  options,        cameras, result.gpu_ms, result.gpu_total_ms, result.counters,
                        result.peak_gpu_bytes, result.left_out};
-    writePictures(files, frame, stereo.mode);
+    writePictures(files, frame, settings);
     writeText(files.staging() / "report.json", reportJson(report));
     requireNoValidationMessages(context);
     files.publish();

@@ -190,6 +190,7 @@ TEST_CASE("renderWritesItsFilesAndNothingElse") {
             CHECK(picture.values[middle * static_cast<std::size_t>(picture.channels)] == doctest::Approx(0.72).epsilon(0.05));
             CHECK(display.values[middle * 3] == doctest::Approx(0.72).epsilon(0.05));
         }
+        CHECK(fs::exists(folder / ("roi" + display_extension)) == (mode != "mono"));
         const Image depth = readPicture(folder / ("dominant_depth" + float_extension));
         CHECK(depth.channels == 1);
         CHECK(depth.size_px == glm::uvec2(40, 24));
