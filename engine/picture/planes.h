@@ -1,0 +1,50 @@
+// One channel of a picture, separable filters over it, and scores per pixel: what SSIM and FLIP share.
+#pragma once
+
+#include "engine/picture/image.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// One float per pixel, rows top to bottom.
+struct Plane {
+    glm::uvec2 size_px{0, 0};
+    std::vector<float> values;
+};
+
+// What a filter sees beyond the border.
+enum class Border {
+    kClamp,      // the nearest pixel of the picture
+    kZero,       // zeros
+    kCutWindow,  // nothing: the weights inside are scaled to the kernel's sum (kernels of positive weights only)
+};
+
+// Odd-sized weights, centre in the middle; the filter is a correlation: out(x) = sum over i of kernel[i] * in(x + i - radius).
+using Kernel = std::vector<float>;
+
+// Weights exp(-x^2 / (2 sigma^2)) at whole x from -radius to radius, scaled to the sum 1.
+Kernel gaussianKernel(double sigma, int radius);
+
+// `across` along rows, then `down` along columns. Same size as `in`; the result does not depend on the number of threads.
+Plane filterPlane(const Plane& in, const Kernel& across, const Kernel& down, Border border, int threads);
+
+// One score per pixel, rows top to bottom.
+struct PixelScores {
+    glm::uvec2 size_px{0, 0};
+    std::vector<float> values;
+
+    // Over all pixels; nothing where there are none.
+    [[nodiscard]] std::optional<double> mean() const;
+    // Over the pixels whose class (one per pixel, such as pixelOrigins gives) is `chosen`; nothing where there are none.
+    // Throws Error if there are not as many classes as pixels.
+    [[nodiscard]] std::optional<double> meanWhere(std::span<const std::uint8_t> classes, std::uint8_t chosen) const;
+};
+
+// Throws Error unless both pictures have the same size and three channels or more.
+void requireComparable(const Image& a, const Image& b);
+
+}  // namespace binosplat
