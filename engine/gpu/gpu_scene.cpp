@@ -14,6 +14,8 @@ namespace {
 
 // Splats that are packed and copied at a time: the upload buffer is at most 9 MiB.
 constexpr std::uint32_t kUploadSplats = 65536;
+// Splats that say where the scene's middle is.
+constexpr std::size_t kOriginSamples = 1u << 20;
 
 std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2; }
 
@@ -40,12 +42,21 @@ std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }
 
-// The middle of the scene's bounds, rounded so that positions relative to it are exact wherever float32 allows.
+// Where most splats are: the median along each axis. The middle of the bounds would lie far off with the farthest splat, and the
+// near ones would lose their digits to it.
 glm::dvec3 middleOf(const Scene& scene) {
     if (scene.size() == 0) { return glm::dvec3(0.0); }
-    glm::vec3 low = scene.positions[0], high = low;
-    for (const glm::vec3& p : scene.positions) { low = glm::min(low, p), high = glm::max(high, p); }
-    return glm::dvec3(glm::vec3(0.5 * (glm::dvec3(low) + glm::dvec3(high))));
+    const std::size_t stride = scene.size() / kOriginSamples + 1;
+    std::vector<float> values;
+    glm::dvec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        values.clear();
+        for (std::size_t i = 0; i < scene.size(); i += stride) { values.push_back(scene.positions[i][axis]); }
+        const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), half, values.end());
+        middle[axis] = static_cast<double>(*half);
+    }
+    return middle;
 }
 
 // Writes splats [first, first + count) of `scene` to `to`, laid out as `layout` (of at least `count` splats).
@@ -81,7 +92,9 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
 
     std::vector<gpu::SceneChunk> table;
     const std::uint64_t chunk_splats = 1ull << chunk_bits_;
-    const ChunkLayout upload_layout(std::min(kUploadSplats, std::max(splat_count_, 1u)), sh_degree_);
+    const std::uint64_t upload_splats =
+        std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(sh_degree_)), 1, std::min(kUploadSplats, std::max(splat_count_, 1u)));
+    const ChunkLayout upload_layout(upload_splats, sh_degree_);
     const Buffer upload(context, "scene upload", upload_layout.bytes, MemoryKind::kUpload);
     Commands commands(context);
     for (std::uint64_t first = 0; first < splat_count_; first += chunk_splats) {
@@ -90,8 +103,8 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
         const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
         table.push_back({buffer.address<gpu::vec3>(layout.positions), buffer.address<gpu::vec4>(layout.rotations), buffer.address<gpu::vec2>(layout.scales),
                          buffer.address<float>(layout.opacities), buffer.address<gpu::uvec2>(layout.base_colours), buffer.address<std::uint32_t>(layout.sh)});
-        for (std::uint64_t done = 0; done < count; done += kUploadSplats) {
-            const std::uint64_t block = std::min<std::uint64_t>(kUploadSplats, count - done);
+        for (std::uint64_t done = 0; done < count; done += upload_splats) {
+            const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
             packSplats(scene, first + done, block, origin_, upload_layout, upload.mapped<std::uint8_t>().data());
             commands.begin();
             const auto copyArray = [&](std::uint64_t from, std::uint64_t to, std::uint64_t bytes_per_splat) {
