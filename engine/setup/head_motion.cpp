@@ -1,0 +1,43 @@
+// Head motion: recorded axes to the camera's, and poses between samples.
+#include "engine/setup/head_motion.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+
+Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation, MotionAxes axes) {
+    // With F the diagonal matrix that takes recorded axes to the camera's, p becomes F p and R becomes F R F. OpenXR's F = (1, -1, -1)
+    // is a half turn about x: it turns the axis of R. Unity's F = (1, -1, 1) is a reflection: it also reverses the sense of R.
+    if (axes == MotionAxes::kOpenXr) {
+        return {glm::dquat(orientation.w, orientation.x, -orientation.y, -orientation.z), {position.x, -position.y, -position.z}};
+    }
+    return {glm::dquat(orientation.w, -orientation.x, orientation.y, -orientation.z), {position.x, -position.y, position.z}};
+}
+
+HeadMotion::HeadMotion(std::vector<HeadSample> samples) : samples_(std::move(samples)) {
+    assert(!samples_.empty() && samples_.front().time_s == 0.0);
+}
+
+Pose HeadMotion::poseAt(double time_s) const {
+    assert(!std::isnan(time_s));
+    const auto after = std::ranges::upper_bound(samples_, time_s, {}, &HeadSample::time_s);
+    if (after == samples_.begin()) { return samples_.front().world_from_head; }
+    if (after == samples_.end()) { return samples_.back().world_from_head; }
+    const auto before = std::prev(after);
+    const double share = (time_s - before->time_s) / (after->time_s - before->time_s);
+    const Pose &a = before->world_from_head, &b = after->world_from_head;
+    return {glm::normalize(glm::slerp(a.orientation, b.orientation, share)), glm::mix(a.position, b.position, share)};
+}
+
+Pose HeadMotion::cameraAt(double time_s, const Pose& world_from_start, double units_per_metre) const {
+    Pose start_from_camera = compose(inverse(samples_.front().world_from_head), poseAt(time_s));
+    start_from_camera.position *= units_per_metre;
+    return compose(world_from_start, start_from_camera);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,59 @@
+// Recorded head motion from a CSV file, as poses in the camera's axes, and how a camera follows it.
+#pragma once
+
+#include "engine/geometry.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+// The axes a recording was made in; y points up in both, x to the right.
+enum class MotionAxes {
+    kOpenXr,  // right-handed, the wearer looks along -z: OpenXR, WebXR, SteamVR
+    kUnity,   // left-handed, the wearer looks along +z: what Unity applications write
+};
+
+// A recorded pose in the camera's axes (x right, y down, z forward), head and world alike. Lengths stay in metres.
+Pose poseFromRecording(const glm::dvec3& position, const glm::dquat& orientation, MotionAxes axes);
+
+struct HeadSample {
+    double time_s = 0.0;   // since the first sample
+    Pose world_from_head;  // camera axes, metres
+};
+
+class HeadMotion {
+public:
+    // At least one sample, times strictly increasing from 0.
+    explicit HeadMotion(std::vector<HeadSample> samples);
+
+    [[nodiscard]] const std::vector<HeadSample>& samples() const { return samples_; }
+    [[nodiscard]] double duration_s() const { return samples_.back().time_s; }
+
+    // The pose at a time since the first sample: positions linearly, orientations by the shorter great arc (Shoemake, "Animating
+    // Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first and after the last sample the head rests.
+    [[nodiscard]] Pose poseAt(double time_s) const;
+
+    // A camera that starts at `world_from_start` and moves relative to there as the head does relative to its first pose, a metre
+    // being `units_per_metre` scene units: world_from_camera at `time_s`.
+    [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start, double units_per_metre = 1.0) const;
+
+private:
+    std::vector<HeadSample> samples_;
+};
+
+// Lines of eight comma-separated numbers: time, position x, y, z in metres, orientation x, y, z, w; blanks around numbers, empty lines
+// and lines that begin with # do not count. The first line may be a header; then it says what it can:
+//   - time_s, time_ms, time_us, time_ns or time_ticks (of 100 ns), or timestamp_..., is the unit of time. Without one, numbers
+//     under 1e12 are seconds and those from 1e16 to 1e18 ticks, as Windows counts them; between and beyond, the unit must be said;
+//   - a fifth column called w or qw means that the orientation is w, x, y, z.
+// Throws Error with file and line: other numbers of columns, numbers that are not finite, times that do not increase, orientations
+// whose length is not 1 to 5 %, files without a pose.
+HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes);
+
+// The same of a text in memory; `file` is for messages.
+HeadMotion parseHeadMotion(std::string_view text, const std::string& file, MotionAxes axes);
+
+}  // namespace binosplat

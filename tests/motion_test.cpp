@@ -1,0 +1,184 @@
+// Facts about recorded head motion.
+#include "engine/error.h"
+#include "engine/setup/head_motion.h"
+#include "tests/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+using namespace binosplat;
+
+namespace {
+
+constexpr double kQuarter = std::numbers::pi / 2.0;
+const std::string kHeader = "timestamp,x,y,z,qx,qy,qz,qw\n";
+
+HeadMotion parse(const std::string& text, MotionAxes axes = MotionAxes::kOpenXr) { return parseHeadMotion(text, "m.csv", axes); }
+
+std::string messageOf(const std::string& text) {
+    try {
+        parse(text);
+    } catch (const Error& error) { return error.what(); }
+    return "accepted";
+}
+
+bool refuses(const std::string& text, const std::string& part) {
+    const std::string message = messageOf(text);
+    INFO(message);
+    CHECK(message.find(part) != std::string::npos);
+    return message.find(part) != std::string::npos;
+}
+
+bool near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-9; }
+
+glm::dvec3 forwardOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 0.0, 1.0); }
+glm::dvec3 downOf(const Pose& pose) { return pose.orientation * glm::dvec3(0.0, 1.0, 0.0); }
+
+}  // namespace
+
+TEST_CASE("openXrAxesBecomeTheCameras") {
+    // One metre to the right, two up, three ahead (-z).
+    const Pose still = poseFromRecording({1.0, 2.0, -3.0}, glm::dquat(1.0, 0.0, 0.0, 0.0), MotionAxes::kOpenXr);
+    CHECK(near(still.position, {1.0, -2.0, 3.0}));
+    CHECK(near(forwardOf(still), {0.0, 0.0, 1.0}));
+    CHECK(near(downOf(still), {0.0, 1.0, 0.0}));
+    // A positive turn about y (up) looks left in a right-handed system; one about x looks up; one about z tilts to the left.
+    const Pose left = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(0.0, 1.0, 0.0)), MotionAxes::kOpenXr);
+    CHECK(near(forwardOf(left), {-1.0, 0.0, 0.0}));
+    const Pose up = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(1.0, 0.0, 0.0)), MotionAxes::kOpenXr);
+    CHECK(near(forwardOf(up), {0.0, -1.0, 0.0}));
+    const Pose tilted = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(0.0, 0.0, 1.0)), MotionAxes::kOpenXr);
+    CHECK(near(-downOf(tilted), {-1.0, 0.0, 0.0}));
+}
+
+TEST_CASE("unityAxesBecomeTheCameras") {
+    const Pose still = poseFromRecording({1.0, 2.0, 3.0}, glm::dquat(1.0, 0.0, 0.0, 0.0), MotionAxes::kUnity);
+    CHECK(near(still.position, {1.0, -2.0, 3.0}));
+    CHECK(near(forwardOf(still), {0.0, 0.0, 1.0}));
+    // In a left-handed system positive turns look right and down, and tilt to the left.
+    const Pose right = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(0.0, 1.0, 0.0)), MotionAxes::kUnity);
+    CHECK(near(forwardOf(right), {1.0, 0.0, 0.0}));
+    const Pose down = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(1.0, 0.0, 0.0)), MotionAxes::kUnity);
+    CHECK(near(forwardOf(down), {0.0, 1.0, 0.0}));
+    const Pose tilted = poseFromRecording({}, glm::angleAxis(kQuarter, glm::dvec3(0.0, 0.0, 1.0)), MotionAxes::kUnity);
+    CHECK(near(-downOf(tilted), {-1.0, 0.0, 0.0}));
+}
+
+TEST_CASE("headersBlanksAndCommentsAreOptional") {
+    for (const std::string& text : {kHeader + "0,1,2,3,0,0,0,1\n0.5,1,2,3,0,0,0,1\n", std::string("0,1,2,3,0,0,0,1\n0.5,1,2,3,0,0,0,1"),
+                                    std::string("\xef\xbb\xbf# a walk\r\n\r\n 0 ,\t1, 2,3 ,0,0,0,1 \r\n0.5,1,+2,3e0,0,0,0,1\r\n\r\n")}) {
+        const HeadMotion motion = parse(text);
+        REQUIRE(motion.samples().size() == 2);
+        CHECK(motion.duration_s() == 0.5);
+        CHECK(near(motion.poseAt(0.0).position, {1.0, -2.0, -3.0}));
+    }
+}
+
+TEST_CASE("timesAreSecondsOrTicksBySizeOrByHeader") {
+    const std::string pose = ",0,0,0,0,0,0,1\n";
+    // Two ticks of 100 ns apart, in numbers whose neighbours a double cannot tell apart.
+    CHECK(parse("637139354998275741" + pose + "637139354998275743" + pose).duration_s() == doctest::Approx(2e-7).epsilon(1e-12));
+    CHECK(parse("1700000000.25" + pose + "1700000000.5" + pose).duration_s() == 0.25);
+    CHECK(parse("-1" + pose + "1" + pose).duration_s() == 2.0);
+    const auto header = [&](const std::string& name) { return name + ",x,y,z,qx,qy,qz,qw\n1000" + pose + "3000" + pose; };
+    CHECK(parse(header("time")).duration_s() == 2000.0);
+    CHECK(parse(header("time_s")).duration_s() == 2000.0);
+    CHECK(parse(header("time_ms")).duration_s() == doctest::Approx(2.0));
+    CHECK(parse(header("timestamp_us")).duration_s() == doctest::Approx(2e-3));
+    CHECK(parse(header("timestamp_ns")).duration_s() == doctest::Approx(2e-6));
+    CHECK(parse(header("time_ticks")).duration_s() == doctest::Approx(2e-4));
+    CHECK(refuses("1700000000000" + pose, "m.csv:1: time is 1700000000000"));
+    CHECK(refuses("1700000000000000000" + pose, "unit in a header"));
+}
+
+TEST_CASE("aHeaderMayPutWFirst") {
+    const double half = std::sqrt(0.5);
+    const std::string values = fmt::format("0,0,0,0,{},{},0,0\n", half, half);
+    const HeadMotion w_first = parse("time_s,x,y,z,qw,qx,qy,qz\n" + values), w_last = parse(kHeader + values);
+    CHECK(near(forwardOf(w_first.poseAt(0.0)), {0.0, -1.0, 0.0}));
+    CHECK_FALSE(near(forwardOf(w_last.poseAt(0.0)), {0.0, -1.0, 0.0}));
+}
+
+TEST_CASE("mistakesAreNamedWithTheirLine") {
+    const std::string good = "0,0,0,0,0,0,0,1\n";
+    CHECK(refuses("", "m.csv: holds no poses"));
+    CHECK(refuses(kHeader, "m.csv: holds no poses"));
+    CHECK(refuses(kHeader + good + "1,0,0,0,0,0,1\n", "m.csv:3: 7 columns, must be 8"));
+    CHECK(refuses(good + "1,0,0,0,0,0,0,1,\n", "m.csv:2: 9 columns"));
+    CHECK(refuses(good + "1,0,nan,0,0,0,0,1\n", "m.csv:2: y is nan, must be a finite number"));
+    CHECK(refuses(good + "1,0,0,inf,0,0,0,1\n", "m.csv:2: z is inf"));
+    CHECK(refuses(good + "1,0,0,0,0,,0,1\n", "m.csv:2: qy is empty"));
+    CHECK(refuses(good + "x,0,0,0,0,0,0,1\n", "m.csv:2: time is x"));
+    CHECK(refuses("nan,0,0,0,0,0,0,1\n", "m.csv:1: time is nan"));
+    CHECK(refuses(kHeader + kHeader, "m.csv:2: time is timestamp"));
+    CHECK(refuses(good + "0,0,0,0,0,0,0,1\n", "m.csv:2: time is 0, must be after the pose before"));
+    CHECK(refuses("5,0,0,0,0,0,0,1\n4,0,0,0,0,0,0,1\n", "m.csv:2: time is 4"));
+    CHECK(refuses(good + "1,0,0,0,0,0,0,0\n", "m.csv:2: the orientation's length is 0"));
+    CHECK(refuses(good + "1,0,0,0,0.5,0.5,0.5,0.8\n", "must be 1"));
+    CHECK_THROWS_AS(readHeadMotion("/nowhere/motion.csv", MotionAxes::kOpenXr), Error);
+    CHECK_THROWS_AS(readHeadMotion("/", MotionAxes::kOpenXr), Error);
+}
+
+TEST_CASE("orientationsAreNormalised") {
+    const Pose pose = parse("0,0,0,0,0,0.0,0.0,1.01\n").poseAt(0.0);
+    CHECK(glm::length(pose.orientation) == doctest::Approx(1.0).epsilon(1e-15));
+}
+
+TEST_CASE("posesBetweenSamplesLieOnTheWay") {
+    // A quarter turn to the left in two seconds; the second orientation is written with the opposite sign, which is the same turn.
+    const double half = std::sqrt(0.5);
+    const HeadMotion motion = parse(fmt::format("10,0,0,0,0,0,0,1\n12,4,0,0,0,{},0,{}\n", -half, -half));
+    CHECK(near(motion.poseAt(1.0).position, {2.0, 0.0, 0.0}));
+    for (const double share : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+        const double angle = share * kQuarter;
+        CHECK(near(forwardOf(motion.poseAt(2.0 * share)), {-std::sin(angle), 0.0, std::cos(angle)}));
+    }
+    // The head rests outside of the recording.
+    CHECK(near(motion.poseAt(-5.0).position, {0.0, 0.0, 0.0}));
+    CHECK(near(motion.poseAt(99.0).position, {4.0, 0.0, 0.0}));
+    CHECK(near(forwardOf(motion.poseAt(99.0)), {-1.0, 0.0, 0.0}));
+    CHECK(near(parse("3,1,0,0,0,0,0,1\n").poseAt(7.0).position, {1.0, 0.0, 0.0}));
+}
+
+TEST_CASE("aCameraStartsWhereItIsPutAndMovesInItsOwnFrame") {
+    // The recorded wearer first looks left (a quarter turn about y), so that ahead is recorded -x; then steps half a metre ahead and
+    // looks another quarter turn to the left.
+    const double half = std::sqrt(0.5);
+    const HeadMotion motion = parse(fmt::format("0,7,8,9,0,{},0,{}\n1,6.5,8,9,0,1,0,0\n", half, half));
+    const Pose start = lookAt({1.0, 2.0, 3.0}, {1.0, 2.0, 13.0}, {1.0, 0.0, 0.0});
+    const Pose first = motion.cameraAt(0.0, start, 4.0);
+    CHECK(near(first.position, start.position));
+    CHECK(near(forwardOf(first), {0.0, 0.0, 1.0}));
+    // Half a metre is two units here. Up is world x and ahead world z, so right is world y.
+    const Pose last = motion.cameraAt(1.0, start, 4.0);
+    CHECK(near(last.position, {1.0, 2.0, 5.0}));
+    CHECK(near(forwardOf(last), {0.0, -1.0, 0.0}));
+    CHECK(near(downOf(last), {-1.0, 0.0, 0.0}));
+    // The way there is as long as recorded, times the scale.
+    CHECK(glm::length(motion.cameraAt(0.5, start, 4.0).position - start.position) == doctest::Approx(1.0));
+    CHECK(glm::length(motion.cameraAt(1.0, start).position - start.position) == doctest::Approx(0.5));
+}
+
+TEST_CASE("theSharedRecordingReadsAndItsWearerWalksForward") {
+    const auto data = binosplat::test::sharedData();
+    if (!data) { return; }
+    const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);
+    CHECK(motion.samples().size() == 4597);
+    CHECK(motion.duration_s() == doctest::Approx(76.5515291).epsilon(1e-9));
+    // While the head moves at 0.4 m/s or more, it moves along its line of sight rather than against it. Read as OpenXR's axes, the same
+    // recording is of somebody who walks backwards: it was made in Unity's.
+    double cosines = 0.0;
+    int count = 0;
+    for (double time_s = 0.0; time_s + 0.5 < motion.duration_s(); time_s += 0.05) {
+        const glm::dvec3 way = motion.poseAt(time_s + 0.5).position - motion.poseAt(time_s).position;
+        if (glm::length(way) < 0.2) { continue; }
+        cosines += glm::dot(glm::normalize(way), forwardOf(motion.poseAt(time_s + 0.25)));
+        ++count;
+    }
+    CHECK(count > 50);
+    CHECK(cosines / count > 0.3);
+    CHECK(motion.samples().front().world_from_head.position.z == doctest::Approx(0.09279076));
+}
