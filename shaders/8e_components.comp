@@ -36,6 +36,9 @@ void unite(uint a, uint b) {
     }
 }
 
+// With more components than boxes none gets one, since which came first is up to the order of threads.
+bool haveBoxes() { return pass.counters.at[0].components <= pass.box_capacity; }
+
 // Marks the tiles that [low, high) meets, grown by the margin.
 void markTiles(StereoView stereo, uvec2 low, uvec2 high, uint first, uint stride) {
     const uvec2 begin = uvec2(max(ivec2(low) - int(stereo.margin_px), ivec2(0))) / kTileSize;
@@ -50,7 +53,7 @@ void markTiles(StereoView stereo, uvec2 low, uvec2 high, uint first, uint stride
 void main() {
     const StereoView stereo = pass.stereo.at[0];
     if (kStep == kStepMark) {
-        const uint boxes = min(pass.counters.at[0].components, pass.box_capacity);
+        const uint boxes = haveBoxes() ? pass.counters.at[0].components : 0;
         const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
         for (uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; b < boxes; b += groups) {
             const PixelBox box = pass.boxes.at[b];
@@ -83,13 +86,13 @@ void main() {
             if (component < pass.box_capacity) { pass.boxes.at[component] = PixelBox(0xffffffffu, 0xffffffffu, 0, 0); }
         }
     } else {
-        const uint component = pass.pixels.at[rootOf(pixel)].component;
-        if (component < pass.box_capacity) {
+        if (haveBoxes()) {
+            const uint component = pass.pixels.at[rootOf(pixel)].component;
             atomicMin(pass.boxes.at[component].x0, at.x);
             atomicMin(pass.boxes.at[component].y0, at.y);
             atomicMax(pass.boxes.at[component].x1, at.x + 1);
             atomicMax(pass.boxes.at[component].y1, at.y + 1);
-        } else {  // more components than boxes: this pixel stands for itself
+        } else {  // this pixel stands for itself
             markTiles(stereo, at, at + 1, 0, 1);
         }
     }

@@ -13,6 +13,9 @@ layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds 
 shared uint digit_counts[256];
 shared uint chosen_digit, left_to_choose;
 
+// Where sums stop growing (8f), the order of threads decides by how much they went beyond.
+uint errorOf(uint tile) { return min(pass.tile_errors.at[tile], 0x7fffffffu); }
+
 // The error that the `wanted`-th worst tile has (1 counts from the worst), and how many tiles of just that error are wanted.
 uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
     uint prefix = 0;
@@ -22,7 +25,7 @@ uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
         digit_counts[gl_LocalInvocationIndex] = 0;
         barrier();
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kGroupSize) {
-            const uint error = pass.tile_errors.at[tile];
+            const uint error = errorOf(tile);
             if (shift == 24 || (error >> (shift + 8)) == (prefix >> (shift + 8))) { atomicAdd(digit_counts[(error >> shift) & 255], 1); }
         }
         barrier();
@@ -56,7 +59,7 @@ void main() {
         const uint tile = begin + gl_LocalInvocationIndex;
         bool selected = false;
         if (kPredicted) {
-            const uint error = tile < tiles ? pass.tile_errors.at[tile] : 0;
+            const uint error = tile < tiles ? errorOf(tile) : 0;
             const bool equal = error == threshold && error > 0;
             uint equal_here;
             const uint equal_before = at_threshold + scanGroup(equal ? 1 : 0, equal_here);

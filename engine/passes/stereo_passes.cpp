@@ -18,14 +18,15 @@ glm::dmat3 matrixOf(const Intrinsics& k) { return glm::dmat3(k.fx, 0, 0, 0, k.fy
 gpu::PixelMap pixelMap(const Eye& target, const Eye& source) {
     const Pose target_from_source = compose(inverse(target.world_from_camera), source.world_from_camera);
     const Intrinsics &k = target.intrinsics, &l = source.intrinsics;
-    const bool same_intrinsics = k.fx == l.fx && k.fy == l.fy && k.cx == l.cx && k.cy == l.cy;
     const glm::dquat& q = target.world_from_camera.orientation;
     const glm::dquat& r = source.world_from_camera.orientation;
-    const bool parallel = q.w == r.w && q.x == r.x && q.y == r.y && q.z == r.z;
-    glm::dmat3 excess(0.0);
-    if (!(same_intrinsics && parallel)) {
-        const glm::dmat3 rotation = parallel ? glm::dmat3(1.0) : glm::mat3_cast(target_from_source.orientation);
-        excess = matrixOf(k) * rotation * glm::inverse(matrixOf(l)) - glm::dmat3(1.0);
+    glm::dmat3 excess;
+    if (q.w == r.w && q.x == r.x && q.y == r.y && q.z == r.z) {
+        // K' K^-1 less the identity: exactly 0 wherever the intrinsics agree, so that rows stay rows if fy and cy do.
+        const double x = k.fx / l.fx, y = k.fy / l.fy;
+        excess = glm::dmat3(x - 1, 0, 0, 0, y - 1, 0, k.cx - x * l.cx, k.cy - y * l.cy, 0);
+    } else {
+        excess = matrixOf(k) * glm::mat3_cast(target_from_source.orientation) * glm::inverse(matrixOf(l)) - glm::dmat3(1.0);
     }
     glm::dvec3 shift = matrixOf(k) * target_from_source.position;
     // Eyes side by side differ along x alone, up to the rounding of their positions.
