@@ -4,9 +4,11 @@
 #include "engine/passes/frame_buffers.h"
 #include "engine/passes/stereo_passes.h"
 #include "tests/gpu_fixture.h"
+#include "tests/pass_stages.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace binosplat::test {
@@ -53,6 +55,43 @@ public:
         for (std::uint32_t step = 0; step < 4; ++step) { dispatch("8e_components", {alongRows(), step}, pass, view_.size_tiles); }
         dispatch("8e_components", {alongRows(), 4u}, pass, {3, 1});
     }
+    // Splats in `order` as `scene` holds them, with what the dominant eye's 4_project counted of each; eye 1 is the affiliated one.
+    void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
+        std::vector<gpu::uint> offsets(dominant_tiles.size());
+        std::exclusive_scan(dominant_tiles.begin(), dominant_tiles.end(), offsets.begin(), gpu::uint{0});
+        const std::size_t pairs = offsets.empty() ? 0 : offsets.back() + dominant_tiles.back();
+        const Buffer order_buffer = gpu_.upload("order", order), offset_buffer = gpu_.upload("dominant offsets", offsets);
+        const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size()), makeList(pairs)});
+        gpu::NewcomersPass pass{};
+        pass.chunks = scene.scene.chunks();
+        pass.eyes = scene.eyeViews();
+        pass.stereo = view();
+        pass.pixels = stereoPixels();
+        pass.order = order_buffer.address<gpu::uint>();
+        pass.visible = lists.address<gpu::ListState>();
+        pass.dominant_offsets = offset_buffer.address<gpu::uint>();
+        pass.dominant_pairs = lists.address<gpu::ListState>(sizeof(gpu::ListState));
+        pass.tile_errors = buffers_.tileErrors();
+        pass.counters = counters();
+        pass.chunk_bits = scene.scene.chunkBits();
+        pass.eye = 1;
+        dispatch("8f_newcomers", {}, pass, {static_cast<std::uint32_t>((order.size() + gpu::kGroupSize - 1) / gpu::kGroupSize), 1});
+    }
+    // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead.
+    struct Selected {
+        gpu::ListState masked_tiles, masked_visible;
+        std::vector<gpu::uint> tile_list, tiles_before;
+    };
+    Selected select(bool predicted, std::size_t visible_count) {
+        const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
+        const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
+        dispatch("8g_select", {predicted ? 1u : 0u},
+                 gpu::SelectPass{view(), buffers_.tileErrors(), buffers_.tileKinds(), buffers_.tileList(), buffers_.tilesBefore(), list(0),
+                                 list(1), list(2), counters()},
+                 {1, 1});
+        const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
+        return {states[1], states[2], readTiles(buffers_.tileList(), states[1].count), readTiles(buffers_.tilesBefore(), tileCount() + 1)};
+    }
     void resample() {
         dispatch("9_resample", {alongRows()},
                  gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), buffers_.tileKinds(),
@@ -81,6 +120,7 @@ public:
     void writePixels(const std::vector<gpu::StereoPixel>& pixels) { gpu_.upload(pixels_, pixels); }
     void writeCounters(const gpu::StereoCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
     void writeTileKinds(const std::vector<gpu::uint>& kinds) { writeTiles(buffers_.tileKinds(), kinds); }
+    void writeTileErrors(const std::vector<gpu::uint>& errors) { writeTiles(buffers_.tileErrors(), errors); }
     void writeDepthBins(const std::vector<gpu::uint>& bins) { writeTiles(buffers_.depthBins(), bins); }
 
     [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }

@@ -1,0 +1,20 @@
+// 8c: how often each depth occurs in a picture.
+#include "engine/reference/stereo.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::reference {
+
+std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice) {
+    constexpr double kBins = 1024.0, kBinsPerOctave = 32.0;
+    std::vector<std::uint32_t> bins(static_cast<std::size_t>(kBins), 0);
+    for (std::size_t i = 0; i < dominant.rgba.size(); ++i) {
+        if (dominant.rgba[i].w <= 0.5) { continue; }
+        const double octave = -std::log2(chooseInverseDepth(dominant, i, choice));
+        ++bins[static_cast<std::size_t>(std::clamp(std::floor(kBinsPerOctave * octave + kBins / 2.0), 0.0, kBins - 1.0))];
+    }
+    return bins;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,60 @@
+// 8f: splats that the target sees and the source does not, by the tiles they stand in.
+#include "engine/reference/splat.h"
+#include "engine/reference/stereo.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace binosplat::reference {
+namespace {
+
+constexpr double kTilePixels = kTileSize * kTileSize;
+
+// The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
+double squareCoverage(const ProjectedSplat& splat) {
+    const double low_pass = std::numbers::pi / kLowPassFactor;
+    if (!splat.disc) { return low_pass; }
+    const double jacobian = splat.plane_from_pixel.x * std::abs(splat.plane_from_pixel.z) / (splat.inverse_depth * splat.inverse_depth);
+    return low_pass + std::numbers::pi / jacobian;
+}
+
+// Whether the centre, held to the image, is nearer than what was reprojected there.
+bool standsInFront(const ProjectedSplat& splat, std::span<const Resolved> resolved, const glm::dvec2& size) {
+    const glm::dvec2 at = glm::floor(glm::clamp(splat.reference_px, glm::dvec2(0.0), size - 1.0));
+    return 1.0 / splat.depth > resolved[static_cast<std::size_t>(at.y * size.x + at.x)].inverse_depth;
+}
+
+std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size_t splats) {
+    std::vector<std::uint32_t> counts(splats, 0);
+    for (const TilePair& pair : pairs) { ++counts[pair.splat]; }
+    return counts;
+}
+
+}  // namespace
+
+std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
+                         std::span<const TilePair> source_pairs, std::span<const Resolved> resolved, glm::uvec2 size_px,
+                         double newcomer_error) {
+    const std::vector<std::uint32_t> in_target = countTiles(target_pairs, target_splats.size()),
+                                     in_source = countTiles(source_pairs, target_splats.size());
+    const auto isNewcomer = [&](std::size_t i) {
+        const ProjectedSplat& splat = target_splats[i];
+        return in_target[i] > 0 && in_source[i] == 0 && (!splat.low_pass || standsInFront(splat, resolved, glm::dvec2(size_px)));
+    };
+    std::size_t newcomers = 0;
+    for (std::size_t i = 0; i < target_splats.size(); ++i) { newcomers += isNewcomer(i) ? 1 : 0; }
+    for (const TilePair& pair : target_pairs) {
+        if (!isNewcomer(pair.splat)) { continue; }
+        const ProjectedSplat& splat = target_splats[pair.splat];
+        // A splat's part of a tile is its share of the box of tiles about it.
+        const glm::ivec4& box = splat.box_px;
+        const auto tilesAcross = [](int begin, int end) { return static_cast<double>((end - 1) / kTileSize - begin / kTileSize + 1); };
+        const double shared_by = tilesAcross(box.x, box.z) * tilesAcross(box.y, box.w);
+        // A disc that comes through the near plane may cover anything.
+        const double pixels = splat.low_pass ? std::min(squareCoverage(splat) / shared_by, kTilePixels) : kTilePixels;
+        errors[pair.tile] += newcomer_error * newcomer_error * splat.opacity * splat.opacity * pixels;
+    }
+    return newcomers;
+}
+
+}  // namespace binosplat::reference

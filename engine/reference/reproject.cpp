@@ -1,0 +1,102 @@
+// 8a: each pixel of the source goes to where the target sees it; the nearest stays.
+#include "engine/reference/eye_change.h"
+
+#include <algorithm>
+
+namespace binosplat::reference {
+namespace {
+
+// What arrives at each pixel of the target.
+struct Arrivals {
+    glm::ivec2 size_px;
+    std::vector<Arrival> pixels;
+
+    void put(const glm::ivec2& at, double inverse_depth, Arrival::Way way) {
+        if (at.x < 0 || at.y < 0 || at.x >= size_px.x || at.y >= size_px.y) { return; }
+        Arrival& arrival = pixels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size_px.x) + static_cast<std::size_t>(at.x)];
+        const bool nearer = arrival.way == Arrival::kNone || inverse_depth > arrival.inverse_depth;
+        if (nearer || (inverse_depth == arrival.inverse_depth && way > arrival.way)) { arrival = {way, inverse_depth}; }
+    }
+};
+
+using Moved = EyeChange::Moved;
+glm::ivec2 pixelOf(const glm::dvec2& place_px) { return glm::ivec2(glm::floor(place_px)); }
+
+// The pixels of a row whose centres lie between two that parted by at most gap_px pixels, and that neither covers.
+void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int row, int gap_px) {
+    const double reach = right.place_px.x - here.place_px.x;
+    if (!(reach > 1.0 && reach <= gap_px + 1.0)) { return; }
+    for (int x = pixelOf(here.place_px).x + 1; x < pixelOf(right.place_px).x; ++x) {
+        const double share = (x + 0.5 - here.place_px.x) / reach;
+        arrivals.put({x, row}, (1.0 - share) * here.inverse_depth + share * right.inverse_depth, Arrival::kBetween);
+    }
+}
+
+// The pixels whose centres lie in the parallelogram of three neighbours that did not part far and kept their sense.
+void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const Moved& below, int gap_px) {
+    const glm::dmat2 sides(right.place_px - here.place_px, below.place_px - here.place_px);
+    const glm::dvec2 low = glm::min(glm::dvec2(0.0), sides[0]) + glm::min(glm::dvec2(0.0), sides[1]);
+    const glm::dvec2 high = glm::max(glm::dvec2(0.0), sides[0]) + glm::max(glm::dvec2(0.0), sides[1]);
+    const double most = gap_px + 2.0;
+    if (!(glm::determinant(sides) > 0.0 && high.x - low.x <= most && high.y - low.y <= most)) { return; }
+    const glm::dmat2 shares_from_offset = glm::inverse(sides);
+    const glm::ivec2 first = pixelOf(here.place_px + low), last = pixelOf(here.place_px + high);
+    for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) {
+            const glm::ivec2 at(x, y);
+            if (at == pixelOf(here.place_px) || at == pixelOf(right.place_px) || at == pixelOf(below.place_px)) { continue; }
+            const glm::dvec2 share = shares_from_offset * (glm::dvec2(at) + 0.5 - here.place_px);
+            if (share.x < 0.0 || share.y < 0.0 || share.x > 1.0 || share.y > 1.0) { continue; }
+            const double across = right.inverse_depth - here.inverse_depth, down = below.inverse_depth - here.inverse_depth;
+            arrivals.put(at, here.inverse_depth + share.x * across + share.y * down, Arrival::kBetween);
+        }
+    }
+}
+
+}  // namespace
+
+double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice) {
+    const double weight = dominant.rgba[pixel].w;
+    if (weight <= 0.0) { return 0.0; }
+    switch (choice) {
+        case DepthChoice::kSum:
+            return 1.0 / dominant.depth[pixel];
+        case DepthChoice::kMean:
+            return 1.0 / (dominant.depth[pixel] / weight);
+        case DepthChoice::kInverse:
+            return dominant.inverse_depth[pixel] / weight;
+    }
+    return 0.0;
+}
+
+std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings) {
+    const EyeChange change(eyes.target, eyes.source);
+    const glm::ivec2 size(dominant.size_px);
+    const bool keeps_rows = change.keepsRows();
+    Arrivals arrivals{size, std::vector<Arrival>(dominant.rgba.size())};
+    // Where a pixel goes; nowhere if its depth is not one or it ends up behind the target.
+    const auto moved = [&](int x, int y) -> std::optional<Moved> {
+        if (x >= size.x || y >= size.y) { return std::nullopt; }
+        const double inverse_depth = chooseInverseDepth(dominant, static_cast<std::size_t>(y * size.x + x), settings.depth_choice);
+        if (!(inverse_depth >= 0.0) || !std::isfinite(inverse_depth)) { return std::nullopt; }
+        const Moved there = change.move({x + 0.5, y + 0.5}, inverse_depth);
+        return there.in_front ? std::optional(there) : std::nullopt;
+    };
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const auto here = moved(x, y);
+            if (!here) { continue; }
+            arrivals.put(pixelOf(here->place_px), here->inverse_depth, Arrival::kLanded);
+            const auto right = moved(x + 1, y);
+            if (settings.gap_px == 0 || !right) { continue; }
+            if (keeps_rows) {
+                putBetween(arrivals, *here, *right, y, settings.gap_px);
+            } else if (const auto below = moved(x, y + 1)) {
+                putWithin(arrivals, *here, *right, *below, settings.gap_px);
+            }
+        }
+    }
+    return std::move(arrivals.pixels);
+}
+
+}  // namespace binosplat::reference

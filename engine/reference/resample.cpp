@@ -1,0 +1,48 @@
+// 9: colours of the target, read from the source's picture where each pixel came from.
+#include "engine/reference/eye_change.h"
+#include "engine/reference/splat.h"
+
+#include <algorithm>
+
+namespace binosplat::reference {
+namespace {
+
+// Catmull and Rom's kernel: the cubic through samples at whole distances whose slope there is that of the neighbours' chord.
+double kernel(double distance) {
+    const double d = std::abs(distance);
+    if (d < 1.0) { return 1.0 + d * d * (1.5 * d - 2.5); }
+    return d < 2.0 ? 2.0 + d * (-4.0 + d * (2.5 - 0.5 * d)) : 0.0;
+}
+
+glm::dvec4 sample(const Picture& picture, const glm::dvec2& place_px) {
+    const glm::ivec2 size(picture.size_px);
+    // Samples lie at pixel centres; the border repeats outwards.
+    const glm::dvec2 at = glm::clamp(place_px, glm::dvec2(0.5), glm::dvec2(size) - 0.5) - 0.5;
+    const glm::ivec2 base(glm::floor(at));
+    glm::dvec4 sum(0.0);
+    for (int y = base.y - 1; y <= base.y + 2; ++y) {
+        for (int x = base.x - 1; x <= base.x + 2; ++x) {
+            const int index = std::clamp(y, 0, size.y - 1) * size.x + std::clamp(x, 0, size.x - 1);
+            sum += kernel(at.x - x) * kernel(at.y - y) * picture.rgba[static_cast<std::size_t>(index)];
+        }
+    }
+    return glm::max(sum, glm::dvec4(0.0));
+}
+
+}  // namespace
+
+std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                 const EyePair& eyes) {
+    const EyeChange source_from_target(eyes.source, eyes.target);
+    const std::size_t width = dominant.size_px.x, columns = tileGrid(dominant.size_px).x;
+    std::vector<glm::dvec4> colours(resolved.size(), glm::dvec4(0.0));
+    for (std::size_t i = 0; i < resolved.size(); ++i) {
+        const std::size_t x = i % width, y = i / width;
+        if (kinds[y / kTileSize * columns + x / kTileSize] != TileKind::kNone) { continue; }
+        const glm::dvec2 pixel_px(resolved[i].column + 0.5, static_cast<double>(y) + 0.5);
+        colours[i] = sample(dominant, source_from_target.move(pixel_px, resolved[i].inverse_depth).place_px);
+    }
+    return colours;
+}
+
+}  // namespace binosplat::reference

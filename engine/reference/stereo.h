@@ -1,0 +1,100 @@
+// The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
+// shaders/8*.comp and shaders/9_resample.comp; `renderStereo` runs them all. Source: DESIGN "the stereo methods"; paper, sections
+// 3.4 and 3.5. Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
+#pragma once
+
+#include "engine/reference/reference.h"
+
+#include <optional>
+
+namespace binosplat::reference {
+
+enum class DepthChoice { kSum, kMean, kInverse };                          // D, D/A, A/I
+enum class StereoMethod { kReproject, kPaper, kPredicted };                // which tiles are rendered again
+enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };            // what made a pixel
+enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted };  // why a tile is rendered again
+
+struct StereoSettings {
+    StereoMethod method = StereoMethod::kPredicted;
+    DepthChoice depth_choice = DepthChoice::kInverse;
+    int gap_px = 2;
+    int margin_px = 32;
+    int edge_samples = 64;
+    bool tight_edges = false;
+    bool center_rois = false;
+    double budget = 0.15;  // share of the tiles
+    double hole_error = 0.7, newcomer_error = 0.3;
+};
+
+// Two eyes of one size: the picture is the source's and goes to the target.
+struct EyePair {
+    Eye source, target;
+};
+
+// What the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
+double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice);
+
+// 8a: what reached a pixel of the target: the nearest, and whether it landed there or lies between two that did not part far.
+struct Arrival {
+    enum Way : std::uint8_t { kNone, kBetween, kLanded };
+    Way way = kNone;
+    double inverse_depth = 0.0;  // of the target's
+};
+std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings);
+
+// 8b: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
+struct Resolved {
+    PixelClass pixel_class;
+    std::uint32_t column;
+    double inverse_depth;
+};
+std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8b: the expected squared error of each tile, by holes and by pixels that blend several depths.
+std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, const EyePair& eyes,
+                                 const StereoSettings& settings);
+
+// 8c: how many pixels with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023; what is
+// nearer or farther counts as the first or the last.
+std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
+
+// 8d: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
+// see; and the tiles that meet them.
+struct InverseDepthBounds {
+    double far, near;
+};
+InverseDepthBounds findInverseDepthBounds(std::span<const std::uint32_t> bins);
+struct Borders {
+    int left, top, right, bottom;
+    bool operator==(const Borders&) const = default;
+};
+Borders findBorders(const InverseDepthBounds& bounds, const EyePair& eyes, const StereoSettings& settings);
+std::vector<TileKind> markEdges(const Borders& borders, glm::uvec2 size_px);
+
+// 8e: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
+// With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.
+std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
+                           std::size_t most_boxes = SIZE_MAX);
+
+// 8f: adds what splats that only the target sees are expected to cost, where their centre is nearer than what was reprojected.
+// Splats are in one order, pairs are by splat. Returns the number of such splats.
+std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
+                         std::span<const TilePair> source_pairs, std::span<const Resolved> resolved, glm::uvec2 size_px,
+                         double newcomer_error);
+
+// 8g: the tiles of the greatest errors, at most `budget_tiles` and none without an error; the first of equals.
+std::vector<TileKind> select(std::span<const double> errors, std::size_t budget_tiles);
+
+// 9: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles.
+std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                 const EyePair& eyes);
+
+// All passes: both eyes' pictures, source first.
+struct StereoPictures {
+    Picture dominant;
+    std::vector<glm::dvec4> affiliated;
+    std::vector<TileKind> tile_kinds;
+    std::vector<Resolved> resolved;
+};
+StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings);
+
+}  // namespace binosplat::reference

@@ -1,0 +1,129 @@
+// The twin's whole stereo frame: what must hold of it by itself, and that the device's frames are like it.
+#include "engine/picture/metrics.h"
+#include "tests/stereo_cases.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace binosplat;
+using reference::DepthChoice;
+using reference::EyePair;
+using reference::PixelClass;
+using reference::StereoMethod;
+using reference::TileKind;
+using test::AffiliatedFrame;
+using test::Gpu;
+
+namespace {
+
+Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
+    reference::Picture picture;
+    picture.size_px = size_px;
+    picture.rgba = colours;
+    return test::toImage(picture);
+}
+
+Mode modeOf(StereoMethod method) {
+    return method == StereoMethod::kReproject ? Mode::kReproject : method == StereoMethod::kPaper ? Mode::kPaper : Mode::kPredicted;
+}
+
+}  // namespace
+
+TEST_CASE("the twin moves nothing where the eyes are one") {
+    const auto view = test::viewBuiltin("builtin:atelier", {80, 60}, 5000);
+    const EyePair eyes{view.eye, view.eye};
+    for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
+        for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
+            const auto pictures = reference::renderStereo(view.scene, eyes, {.method = method, .depth_choice = choice}, {});
+            double worst = 0.0;
+            for (std::size_t i = 0; i < pictures.affiliated.size(); ++i) {
+                for (int channel = 0; channel < 4; ++channel) {
+                    worst = std::max(worst, std::abs(pictures.affiliated[i][channel] - pictures.dominant.rgba[i][channel]));
+                }
+            }
+            CHECK(worst <= 1e-9);
+            CHECK(std::all_of(pictures.resolved.begin(), pictures.resolved.end(),
+                              [](const auto& pixel) { return pixel.pixel_class == PixelClass::kCovered; }));
+            CHECK(
+                std::all_of(pictures.tile_kinds.begin(), pictures.tile_kinds.end(), [](TileKind kind) { return kind == TileKind::kNone; }));
+        }
+    }
+}
+
+TEST_CASE("the twin moves a wall by its disparity, up to the kernel's error") {
+    // fx b / z = 100 * 0.08 / 2 = 4 px to the left: whole pixels, so that the picture is the same but for the column.
+    const glm::uvec2 size_px(64, 48);
+    const auto eyes = stereoPair(test::makeEye(size_px), 0.08);
+    std::vector<test::Splat> splats;
+    for (int j = -30; j <= 30; ++j) {
+        for (int i = -40; i <= 40; ++i) {
+            splats.push_back(
+                {{0.04f * static_cast<float>(i), 0.04f * static_cast<float>(j), 2.0f},
+                 {1, 0, 0, 0},
+                 glm::vec2(0.03f),
+                 0.95f,
+                 {0.5f + 0.3f * std::sin(0.5f * static_cast<float>(i)), 0.4f, 0.5f + 0.3f * std::cos(0.7f * static_cast<float>(j))}});
+        }
+    }
+    const auto pictures =
+        reference::renderStereo(test::makeScene(splats), {eyes[kLeft], eyes[kRight]}, {.method = StereoMethod::kReproject}, {});
+    for (std::size_t y = 0; y < 48; ++y) {
+        for (std::size_t x = 0; x < 64; ++x) {
+            const std::size_t i = y * 64 + x;
+            CHECK(pictures.resolved[i].pixel_class == (x < 60 ? PixelClass::kCovered : PixelClass::kHole));
+            if (x >= 60) { continue; }
+            CHECK(pictures.resolved[i].inverse_depth == doctest::Approx(0.5).epsilon(1e-6));
+            CHECK(pictures.affiliated[i].x == doctest::Approx(pictures.dominant.rgba[i + 4].x).epsilon(1e-6));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for places that round to another pixel") {
+    struct View {
+        std::string name;
+        test::ViewedScene view;
+        std::array<Eye, 2> eyes;
+    };
+    const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000), fence = test::viewBuiltin("builtin:fence", {160, 120});
+    for (const View& seen :
+         {View{"room", room, stereoPair(room.eye, 0.063)}, View{"room, canted", room, test::headsetEyes(room.eye, glm::radians(5.0))},
+          View{"fence", fence, stereoPair(fence.eye, 0.12)}}) {
+        const GpuScene scene(context(), seen.view.scene);
+        StereoFrame frame(context(), scene);
+        for (const Side dominant : {kLeft, kRight}) {
+            for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
+                reference::StereoSettings twin_settings{.method = method, .margin_px = 8, .center_rois = true};
+                const auto twin =
+                    reference::renderStereo(seen.view.scene, {seen.eyes[dominant], seen.eyes[1 - dominant]}, twin_settings, {});
+                FrameSettings settings;
+                settings.mode = modeOf(method);
+                settings.dominant = dominant;
+                settings.stereo = test::settingsOf(twin_settings);
+                const AffiliatedFrame made = test::makeAffiliated(frame, seen.eyes, settings);
+                const glm::uvec2 size_px = seen.view.eye.size_px;
+                // Errors are rounded down pixel by pixel on the device, so that of two tiles that are nearly alike the other may be chosen.
+                std::vector<std::uint32_t> same_kind;
+                for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
+                    same_kind.push_back(made.tile_kinds[t] == static_cast<std::uint32_t>(twin.tile_kinds[t]) ? 1 : 0);
+                }
+                const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
+                const Difference difference = compare(test::keepTiles(made.pictures[1 - dominant], same_kind),
+                                                      test::keepTiles(toImage(size_px, twin.affiliated), same_kind), 4);
+                std::size_t other_classes = 0;
+                for (std::size_t i = 0; i < twin.resolved.size(); ++i) {
+                    other_classes += made.pixel_classes[i] == static_cast<std::uint8_t>(twin.resolved[i].pixel_class) ? 0 : 1;
+                }
+                CAPTURE(seen.name);
+                CAPTURE(static_cast<int>(dominant));
+                CAPTURE(static_cast<int>(method));
+                CHECK(difference.not_finite == 0);
+                CHECK(difference.psnrDb() >= 70.0);  // measured: 84
+                CHECK(difference.shareOff() <= 0.0005);
+                CHECK(other_kinds <= 2);
+                CHECK(other_classes * 1000 <= twin.resolved.size());
+            }
+        }
+    }
+}
