@@ -130,6 +130,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
     stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo, isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo)), dominant_, images_[dominant_], images_[target.eye]);
     if (stereo.patching == Patching::kNone) { return; }
+    target.shifted = isShifted(stereoViewOf(eyes[dominant_], eyes[target.eye], stereo));
     if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, target.eye, 0, "affiliated "); }
     passes_.recordTiles(commands_, scene_, buffers_, target, {stereo_buffers_.tilesBefore(), stereo_buffers_.tileList()}, "affiliated ");
 }

@@ -12,6 +12,9 @@
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
+// The eyes differ by a shift along x alone (see isShifted): pass.splats holds them as the other eye saw them, and most follow from
+// that without a look at the scene.
+layout(constant_id = 2) const bool kShifted = false;
 
 // The tiles of a row, of those from x to y (exclusive), that count.
 uint countInRow(uint row, ivec2 in_row, uint row_tiles) {
@@ -40,6 +43,23 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     return uint(size.x * size.y);
 }
 
+uint countTiles(Outline outline, ivec4 box, uint row_tiles) {
+    uint tiles = 0;
+    for (int row = box.y; row < box.w; ++row) { tiles += countInRow(uint(row), tilesInRow(outline, uint(row), box), row_tiles); }
+    return tiles;
+}
+
+// From what the other eye saw; false if that does not suffice.
+bool projectShifted(uint rank, uvec2 size_tiles, out ProjectedSplat p, out Outline outline, out ivec4 box) {
+    p = pass.splats.at[rank];
+    const uvec2 seen = pass.tile_boxes.at[rank];
+    PixelMap map = pass.stereo.at[0].affiliated_from_dominant;
+    if (seen.x == seen.y || !hasReference(p.opacity_colour) || !shiftAlongRow(p, map.shift.x, map.excess_x.z)) { return false; }
+    outline = outlineOfProjected(p);
+    box = tilesWithin(ellipseBounds(outline), size_tiles);
+    return outline.ellipse;
+}
+
 void main() {
     const uint count = pass.visible.at[0].count;
     const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
@@ -48,25 +68,32 @@ void main() {
         const uint i = pass.order.at[rank];
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
         const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
-        const EyeView eye = pass.eyes.at[pass.eye];
-        const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
+        const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;
 
-        bool has_reference;
-        ProjectedSplat p = projectGeometry(splat, eye, has_reference);
-        p.opacity_colour = packOpacityColour(splat.opacity, has_reference, vec3(0));
-        const Outline outline = outlineOfProjected(p);
-        const ivec4 box = tileBox(splat, eye, outline);
-        uint tiles = 0;
-        for (int row = box.y; row < box.w; ++row) { tiles += countInRow(uint(row), tilesInRow(outline, uint(row), box), eye.size_tiles.x); }
+        ProjectedSplat p;
+        Outline outline;
+        ivec4 box;
+        if (!kShifted || !projectShifted(rank, size_tiles, p, outline, box)) {
+            const EyeView eye = pass.eyes.at[pass.eye];
+            const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
+            bool has_reference;
+            p = projectGeometry(splat, eye, has_reference);
+            p.opacity_colour = packOpacityColour(packOpacity(splat.opacity), has_reference, vec3(0));
+            outline = outlineOfProjected(p);
+            box = tileBox(splat, eye, outline);
+            if (!kMasked) { square_tiles = squareBoxTiles(splat, eye); }
+        }
+        const uint tiles = countTiles(outline, box, size_tiles.x);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
-            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
-            p.opacity_colour = packOpacityColour(splat.opacity, has_reference, colour);
+            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - pass.eyes.at[pass.eye].position));
+            p.opacity_colour = packOpacityColour(p.opacity_colour.x & kOpacityBits, hasReference(p.opacity_colour), colour);
             pass.splats.at[rank] = p;
-            pass.tile_boxes.at[rank] = uvec2(packTiles(box.xy), packTiles(box.zw));
         }
-        square_tiles = squareBoxTiles(splat, eye);
+        // Empty where the splat meets no tile: then there is no splat either.
+        pass.tile_boxes.at[rank] = tiles > 0 ? uvec2(packTiles(box.xy), packTiles(box.zw)) : uvec2(0);
     }
+    if (kMasked) { return; }
     const uint subgroup_square_tiles = subgroupAdd(square_tiles);
     if (subgroupElect() && subgroup_square_tiles > 0) {
         const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, subgroup_square_tiles);

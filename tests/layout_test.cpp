@@ -63,7 +63,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(CompactPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_offsets), FIELD(visible), FIELD(keys),
                FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye)),
         LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_boxes), FIELD(tile_counts),
-               FIELD(counters), FIELD(tiles_before), FIELD(chunk_bits), FIELD(eye)),
+               FIELD(counters), FIELD(tiles_before), FIELD(stereo), FIELD(chunk_bits), FIELD(eye)),
         LAYOUT(BinPass, FIELD(eyes), FIELD(splats), FIELD(tile_boxes), FIELD(pair_offsets), FIELD(visible), FIELD(pairs), FIELD(tiles),
                FIELD(ranks), FIELD(tiles_before), FIELD(tile_list), FIELD(eye)),
         LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges)),

@@ -67,9 +67,10 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
 
     commands.beginPass(role + "4_project");
     const std::uint32_t masked = mask != nullptr ? 1 : 0;
-    commands.dispatchIndirect(kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked}),
+    commands.dispatchIndirect(kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked, target.shifted}),
                               gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
-                                               buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before, scene.chunkBits(), eye},
+                                               buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
+                                               buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},
                               buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());

@@ -39,6 +39,7 @@ struct EyeTarget {
     gpu::DeviceAddress<gpu::StereoPixel> stereo_pixels;
     glm::vec3 background{0.0f};
     Kept kept;
+    bool shifted = false;  // under a mask: the splats were last projected for the dominant eye, and isShifted
 };
 
 class Passes {

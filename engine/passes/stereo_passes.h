@@ -42,6 +42,8 @@ struct StereoSettings {
 gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const StereoSettings& settings);
 // Whether pixels move along their row alone and keep their depth: the eyes are parallel, side by side, and share cy and fy.
 bool isRectified(const gpu::StereoView& view);
+// Whether besides the eyes share fx: then a splat's projection for one follows from that for the other.
+bool isShifted(const gpu::StereoView& view);
 
 class StereoPasses {
 public:

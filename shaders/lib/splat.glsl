@@ -40,18 +40,21 @@ CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) {
 // rho at which alpha falls to 1/255; not positive for a splat that is never seen.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
 
+const uint kOpacityBits = (1u << 18) - 1;
+
 // Opacity as -log2 in fixed point, so that alpha = exp2(-(this + kLog2PerRho rho)).
-uint packOpacity(float opacity) { return min(uint(-log2(opacity) * kOpacitySteps + 0.5), (1u << 18) - 1); }
+uint packOpacity(float opacity) { return min(uint(-log2(opacity) * kOpacitySteps + 0.5), kOpacityBits); }
 float negativeLog2Opacity(uint packed) { return float(packed) * (1.0 / kOpacitySteps); }
 
 const uint kNoReferenceBit = 1u << 18;
 
-uvec2 packOpacityColour(float opacity, bool has_reference, vec3 colour) {
+// `opacity`: as packOpacity gives it.
+uvec2 packOpacityColour(uint opacity, bool has_reference, vec3 colour) {
     // The greatest half float is 65504; colours are not negative.
     const vec3 finite = mix(vec3(0), min(colour, vec3(65504)), greaterThan(colour, vec3(0)));
     const uint rg = packHalf2x16(finite.rg);
     const uint b = packHalf2x16(vec2(finite.b, 0));
-    const uint low = packOpacity(opacity) | (has_reference ? 0 : kNoReferenceBit) | (rg << 19);  // 13 of red's 15 bits
+    const uint low = opacity | (has_reference ? 0 : kNoReferenceBit) | (rg << 19);  // 13 of red's 15 bits
     const uint high = ((rg >> 13) & 3) | ((rg >> 16) << 2) | (b << 17);
     return uvec2(low, high);
 }
@@ -63,7 +66,7 @@ vec3 unpackColour(uvec2 packed) {
     return vec3(unpackHalf2x16(red | (green << 16)), unpackHalf2x16(blue).x);
 }
 bool hasReference(uvec2 packed) { return (packed.x & kNoReferenceBit) == 0; }
-float negativeLog2Opacity(uvec2 packed) { return negativeLog2Opacity(packed.x & (kNoReferenceBit - 1)); }
+float negativeLog2Opacity(uvec2 packed) { return negativeLog2Opacity(packed.x & kOpacityBits); }
 
 // The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane.
 ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_reference) {
@@ -100,4 +103,19 @@ ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_refe
         }
     }
     return p;
+}
+
+// The same splat as an eye beside this one sees it, which differs by a shift along x: pixels move by `offset_px` and by
+// `shift_px` for a unit of inverse depth, so that a pixel at dx, dy from the reference lies at (1 + shift f) dx + shift g dy there.
+// Of a splat that has a reference; false where the other eye looks along the disc.
+bool shiftAlongRow(inout ProjectedSplat p, float shift_px, float offset_px) {
+    const float stretch = 1 + shift_px * p.perspective.x;
+    if (!(stretch > 1e-3)) { return false; }
+    p.reference_px.x += offset_px + shift_px * p.inverse_depth;
+    const float a = p.plane_from_pixel.x / stretch, f = p.perspective.x / stretch;
+    p.plane_from_pixel.y -= a * shift_px * p.perspective.y;
+    p.perspective.y -= f * shift_px * p.perspective.y;
+    p.plane_from_pixel.x = a;
+    p.perspective.x = f;
+    return true;
 }

@@ -43,6 +43,7 @@ struct ProjectPass {
     Uints tile_counts;       // out
     EyeCounterss counters;   // out
     Uints tiles_before;      // under a mask: how many masked tiles there are before each, and one more for all
+    StereoViews stereo;      // where `splats` holds what the other eye, shifted along x, saw
     uint chunk_bits;
     uint eye;
 };
