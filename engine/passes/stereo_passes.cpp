@@ -64,6 +64,11 @@ bool isRectified(const gpu::StereoView& view) {
     return alongRows(view.affiliated_from_dominant) && alongRows(view.dominant_from_affiliated);
 }
 
+bool isShifted(const gpu::StereoView& view) {
+    const glm::vec3& row = view.affiliated_from_dominant.excess_x;
+    return isRectified(view) && row.x == 0.0f && row.y == 0.0f;
+}
+
 void StereoPasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
                           const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated) {
     const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
