@@ -68,12 +68,14 @@ inline std::vector<StereoCase> makeStereoCases() {
         for (const Side dominant : {kLeft, kRight}) { cases.push_back(makeCase(name, view.scene, eyes, dominant)); }
     };
     const ViewedScene room = viewBuiltin("builtin:atelier", {128, 96}, 20000), small = viewBuiltin("builtin:atelier", {17, 33}, 2000);
-    const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96});
+    const ViewedScene fence = viewBuiltin("builtin:fence", {128, 96}), wide = viewBuiltin("builtin:fence", {531, 9});
     add("room", room, stereoPair(room.eye, 0.063));
     add("room, asymmetric", room, headsetEyes(room.eye, 0.0));
     add("room, canted", room, headsetEyes(room.eye, glm::radians(5.0)));
     add("fence", fence, stereoPair(fence.eye, 0.12));
     add("fence, canted", fence, headsetEyes(fence.eye, glm::radians(5.0), 0.12));
+    // Rows longer than two workgroups, with holes across their borders.
+    add("wide", wide, stereoPair(wide.eye, 0.25));
     add("small", small, stereoPair(small.eye, 0.2));
     add("small, canted", small, headsetEyes(small.eye, glm::radians(5.0), 0.2));
     return cases;
