@@ -1,104 +1,104 @@
-// `binosplat bench`: modes in turn, again and again, so that a device that drifts drifts for all of them alike.
-#include "app/bench_plan.h"
-#include "app/bench_results.h"
-#include "app/camera_options.h"
+// `binosplat bench`: error against run time, over scenes, splat counts, sizes, headsets and views.
+#include "app/bench.h"
+
+#include "app/bench_point.h"
 #include "app/commands.h"
-#include "app/load.h"
-#include "app/modes.h"
+#include "app/progress.h"
 #include "engine/error.h"
-#include "engine/frame.h"
 #include "engine/setup/output_files.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 
 namespace binosplat {
 
 namespace {
 
-// One mode with buffers of its own, and what its frames took.
-struct Runner {
-    std::string mode;
-    std::unique_ptr<StereoFrame> frame;
-    std::vector<double> total_ms;
-    std::map<std::string, std::vector<double>> pass_ms;
-    FrameResult last;
-    std::uint64_t peak_gpu_bytes = 0;
-};
-
-class PointBench {
+// Counts points, which take about as long as each other.
+class PointProgress {
 public:
-    PointBench(const Context& context, const GpuScene& scene, const RunOptions& options, const Cameras& cameras)
-        : context_(context), scene_(scene), options_(options), cameras_(cameras) {}
-
-    // The most memory that the program holds while nothing but this mode runs.
-    std::uint64_t measurePeak(const std::string& mode) {
-        StereoFrame alone(context_, scene_);
-        MemoryUse& use = context_.memoryUse();
-        use.peak_bytes = use.current_bytes;
-        return render(alone, mode).peak_gpu_bytes;
-    }
-
-    FrameResult render(StereoFrame& frame, const std::string& name) {
-        StereoOptions stereo = options_.stereo;
-        stereo.mode = name;
-        FrameSettings settings = frameSettings(options_.camera, stereo);
-        settings.keep_depth = false;  // nobody reads it here, so no mode pays for it unless it needs it itself
-        const std::span<const Eye> eyes =
-            settings.mode == Mode::kMono ? std::span(&cameras_.middle, 1) : std::span<const Eye>(cameras_.eyes);
-        return frame.render(eyes, settings);
-    }
-
-    void count(Runner& runner) {
-        runner.last = render(*runner.frame, runner.mode);
-        runner.total_ms.push_back(runner.last.gpu_total_ms);
-        for (const auto& [name, ms] : runner.last.gpu_ms) { runner.pass_ms[name].push_back(ms); }
-    }
+    explicit PointProgress(std::size_t points) : points_(points) {}
+    void next() { line_.show(static_cast<double>(++done_) / static_cast<double>(points_)); }
 
 private:
-    const Context& context_;
-    const GpuScene& scene_;
-    const RunOptions& options_;
-    const Cameras& cameras_;
+    ProgressLine line_{"bench"};
+    std::size_t points_, done_ = 0;
 };
 
-BenchResult summarize(const Runner& runner) {
-    BenchResult result;
-    result.mode = runner.mode;
-    result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
-    for (const auto& [name, ms] : runner.last.gpu_ms) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
-    result.total_ms = median(runner.total_ms);
-    result.least_ms = std::ranges::min(runner.total_ms);
-    result.most_ms = std::ranges::max(runner.total_ms);
-    result.counters = runner.last.counters;
-    result.peak_gpu_bytes = runner.peak_gpu_bytes;
-    return result;
+std::vector<std::uint64_t> countsOf(const std::string& source, const BenchSeries& series) {
+    // A file has the splats it has: it is measured once for all counts of a series.
+    return isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
 }
 
-// All modes at one scene, splat count and size.
-std::vector<BenchResult> benchPoint(PointBench& bench, const Context& context, const GpuScene& scene, const BenchPlan& plan) {
-    std::vector<Runner> runners;
-    for (const std::string& mode : plan.modes) {
-        Runner runner;
-        runner.mode = mode;
-        runner.peak_gpu_bytes = bench.measurePeak(mode);
-        runners.push_back(std::move(runner));
+std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
+    std::size_t points = 0;
+    for (const std::string& source : plan.scenes) {
+        for (const BenchSeries& series : plan.series) {
+            points += countsOf(source, series).size() * series.sizes_px.size() * viewsOf(plan, source, run).size() * plan.headsets.size();
+        }
     }
-    for (Runner& runner : runners) { runner.frame = std::make_unique<StereoFrame>(context, scene); }
-    for (std::uint32_t i = 0; i < plan.warm_up; ++i) {
-        for (Runner& runner : runners) { bench.render(*runner.frame, runner.mode); }
-    }
-    for (std::uint32_t i = 0; i < plan.repeats; ++i) {
-        for (Runner& runner : runners) { bench.count(runner); }
-    }
+    return points;
+}
+
+// One scene with one splat count: every size, headset and view.
+std::vector<BenchResult> benchScene(const Context& context, const BenchOptions& options, const BenchPlan& plan, const BenchSeries& series,
+                                    const std::string& source, const Scene& scene, PointProgress& progress) {
     std::vector<BenchResult> results;
-    for (const Runner& runner : runners) { results.push_back(summarize(runner)); }
+    const GpuScene gpu_scene(context, scene);
+    for (const glm::uvec2 size_px : series.sizes_px) {
+        for (const std::string& headset : plan.headsets) {
+            for (const BenchView& view : viewsOf(plan, source, options.run)) {
+                RunOptions run = view.run;
+                if (size_px.x > 0) { run.camera.size_px = size_px; }
+                if (!headset.empty()) { run.camera.headset = headset; }
+                const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
+                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset};
+                std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
+                progress.next();
+            }
+        }
+    }
     return results;
 }
 
-// A scene that is not there is found out before the others are measured.
+// Headsets, cameras: whatever can be known to fail is found out before anything is measured.
+void requireFiles(const BenchPlan& plan, const RunOptions& run) {
+    requireScenes(plan);
+    for (const std::string& headset : plan.headsets) {
+        CameraOptions camera = run.camera;
+        if (!headset.empty()) { camera.headset = headset; }
+        readCameraFiles(camera);
+    }
+}
+
+void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
+    requireFiles(plan, options.run);
+    OutputFiles files(options.out);
+    const Context context({.device = options.run.device});
+    BenchRun run{context.deviceName(), options.run.config, {}};
+    {
+        PointProgress progress(pointCount(plan, options.run));
+        for (const std::string& source : plan.scenes) {
+            for (const BenchSeries& series : plan.series) {
+                for (const std::uint64_t splats : countsOf(source, series)) {
+                    const Scene scene = loadScene(source, splats);
+                    std::ranges::move(benchScene(context, options, plan, series, source, scene, progress), std::back_inserter(run.results));
+                }
+            }
+        }
+    }
+    compareModes(run.results);
+    markFront(run.results);
+    writeText(files.staging() / "bench.json", benchJson(run));
+    writeText(files.staging() / "bench.csv", benchCsv(run));
+    writeText(files.staging() / "bench.svg", benchPlot(run));
+    files.publish();
+    fmt::print("{}", benchTable(run));
+}
+
+}  // namespace
+
 void requireScenes(const BenchPlan& plan) {
     for (const std::string& source : plan.scenes) {
         const bool there = isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source);
@@ -106,65 +106,9 @@ void requireScenes(const BenchPlan& plan) {
     }
 }
 
-std::size_t pointCount(const BenchPlan& plan) {
-    std::size_t points = 0;
-    for (const BenchSeries& series : plan.series) { points += series.splats.size() * series.sizes_px.size(); }
-    return points * plan.scenes.size();
-}
-
-// One scene with one splat count, at every size of a series.
-template <typename PointDone>
-std::vector<BenchResult> benchSizes(const Context& context, const RunOptions& run, const CameraFiles& files, const Scene& scene,
-                                    const BenchPlan& plan, const BenchSeries& series, PointDone&& point_done) {
-    std::vector<BenchResult> results;
-    const GpuScene gpu_scene(context, scene);
-    for (const glm::uvec2 size_px : series.sizes_px) {
-        RunOptions resized = run;
-        resized.camera.size_px = size_px;
-        const Cameras cameras = makeCameras(resized, files, scene);
-        PointBench bench(context, gpu_scene, resized, cameras);
-        for (BenchResult& result : benchPoint(bench, context, gpu_scene, plan)) {
-            result.series = series.name;
-            result.scene = scene.name;
-            result.splats = scene.size();
-            result.size_px = size_px;
-            results.push_back(std::move(result));
-        }
-        point_done();
-    }
-    return results;
-}
-
-}  // namespace
-
 void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
-    requireScenes(plan);
-    OutputFiles files(options.out);
-    const CameraFiles camera_files = readCameraFiles(options.run.camera);
-    const Context context({.device = options.run.device});
-    BenchRun run{context.deviceName(), options.run.config, {}};
-
-    ProgressLine progress("bench");
-    std::size_t points_done = 0;
-    const auto point_done = [&] { progress.show(static_cast<double>(++points_done) / static_cast<double>(pointCount(plan))); };
-    for (const std::string& source : plan.scenes) {
-        for (const BenchSeries& series : plan.series) {
-            // A file has the splats it has: it is measured once for all counts of a series.
-            const std::vector<std::uint64_t> counts = isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
-            for (const std::uint64_t splats : counts) {
-                const Scene scene = loadScene(source, splats);
-                std::ranges::move(benchSizes(context, options.run, camera_files, scene, plan, series, point_done),
-                                  std::back_inserter(run.results));
-            }
-        }
-    }
-    compareModes(run.results);
-    writeText(files.staging() / "bench.json", benchJson(run));
-    writeText(files.staging() / "bench.csv", benchCsv(run));
-    writeText(files.staging() / "bench.svg", benchPlot(run));
-    files.publish();
-    fmt::print("{}", benchTable(run));
+    benchSpeed(options, plan);
 }
 
 }  // namespace binosplat

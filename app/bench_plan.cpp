@@ -2,9 +2,13 @@
 #include "app/bench_plan.h"
 
 #include "engine/error.h"
+#include "engine/scene/procedural.h"
 #include "engine/setup/values.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
+#include <utility>
 
 namespace binosplat {
 
@@ -29,14 +33,31 @@ std::string readMode(const Setting& setting) {
     return readChoice(setting, {"mono", "two-pass", "shared", "reproject", "paper", "predicted"});
 }
 
-void readBench(const SettingsTable& table, BenchPlan& plan) {
-    refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up"});
+void readScores(const Setting& setting, BenchPlan& plan) {
+    plan.psnr = plan.ssim = plan.flip = false;
+    for (const std::string& score : readEach(setting, [](const Setting& one) {
+             return readChoice(one, {"none", "psnr", "ssim", "flip"});
+         })) {
+        plan.ssim |= score == "ssim";
+        plan.flip |= score == "flip";
+        plan.psnr |= score != "none";
+    }
+}
+
+// Returns the modes, which become methods.
+std::vector<std::string> readBench(const SettingsTable& table, BenchPlan& plan) {
+    refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up", "headsets", "scores", "twin"});
+    std::vector<std::string> modes;
     for (const auto& [key, setting] : table.settings) {
         if (key == "scenes") { plan.scenes = readEach(setting, readText); }
-        if (key == "modes") { plan.modes = readEach(setting, readMode); }
+        if (key == "modes") { modes = readEach(setting, readMode); }
         if (key == "repeats") { plan.repeats = static_cast<std::uint32_t>(readCount(setting, 1, 10000)); }
         if (key == "warm-up") { plan.warm_up = static_cast<std::uint32_t>(readCount(setting, 0, 10000)); }
+        if (key == "headsets") { plan.headsets = readEach(setting, readText); }
+        if (key == "scores") { readScores(setting, plan); }
+        if (key == "twin") { plan.twin = readFlag(setting); }
     }
+    return modes;
 }
 
 BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
@@ -53,21 +74,69 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
     return series;
 }
 
+BenchView readView(const SettingsTable& table, const RunOptions& base) {
+    refuseUnknown(table, {"name", "scene", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit"});
+    Settings settings = table.settings;
+    BenchView view;
+    if (const auto name = settings.extract("name")) { view.name = readText(name.mapped()); }
+    if (const auto scene = settings.extract("scene")) { view.scene = readText(scene.mapped()); }
+    check(!view.name.empty(), "{}: name is missing, must be given", table.origin);
+    view.run = runOptions(settings, base);
+    return view;
+}
+
+// The two that all others are compared with come first and once.
+void addReferences(BenchPlan& plan, const RunOptions& run) {
+    std::vector<BenchMethod> methods;
+    for (const char* mode : {"two-pass", "shared"}) {
+        const auto there = std::ranges::find(plan.methods, mode, [](const BenchMethod& method) { return method.stereo.mode; });
+        if (there == plan.methods.end()) { methods.push_back(plainMethod(mode, run)); }
+    }
+    plan.methods.insert(plan.methods.begin(), methods.begin(), methods.end());
+    const bool mono = std::ranges::any_of(plan.methods, [](const BenchMethod& method) { return method.stereo.mode == "mono"; });
+    if (plan.twin && !mono) { plan.methods.push_back(plainMethod("mono", run)); }
+    std::set<std::string> names;
+    for (const BenchMethod& method : plan.methods) {
+        check(names.insert(method.name).second, "method {} is named twice, names must differ", method.name);
+    }
+}
+
 }  // namespace
 
 BenchPlan planBench(const BenchOptions& options) {
-    const glm::uvec2 default_size_px = options.run.camera.size_px.value_or(glm::uvec2(1024));
+    const glm::uvec2 default_size_px = options.run.camera.size_px.value_or(glm::uvec2(0));
     BenchPlan plan;
+    std::vector<std::string> modes;
     for (const SettingsTable& table : options.tables) {
-        if (table.name == "bench") { readBench(table, plan); }
+        if (table.name == "bench") { modes = readBench(table, plan); }
         if (table.name == "series") { plan.series.push_back(readSeries(table, default_size_px)); }
+        if (table.name == "views") { plan.views.push_back(readView(table, options.run)); }
+        if (table.name == "methods") { std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods)); }
     }
+    if (modes.empty() && plan.methods.empty()) { modes = {"two-pass", "shared", "reproject", "paper", "predicted"}; }
+    std::vector<BenchMethod> plain;
+    for (const std::string& mode : modes) { plain.push_back(plainMethod(mode, options.run)); }
+    plan.methods.insert(plan.methods.begin(), plain.begin(), plain.end());
+    addReferences(plan, options.run);
+
     if (!options.scenes.empty()) { plan.scenes = options.scenes; }
     if (plan.scenes.empty()) {
         throw Error(ExitCode::kUsage, "SCENE is required: on the command line or as `scenes` in the config's [bench]");
     }
     if (plan.series.empty()) { plan.series.push_back({"frame", {0}, {default_size_px}}); }
+    const CameraOptions& camera = options.run.camera;
+    if (camera.eye || camera.look || !camera.cameras_file.empty()) { plan.views.clear(); }
     return plan;
+}
+
+std::vector<BenchView> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run) {
+    const std::string name = isBuiltin(scene) ? scene : std::filesystem::path(scene).filename().string();
+    std::vector<BenchView> views;
+    for (const BenchView& view : plan.views) {
+        if (view.scene.empty() || view.scene == name) { views.push_back(view); }
+    }
+    if (views.empty()) { views.push_back({"", scene, run}); }
+    return views;
 }
 
 }  // namespace binosplat

@@ -1,7 +1,7 @@
-// What `bench` measures, from a config's [bench] and [[series]].
+// What `bench` measures, from a config's [bench], [[methods]], [[series]] and [[views]].
 #pragma once
 
-#include "app/options.h"
+#include "app/bench_methods.h"
 
 #include <glm/glm.hpp>
 
@@ -15,19 +15,34 @@ namespace binosplat {
 struct BenchSeries {
     std::string name;
     std::vector<std::uint64_t> splats;  // built-in scenes only; 0 is the scene's own number
-    std::vector<glm::uvec2> sizes_px;
+    std::vector<glm::uvec2> sizes_px;   // per eye; 0x0 is what the camera or the headset has
+};
+
+// Where to look at a scene from.
+struct BenchView {
+    std::string name;
+    std::string scene;  // file name or builtin:NAME of the scene it belongs to; empty: any
+    RunOptions run;     // the run's options with the view's own on top
 };
 
 struct BenchPlan {
     std::vector<std::string> scenes;
-    std::vector<std::string> modes{"two-pass", "shared", "reproject", "paper", "predicted"};
-    std::uint32_t repeats = 5;
-    std::uint32_t warm_up = 1;  // frames of each mode before those that count
+    std::vector<BenchMethod> methods;  // two-pass and shared are always among them
     std::vector<BenchSeries> series;
+    std::vector<BenchView> views;
+    std::vector<std::string> headsets{""};  // measured one after the other; "": the run's own camera
+    std::uint32_t repeats = 5;
+    std::uint32_t warm_up = 1;  // frames of each method before those that count
+    bool psnr = true, ssim = true, flip = true;
+    bool twin = false;  // also the float64 twin on the CPU, for one eye
 };
 
-// Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own size.
+// Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own size; a scene without a
+// [[views]] of its own is seen as the camera options say. A camera on the command line replaces all views.
 // Throws Error with file and line; kUsage if no scene is named anywhere.
 BenchPlan planBench(const BenchOptions& options);
+
+// The views of a scene; one without a name if the plan has none for it.
+std::vector<BenchView> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run);
 
 }  // namespace binosplat

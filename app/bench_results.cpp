@@ -1,58 +1,46 @@
-// What `bench` measured, as a table, JSON and CSV.
+// What follows from what `bench` measured.
 #include "app/bench_results.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <filesystem>
 #include <tuple>
 
 namespace binosplat {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-auto pointOf(const BenchResult& result) { return std::tie(result.series, result.scene, result.splats, result.size_px.x, result.size_px.y); }
-
-std::optional<double> ratioTo(const BenchResult& result, const std::string& mode, const std::vector<BenchResult>& results) {
-    for (const BenchResult& other : results) {
-        if (other.mode == mode && pointOf(other) == pointOf(result) && other.total_ms > 0.0) { return result.total_ms / other.total_ms; }
-    }
-    return std::nullopt;
+const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, const std::string& mode) {
+    const auto found =
+        std::ranges::find_if(results, [&](const BenchResult& other) { return other.mode == mode && samePoint(other, like); });
+    return found == results.end() ? nullptr : &*found;
 }
 
-std::string text(const std::optional<double>& ratio) { return ratio ? fmt::format("{:.3f}", *ratio) : "-"; }
-
-std::uint64_t counter(const BenchResult& result, const std::string& name) {
-    const auto found = result.counters.find(name);
-    return found == result.counters.end() ? 0 : found->second;
+std::optional<double> ratioTo(const BenchResult& result, const BenchResult* other) {
+    if (other == nullptr || !(other->total_ms > 0.0)) { return std::nullopt; }
+    return result.total_ms / other->total_ms;
 }
 
-// A counter that is kept per eye, added up.
-std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
-    return counter(result, name) + counter(result, name + "_left") + counter(result, name + "_right");
+// Bare pass: without the eyes in front.
+std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' ') + 1); }
+
+std::string stageOf(const std::string& mode, const std::string& pass) {
+    const std::string bare = bareName(pass);
+    if (bare.starts_with("8a") || bare.starts_with("8b") || bare.starts_with("9")) { return "reprojection"; }
+    if (bare.starts_with("8")) { return "ROI choice"; }
+    if (bare < "4") { return "cull+sort"; }
+    if (!pass.starts_with("affiliated ")) { return "dominant"; }
+    return mode == "two-pass" || mode == "shared" ? "affiliated" : "patch";
 }
 
-// Quoted where the text would break the row.
-std::string cell(const std::string& value) {
-    if (value.find_first_of(",\"\n") == std::string::npos) { return value; }
-    std::string quoted = "\"";
-    for (char c : value) { quoted += c == '"' ? "\"\"" : std::string(1, c); }
-    return quoted + "\"";
-}
+// Whether a result takes part in the comparison of error and time.
+bool isPair(const BenchResult& result) { return result.mode != "mono" && result.mode != "twin"; }
 
-// The names of all counters or passes that any result has, in order of first appearance.
-template <typename Entries>
-std::vector<std::string> namesIn(const BenchRun& run, Entries&& entries) {
-    std::vector<std::string> names;
-    for (const BenchResult& result : run.results) {
-        for (const auto& [name, value] : entries(result)) {
-            if (std::ranges::find(names, name) == names.end()) { names.push_back(name); }
-        }
-    }
-    return names;
+std::optional<double> meanSquareOf(const BenchResult& result) {
+    if (result.mode == "two-pass" || result.mode == "shared") { return 0.0; }
+    const OriginScores* all = scoresOf(result, "all");
+    return isPair(result) && all != nullptr ? std::optional(all->mean_square) : std::nullopt;
 }
 
 }  // namespace
@@ -65,97 +53,73 @@ double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), middle));
 }
 
-std::vector<std::pair<std::string, double>> byPass(const BenchResult& result) {
+bool samePoint(const BenchResult& a, const BenchResult& b) {
+    const auto point = [](const BenchResult& r) {
+        return std::tie(r.series, r.scene, r.view, r.headset, r.splats, r.size_px.x, r.size_px.y);
+    };
+    return point(a) == point(b);
+}
+
+std::string namePoint(const BenchResult& result) {
+    std::string name = std::filesystem::path(result.scene).filename().string();
+    for (const std::string& part : {result.view, result.headset}) {
+        if (!part.empty()) { name += ", " + part; }
+    }
+    return fmt::format("{}, {} splats, {}x{} per eye", name, result.splats, result.size_px.x, result.size_px.y);
+}
+
+NamedTimes byPass(const BenchResult& result) {
     std::map<std::string, double> sums;  // the number in front of a pass's name makes this the order of the frame
-    for (const auto& [name, ms] : result.pass_ms) { sums[name.substr(name.rfind(' ') + 1)] += ms; }
+    for (const auto& [name, ms] : result.pass_ms) { sums[bareName(name)] += ms; }
     return {sums.begin(), sums.end()};
+}
+
+NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms) {
+    NamedTimes stages;
+    for (const char* stage : {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"}) {
+        double sum = 0.0;
+        bool ran = false;
+        for (const auto& [pass, ms] : pass_ms) {
+            if (stageOf(mode, pass) != stage) { continue; }
+            sum += ms;
+            ran = true;
+        }
+        if (ran) { stages.emplace_back(stage, sum); }
+    }
+    return stages;
 }
 
 void compareModes(std::vector<BenchResult>& results) {
     for (BenchResult& result : results) {
-        result.ratio_to_two_pass = ratioTo(result, "two-pass", results);
-        result.ratio_to_shared = ratioTo(result, "shared", results);
+        if (result.mode == "mono") { result.ratio_to_twin = ratioTo(result, findMode(results, result, "twin")); }
+        if (result.mode == "twin") { continue; }  // another clock
+        result.ratio_to_two_pass = ratioTo(result, findMode(results, result, "two-pass"));
+        result.ratio_to_shared = ratioTo(result, findMode(results, result, "shared"));
     }
 }
 
-std::string benchTable(const BenchRun& run) {
-    std::string table = fmt::format("device: {}\n", run.device);
-    const BenchResult* previous = nullptr;
-    for (const BenchResult& result : run.results) {
-        if (previous == nullptr || pointOf(*previous) != pointOf(result)) {
-            table += fmt::format("\n{}: {}, {} splats, {}x{} per eye, median of {} frames\n", result.series, result.scene, result.splats,
-                                 result.size_px.x, result.size_px.y, result.frames);
-            table += fmt::format("  {:<10} {:>10} {:>19} {:>12} {:>11} {:>10}", "mode", "GPU ms", "least..most", "/ two-pass", "/ shared",
-                                 "peak MiB");
-            for (const auto& [name, ms] : byPass(result)) { table += fmt::format(" {:>13}", name); }
-            table += "\n";
-        }
-        const std::string range = fmt::format("{:.3f}..{:.3f}", result.least_ms, result.most_ms);
-        table += fmt::format("  {:<10} {:>10.3f} {:>19} {:>12} {:>11} {:>10.1f}", result.mode, result.total_ms, range,
-                             text(result.ratio_to_two_pass), text(result.ratio_to_shared),
-                             static_cast<double>(result.peak_gpu_bytes) / (1024.0 * 1024.0));
-        table += fmt::format(" {:>10} {:>11}", ofBothEyes(result, "splats_visible"), ofBothEyes(result, "tile_pairs"));
-        for (const auto& [name, ms] : byPass(result)) { table += fmt::format(" {:>13.3f}", ms); }
-        table += "\n";
-        previous = &result;
+void markFront(std::vector<BenchResult>& results) {
+    const auto beats = [&](const BenchResult& other, const BenchResult& result) {
+        if (!samePoint(other, result)) { return false; }
+        const std::optional<double> theirs = meanSquareOf(other), ours = meanSquareOf(result);
+        return theirs && *theirs <= *ours && other.total_ms <= result.total_ms && (*theirs < *ours || other.total_ms < result.total_ms);
+    };
+    for (BenchResult& result : results) {
+        result.on_front = meanSquareOf(result).has_value() &&
+                          std::ranges::none_of(results, [&](const BenchResult& other) { return beats(other, result); });
     }
-    return table;
 }
 
-std::string benchJson(const BenchRun& run) {
-    Json results = Json::array();
-    for (const BenchResult& result : run.results) {
-        Json passes = Json::object(), counters = Json::object();
-        for (const auto& [name, ms] : result.pass_ms) { passes[name] = ms; }
-        for (const auto& [name, count] : result.counters) { counters[name] = count; }
-        Json entry{{"series", result.series},
-                   {"scene", result.scene},
-                   {"splats", result.splats},
-                   {"width", result.size_px.x},
-                   {"height", result.size_px.y},
-                   {"mode", result.mode},
-                   {"frames", result.frames},
-                   {"gpu_ms", passes},
-                   {"gpu_total_ms", result.total_ms},
-                   {"gpu_total_least_ms", result.least_ms},
-                   {"gpu_total_most_ms", result.most_ms}};
-        if (result.ratio_to_two_pass) { entry["ratio_to_two_pass"] = *result.ratio_to_two_pass; }
-        if (result.ratio_to_shared) { entry["ratio_to_shared"] = *result.ratio_to_shared; }
-        entry["counters"] = counters;
-        entry["peak_gpu_bytes"] = result.peak_gpu_bytes;
-        results.push_back(entry);
-    }
-    const Json root{{"device", run.device}, {"config", run.config}, {"results", results}};
-    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+const OriginScores* scoresOf(const BenchResult& result, const std::string& origin) {
+    const auto found = std::ranges::find(result.quality, origin, &OriginScores::origin);
+    return found == result.quality.end() ? nullptr : &*found;
 }
 
-std::string benchCsv(const BenchRun& run) {
-    const auto passes = namesIn(
-        run, [](const BenchResult& result) -> const auto& { return result.pass_ms; });
-    const auto counters = namesIn(
-        run, [](const BenchResult& result) -> const auto& { return result.counters; });
-    std::string csv =
-        "device,series,scene,splats,width,height,mode,frames,gpu_total_ms,gpu_total_least_ms,gpu_total_most_ms,ratio_to_two_pass,ratio_to_"
-        "shared,peak_gpu_bytes";
-    for (const std::string& name : passes) { csv += fmt::format(",{}", cell(name + " ms")); }
-    for (const std::string& name : counters) { csv += fmt::format(",{}", cell(name)); }
-    csv += "\n";
-    const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : std::string(); };
-    for (const BenchResult& result : run.results) {
-        csv +=
-            fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{}", cell(run.device), cell(result.series), cell(result.scene),
-                        result.splats, result.size_px.x, result.size_px.y, result.mode, result.frames, result.total_ms, result.least_ms,
-                        result.most_ms, number(result.ratio_to_two_pass), number(result.ratio_to_shared), result.peak_gpu_bytes);
-        for (const std::string& name : passes) {
-            const auto found = std::ranges::find(result.pass_ms, name, &std::pair<std::string, double>::first);
-            csv += found == result.pass_ms.end() ? "," : fmt::format(",{:.6g}", found->second);
-        }
-        for (const std::string& name : counters) {
-            csv += result.counters.contains(name) ? fmt::format(",{}", counter(result, name)) : ",";
-        }
-        csv += "\n";
-    }
-    return csv;
+std::string csvCell(const std::string& value) {
+    if (value.find_first_of(",\"\n") == std::string::npos) { return value; }
+    std::string quoted = "\"";
+    for (char c : value) { quoted += c == '"' ? "\"\"" : std::string(1, c); }
+    return quoted + "\"";
 }
 
 }  // namespace binosplat

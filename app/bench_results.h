@@ -1,5 +1,7 @@
-// What `bench` measured, as a table, JSON, CSV and plot.
+// What `bench` measured, and what follows from it: ratios, stages, the Pareto front.
 #pragma once
+
+#include "app/bench_quality.h"
 
 #include <glm/glm.hpp>
 
@@ -12,17 +14,23 @@
 
 namespace binosplat {
 
-// One mode at one point of a series. Times are medians over the frames, in milliseconds of GPU time.
+using NamedTimes = std::vector<std::pair<std::string, double>>;
+
+// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those of the mode "twin" are
+// wall-clock milliseconds of the float64 twin for one eye.
 struct BenchResult {
-    std::string series, scene, mode;
+    std::string series, scene, view, headset, method, mode;
     std::uint64_t splats = 0;
     glm::uvec2 size_px{0, 0};  // per eye
     std::uint32_t frames = 0;
-    std::vector<std::pair<std::string, double>> pass_ms;   // in frame order
+    NamedTimes pass_ms;                                    // in frame order
     double total_ms = 0.0, least_ms = 0.0, most_ms = 0.0;  // the whole pair (one eye for mono)
     std::map<std::string, std::uint64_t> counters;
     std::uint64_t peak_gpu_bytes = 0;
+    std::vector<OriginScores> quality;                         // of the affiliated eye; empty where it is rendered in full
     std::optional<double> ratio_to_two_pass, ratio_to_shared;  // of total_ms, in the same run
+    std::optional<double> ratio_to_twin;                       // mono: of total_ms to the twin's
+    bool on_front = false;                                     // no other method of the point is as fast and as close to the full render
 };
 
 struct BenchRun {
@@ -32,16 +40,35 @@ struct BenchRun {
 
 double median(std::vector<double> values);
 
+// Whether both were measured at the same point: same series, scene, view, headset, splats and size.
+bool samePoint(const BenchResult& a, const BenchResult& b);
+// "atelier, near, quest2, 1000 splats, 512x512 per eye".
+std::string namePoint(const BenchResult& result);
+
 // The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".
-std::vector<std::pair<std::string, double>> byPass(const BenchResult& result);
+NamedTimes byPass(const BenchResult& result);
+
+// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8a, 8b, 9), "ROI choice" (8c to 8g), and of the
+// affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
+NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms);
 
 // Fills in the ratios, where both modes were measured at the same point.
 void compareModes(std::vector<BenchResult>& results);
 
+// Marks what is worth its time: of two methods with the same error the faster one, of two as fast the closer one. Modes that render
+// every eye in full have no error.
+void markFront(std::vector<BenchResult>& results);
+
+// The result's scores over one origin; null where it has none.
+const OriginScores* scoresOf(const BenchResult& result, const std::string& origin);
+
 std::string benchTable(const BenchRun& run);
 std::string benchJson(const BenchRun& run);
 std::string benchCsv(const BenchRun& run);
-// Totals of all modes, and the passes of `shared`, against splats and against pixels where a series varies them.
+// Error against run time at every point, the front drawn; and time against splats and pixels where a series varies them.
 std::string benchPlot(const BenchRun& run);
+
+// Quoted where the text would break a row of CSV.
+std::string csvCell(const std::string& value);
 
 }  // namespace binosplat

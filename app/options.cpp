@@ -86,6 +86,19 @@ std::vector<std::string> readableArguments(int count, const char* const* argumen
     return reversed;
 }
 
+// A motion starts from one camera, photographs have one camera each.
+void requireBenchKind(const BenchOptions& bench) {
+    const bool cameras = !bench.run.camera.cameras_file.empty();
+    const auto refuse = [](bool wrong, const char* message) {
+        if (wrong) { throw Error(ExitCode::kUsage, message); }
+    };
+    refuse(!bench.motion_file.empty() && !bench.photos_folder.empty(), "--motion and --photos contradict each other, must be one of them");
+    refuse(!bench.photos_folder.empty() && !cameras, "--photos is given without --cameras");
+    refuse(!bench.photos_folder.empty() && bench.run.camera.size_px.has_value(),
+           "--photos and --size contradict each other: pictures have the photographs' size");
+    refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
+}
+
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
@@ -93,8 +106,7 @@ std::string oneLine(std::string text) {
 
 }  // namespace
 
-RunOptions runOptions(const Settings& settings) {
-    RunOptions options;
+RunOptions runOptions(const Settings& settings, RunOptions options) {
     CameraOptions& camera = options.camera;
     StereoOptions& stereo = options.stereo;
     const auto read = [&](const char* key, auto&& store) {
@@ -144,6 +156,12 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::App* bench_command = app.add_subcommand("bench", "Measure modes over scenes, splat counts and picture sizes");
     bench_command->add_option("SCENE", bench.scenes, "files, directories or builtin:NAME (default: those of the config)");
     bench_command->add_option("--out", bench.out, "directory for bench.json, bench.csv and bench.svg")->required()->type_name("DIR");
+    bench_command->add_option("--motion", bench.motion_file, "head poses (CSV) to play relative to the camera")->type_name("TRACE.csv");
+    bench_command->add_option("--photos", bench.photos_folder, "photographs of the cameras of --cameras, to compare with")
+        ->type_name("DIR");
+    std::string every;
+    CLI::Option* every_option =
+        bench_command->add_option("--every", every, "only every Nth pose of --motion or camera of --photos (default 1)")->type_name("N");
     addCommonRows(*bench_command, bench_line, bench.run.config);
 
     ViewOptions view;
@@ -179,7 +197,9 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         return render;
     }
     if (bench_command->parsed()) {
-        bench.run = readRun(bench_line, bench.run.config, {"bench", "series"}, &bench.tables);
+        bench.run = readRun(bench_line, bench.run.config, {"bench", "series", "methods", "views"}, &bench.tables);
+        if (every_option->count() > 0) { bench.every = static_cast<std::uint32_t>(readCount({"--every", {every}}, 1, 1000000)); }
+        requireBenchKind(bench);
         return bench;
     }
     if (view_command->parsed()) {

@@ -61,7 +61,10 @@ struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
-    std::vector<SettingsTable> tables;  // the config's [bench] and [[series]], for the bench alone
+    std::vector<SettingsTable> tables;  // the config's tables that the bench alone reads, see bench_plan.h
+    std::string motion_file;            // --motion: head poses to play, relative to the camera
+    std::string photos_folder;          // --photos: what the cameras of --cameras saw
+    std::uint32_t every = 1;            // --every: of a motion's poses or of the cameras
 };
 
 struct ViewOptions {
@@ -90,7 +93,7 @@ using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptio
 // Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);
 
-// Typed values of merged settings.
-RunOptions runOptions(const Settings& settings);
+// Typed values of merged settings; what they do not say stays as in `options`.
+RunOptions runOptions(const Settings& settings, RunOptions options = {});
 
 }  // namespace binosplat

@@ -1,20 +1,18 @@
-// Panels of log-log lines as an SVG text.
+// Panels of lines and points as an SVG text.
 #include "app/svg_plot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace binosplat {
 
 namespace {
 
 // All lengths in SVG user units (pixels at 100 %).
-constexpr double kPanelWidth = 620.0, kPanelHeight = 400.0, kTitleHeight = 46.0;
-constexpr double kLeft = 70.0, kRight = 150.0, kTop = 34.0, kBottom = 54.0;
+constexpr double kPanelWidth = 680.0, kPanelHeight = 420.0, kTitleHeight = 46.0;
+constexpr double kLeft = 70.0, kRight = 210.0, kTop = 34.0, kBottom = 54.0;
 
 // Colours that the colour-blind tell apart (Okabe and Ito, 2008), and a dash for the second round.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};
@@ -25,104 +23,115 @@ std::string escape(const std::string& text) {
     return result;
 }
 
-// 1500 as 1.5k, 3000000 as 3M.
-std::string shortNumber(double value) {
-    if (value >= 1e9) { return fmt::format("{:.3g}G", value / 1e9); }
-    if (value >= 1e6) { return fmt::format("{:.3g}M", value / 1e6); }
-    if (value >= 1e3) { return fmt::format("{:.3g}k", value / 1e3); }
-    return fmt::format("{:.3g}", value);
-}
-
-bool isShown(const std::pair<double, double>& point) {
-    return std::isfinite(point.first) && std::isfinite(point.second) && point.first > 0.0 && point.second > 0.0;
-}
-
-// A logarithmic axis from one round number (1, 2 or 5 times a power of ten) to another.
-class Axis {
+// One panel with its top left corner at (left, top).
+class PanelDrawing {
 public:
-    void include(double value) {
-        low_ = std::min(low_, value);
-        high_ = std::max(high_, value);
-    }
-    // Call once all values are in.
-    void round() {
-        if (low_ > high_) { low_ = 1.0, high_ = 10.0; }
-        const double least = low_, most = high_;
-        std::vector<double> all;
-        for (int decade = static_cast<int>(std::floor(std::log10(least))) - 1; decade <= static_cast<int>(std::ceil(std::log10(most))) + 1;
-             ++decade) {
-            for (double digit : {1.0, 2.0, 5.0}) { all.push_back(digit * std::pow(10.0, decade)); }
+    PanelDrawing(const PlotPanel& panel, double left, double top)
+        : panel_(panel),
+          x_axis_(panel.x_scale),
+          y_axis_(panel.y_scale),
+          left_(left),
+          top_(top),
+          x0_(left + kLeft),
+          x1_(left + kPanelWidth - kRight),
+          y0_(top + kPanelHeight - kBottom),
+          y1_(top + kTop) {
+        for (const PlotLine& line : panel.lines) {
+            for (const auto& point : line.points) {
+                if (!isShown(point)) { continue; }
+                x_axis_.include(point.first);
+                y_axis_.include(point.second);
+            }
         }
-        // The last tick below and the first above; a single value gets room on both sides.
-        constexpr double kSlack = 1.0 + 1e-9;
-        const auto above = std::ranges::find_if(all, [&](double tick) { return tick * kSlack >= most && tick > least; });
-        auto below = above;
-        while (*below > least * kSlack || below == above) { --below; }
-        ticks_.assign(below, above + 1);
-        low_ = ticks_.front(), high_ = ticks_.back();
-        // Over three decades, powers of ten are enough.
-        if (std::log10(high_ / low_) > 3.0) {
-            std::erase_if(ticks_, [](double tick) { return std::abs(std::log10(tick) - std::round(std::log10(tick))) > 1e-6; });
+        for (const PlotMark& mark : panel.marks) {
+            if (x_axis_.shows(mark.x)) { x_axis_.include(mark.x); }
         }
+        x_axis_.round();
+        y_axis_.round();
     }
-    [[nodiscard]] const std::vector<double>& ticks() const { return ticks_; }
-    // 0 at the low end, 1 at the high end.
-    [[nodiscard]] double share(double value) const { return std::log(value / low_) / std::log(high_ / low_); }
+
+    [[nodiscard]] std::string draw() const {
+        std::string svg = drawAxes();
+        for (const PlotMark& mark : panel_.marks) { svg += drawMark(mark); }
+        for (std::size_t i = 0; i < panel_.lines.size(); ++i) { svg += drawLine(i); }
+        return svg;
+    }
 
 private:
-    double low_ = std::numeric_limits<double>::max(), high_ = 0.0;
-    std::vector<double> ticks_;
+    [[nodiscard]] bool isShown(const std::pair<double, double>& point) const {
+        return x_axis_.shows(point.first) && y_axis_.shows(point.second);
+    }
+    [[nodiscard]] double toX(double value) const { return x0_ + (x1_ - x0_) * x_axis_.share(value); }
+    [[nodiscard]] double toY(double value) const { return y0_ + (y1_ - y0_) * y_axis_.share(value); }
+
+    [[nodiscard]] std::string drawAxes() const {
+        std::string svg = fmt::format("<text x='{:.1f}' y='{:.1f}' class='panel'>{}</text>\n", x0_, top_ + 20.0, escape(panel_.title));
+        for (double tick : x_axis_.ticks()) {
+            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' class='grid'/>", toX(tick), y0_, y1_);
+            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", toX(tick), y0_ + 16.0, shortNumber(tick));
+        }
+        for (double tick : y_axis_.ticks()) {
+            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' class='grid'/>", x0_, toY(tick), x1_);
+            svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end'>{}</text>\n", x0_ - 6.0, toY(tick) + 4.0, shortNumber(tick));
+        }
+        svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class='frame'/>\n", x0_, y1_, x1_ - x0_, y0_ - y1_);
+        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", 0.5 * (x0_ + x1_), y0_ + 38.0,
+                           escape(panel_.x_label));
+        svg += fmt::format("<text x='{0:.1f}' y='{1:.1f}' text-anchor='middle' transform='rotate(-90 {0:.1f} {1:.1f})'>{2}</text>\n",
+                           left_ + 18.0, 0.5 * (y0_ + y1_), escape(panel_.y_label));
+        return svg;
+    }
+
+    [[nodiscard]] std::string drawMark(const PlotMark& mark) const {
+        if (!x_axis_.shows(mark.x)) { return {}; }
+        return fmt::format(
+            "<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' stroke='#444' stroke-dasharray='2 3'/>"
+            "<text x='{3:.1f}' y='{4:.1f}' transform='rotate(-90 {3:.1f} {4:.1f})'>{5}</text>\n",
+            toX(mark.x), y0_, y1_, toX(mark.x) - 4.0, y0_ - 8.0, escape(mark.name));
+    }
+
+    [[nodiscard]] std::string drawLine(std::size_t index) const {
+        const PlotLine& line = panel_.lines[index];
+        const char* colour = kColours[index % kColours.size()];
+        const char* dash = index < kColours.size() ? "" : " stroke-dasharray='6 3'";
+        std::string svg, corners;
+        for (std::size_t i = 0; i < line.points.size(); ++i) {
+            if (!isShown(line.points[i])) { continue; }
+            const double x = toX(line.points[i].first), y = toY(line.points[i].second);
+            corners += fmt::format("{:.1f},{:.1f} ", x, y);
+            if (line.dots) { svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x, y, colour); }
+            if (!line.names.empty()) {
+                // To the left of points on the right, where the panel ends.
+                const bool on_left = x > 0.5 * (x0_ + x1_);
+                svg += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'{}>{}</text>", x + (on_left ? -6.0 : 6.0), y - 5.0,
+                                   on_left ? " text-anchor='end'" : "", escape(line.names[i]));
+            }
+        }
+        if (line.joined) {
+            svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.5'{}/>", corners, colour, dash);
+        }
+        const double legend_y = y1_ + 10.0 + 18.0 * static_cast<double>(index);
+        if (line.joined) {
+            svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' stroke='{3}' stroke-width='2'{4}/>", x1_ + 12.0,
+                               legend_y, x1_ + 34.0, colour, dash);
+        } else {
+            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x1_ + 23.0, legend_y, colour);
+        }
+        return svg + fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x1_ + 40.0, legend_y + 4.0, escape(line.label));
+    }
+
+    const PlotPanel& panel_;
+    PlotAxis x_axis_, y_axis_;
+    double left_, top_, x0_, x1_, y0_, y1_;
 };
 
-// One panel with its top left corner at (left, top).
-std::string drawPanel(const PlotPanel& panel, double left, double top) {
-    Axis x_axis, y_axis;
-    for (const PlotLine& line : panel.lines) {
-        for (const auto& point : line.points) {
-            if (!isShown(point)) { continue; }
-            x_axis.include(point.first);
-            y_axis.include(point.second);
-        }
-    }
-    x_axis.round();
-    y_axis.round();
-    const double x0 = left + kLeft, x1 = left + kPanelWidth - kRight, y0 = top + kPanelHeight - kBottom, y1 = top + kTop;
-    const auto toX = [&](double value) { return x0 + (x1 - x0) * x_axis.share(value); };
-    const auto toY = [&](double value) { return y0 + (y1 - y0) * y_axis.share(value); };
-
-    std::string svg = fmt::format("<text x='{:.1f}' y='{:.1f}' class='panel'>{}</text>\n", x0, top + 20.0, escape(panel.title));
-    for (double tick : x_axis.ticks()) {
-        svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{0:.1f}' y2='{2:.1f}' class='grid'/>", toX(tick), y0, y1);
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", toX(tick), y0 + 16.0, shortNumber(tick));
-    }
-    for (double tick : y_axis.ticks()) {
-        svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' class='grid'/>", x0, toY(tick), x1);
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='end'>{}</text>\n", x0 - 6.0, toY(tick) + 4.0, shortNumber(tick));
-    }
-    svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' class='frame'/>\n", x0, y1, x1 - x0, y0 - y1);
-    svg += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", 0.5 * (x0 + x1), y0 + 38.0, escape(panel.x_label));
-    const double label_x = left + 18.0, label_y = 0.5 * (y0 + y1);
-    svg += fmt::format("<text x='{0:.1f}' y='{1:.1f}' text-anchor='middle' transform='rotate(-90 {0:.1f} {1:.1f})'>{2}</text>\n", label_x,
-                       label_y, escape(panel.y_label));
-    for (std::size_t i = 0; i < panel.lines.size(); ++i) {
-        const char* colour = kColours[i % kColours.size()];
-        const char* dash = i < kColours.size() ? "" : " stroke-dasharray='6 3'";
-        std::string corners;
-        for (const auto& point : panel.lines[i].points) {
-            if (!isShown(point)) { continue; }
-            corners += fmt::format("{:.1f},{:.1f} ", toX(point.first), toY(point.second));
-            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", toX(point.first), toY(point.second), colour);
-        }
-        svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='2'{}/>\n", corners, colour, dash);
-        const double legend_y = y1 + 10.0 + 18.0 * static_cast<double>(i);
-        svg += fmt::format("<line x1='{0:.1f}' y1='{1:.1f}' x2='{2:.1f}' y2='{1:.1f}' stroke='{3}' stroke-width='2'{4}/>", x1 + 12.0,
-                           legend_y, x1 + 34.0, colour, dash);
-        svg += fmt::format("<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x1 + 40.0, legend_y + 4.0, escape(panel.lines[i].label));
-    }
-    return svg;
-}
-
 }  // namespace
+
+PlotLine& lineOf(PlotPanel& panel, const std::string& label) {
+    const auto found = std::ranges::find(panel.lines, label, &PlotLine::label);
+    if (found != panel.lines.end()) { return *found; }
+    return panel.lines.emplace_back(PlotLine{.label = label});
+}
 
 std::string drawPlot(const std::string& title, const std::vector<PlotPanel>& panels) {
     const double columns = panels.size() > 1 ? 2.0 : 1.0;
@@ -131,11 +140,12 @@ std::string drawPlot(const std::string& title, const std::vector<PlotPanel>& pan
     std::string svg = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' width='{0:.0f}' height='{1:.0f}' viewBox='0 0 {0:.0f} {1:.0f}'>\n", width, height);
     svg +=
-        "<style>text{font:12px sans-serif;fill:#222} .title{font-size:17px;font-weight:bold} .panel{font-size:14px;font-weight:bold} "
-        ".grid{stroke:#ddd} .frame{fill:none;stroke:#444}</style>\n<rect width='100%' height='100%' fill='white'/>\n";
+        "<style>text{font:12px sans-serif;fill:#222} .title{font-size:17px;font-weight:bold} .panel{font-size:13px;font-weight:bold} "
+        ".name{font-size:10px} .grid{stroke:#ddd} .frame{fill:none;stroke:#444}</style>\n<rect width='100%' height='100%' fill='white'/>\n";
     svg += fmt::format("<text x='{:.1f}' y='30' class='title'>{}</text>\n", kLeft, escape(title));
     for (std::size_t i = 0; i < panels.size(); ++i) {
-        svg += drawPanel(panels[i], static_cast<double>(i % 2) * kPanelWidth, kTitleHeight + static_cast<double>(i / 2) * kPanelHeight);
+        svg += PanelDrawing(panels[i], static_cast<double>(i % 2) * kPanelWidth, kTitleHeight + static_cast<double>(i / 2) * kPanelHeight)
+                   .draw();
     }
     return svg + "</svg>\n";
 }

@@ -162,7 +162,70 @@ TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
 TEST_CASE("passesOfBothEyesAddUp") {
     BenchResult result;
     result.pass_ms = {{"both 1_cull", 1.0}, {"dominant 4_project", 2.0}, {"affiliated 4_project", 3.0}};
-    CHECK(byPass(result) == std::vector<std::pair<std::string, double>>{{"1_cull", 1.0}, {"4_project", 5.0}});
+    CHECK(byPass(result) == NamedTimes{{"1_cull", 1.0}, {"4_project", 5.0}});
+}
+
+TEST_CASE("stagesAddUpPasses") {
+    const NamedTimes passes{{"both 1_cull", 1.0},
+                            {"both 3_sort_depth", 2.0},
+                            {"dominant 4_project", 4.0},
+                            {"dominant 7_rasterize", 8.0},
+                            {"affiliated 8a_reproject", 16.0},
+                            {"affiliated 8b_resolve", 32.0},
+                            {"affiliated 8f_newcomers", 64.0},
+                            {"affiliated 8g_select", 128.0},
+                            {"affiliated 9_resample", 256.0},
+                            {"affiliated 7_rasterize", 512.0}};
+    CHECK(stagesOf("predicted", passes) ==
+          NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 304.0}, {"ROI choice", 192.0}, {"patch", 512.0}});
+    CHECK(stagesOf("shared", {{"affiliated 7_rasterize", 1.0}}) == NamedTimes{{"affiliated", 1.0}});
+}
+
+TEST_CASE("theFrontHoldsWhatIsWorthItsTime") {
+    const auto withError = [](double total_ms, double mean_square) {
+        BenchResult result = makeResult("a", "paper", 1, total_ms);
+        result.quality = {{"all", 64, mean_square, {}, {}}};
+        return result;
+    };
+    std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 9.0),
+                                     makeResult("a", "shared", 1, 8.0),
+                                     makeResult("a", "mono", 1, 1.0),
+                                     withError(4.0, 0.1),
+                                     withError(5.0, 0.1),
+                                     withError(6.0, 0.01),
+                                     withError(8.5, 0.0)};
+    markFront(results);
+    std::vector<bool> front;
+    for (const BenchResult& result : results) { front.push_back(result.on_front); }
+    CHECK(front == std::vector<bool>{false, true, false, true, false, true, false});
+    const std::string svg = benchPlot({"GPU", "", results});
+    CHECK(svg.find("Pareto front") != std::string::npos);
+    CHECK(svg.find("inf") == std::string::npos);
+    CHECK(benchJson({"GPU", "", results}).find("\"psnr_db\": null") != std::string::npos);
+}
+
+TEST_CASE("methodsSweepTheirSettings") {
+    const Workplace work;
+    writeText(work.path / "a.toml",
+              "[bench]\nscenes = [\"builtin:fence\"]\ntwin = true\nscores = [\"psnr\"]\n[stereo]\nmargin = 16\n"
+              "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", \"sum\"]\ngap_px = 3\n"
+              "[[views]]\nname = \"near\"\nscene = \"a.ply\"\neye = [1, 2, 3]\nfov_x = 90\nnear = 0.5\n");
+    const BenchOptions options = parse<BenchOptions>({"bench", "--out", "out", "--config", (work.path / "a.toml").string()});
+    const BenchPlan plan = planBench(options);
+    std::vector<std::string> names;
+    for (const BenchMethod& method : plan.methods) { names.push_back(method.name); }
+    CHECK(names == std::vector<std::string>{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum",
+                                            "p budget=0.5 depth=mean", "p budget=0.5 depth=sum", "mono"});
+    CHECK(plan.methods[4].stereo.budget == 0.5);
+    CHECK(plan.methods[4].stereo.gap_px == 3);
+    CHECK(plan.methods[4].stereo.margin_px == 16);
+    CHECK(!plan.ssim);
+    const std::vector<BenchView> views = viewsOf(plan, "/some/where/a.ply", options.run);
+    REQUIRE(views.size() == 1);
+    CHECK(views[0].name == "near");
+    CHECK(views[0].run.camera.near == 0.5);
+    CHECK(views[0].run.camera.eye == glm::dvec3(1.0, 2.0, 3.0));
+    CHECK(viewsOf(plan, "builtin:fence", options.run).at(0).name.empty());
 }
 
 TEST_CASE("plotsOfFewOrBadPointsStayFinite") {

@@ -1,0 +1,37 @@
+// How far the affiliated eye's picture is from its own full render: over all pixels, and by what made them.
+#pragma once
+
+#include "engine/picture/image.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// Pixels of one origin: "all", "reprojected", "interpolated" (gaps and holes) or "patched" (tiles rendered again).
+struct OriginScores {
+    std::string origin;
+    std::uint64_t pixels = 0;
+    double mean_square = 0.0;  // of R, G and B, as encoded, 0 to 1
+    std::optional<double> ssim, flip;
+
+    // Infinity where the pictures are equal.
+    [[nodiscard]] double psnrDb() const;
+};
+
+struct QualityOptions {
+    bool ssim = true, flip = true;
+    double focal_px = 3840.0;  // what FLIP takes for the distance of the eye: as a headset shows the picture
+};
+
+// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty.
+std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
+                                         std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
+
+// PSNR against a peak of 1.
+double psnrOf(double mean_square);
+
+}  // namespace binosplat
