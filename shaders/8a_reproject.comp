@@ -67,7 +67,9 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, stereo.size_px))) { return; }
     const Moved here = moveDominant(stereo, pixel);
-    if (!here.valid || any(lessThan(here.place_px, vec2(-8))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + 8))) { return; }
+    // Too far out to reach the picture even where the surface is stretched.
+    const float reach_px = float(stereo.gap_px + 2);
+    if (!here.valid || any(lessThan(here.place_px, vec2(-reach_px))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + reach_px))) { return; }
     put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, true);
     if (pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
     const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));

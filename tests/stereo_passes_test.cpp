@@ -110,7 +110,7 @@ TEST_CASE_FIXTURE(Gpu, "8a_reproject brings to each pixel what the twin brings t
     std::size_t pixels = 0, other = 0;
     for (StereoCase c : test::makeStereoCases()) {
         for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
-            for (const int gap_px : {0, 2, 5}) {
+            for (const int gap_px : {0, 2, 5, 20}) {
                 if (gap_px != 2 && choice != DepthChoice::kInverse) { continue; }
                 c.settings.depth_choice = choice;
                 c.settings.gap_px = gap_px;
@@ -137,6 +137,32 @@ TEST_CASE_FIXTURE(Gpu, "8a_reproject brings to each pixel what the twin brings t
     }
     MESSAGE(other << " of " << pixels << " pixels differ");
     CHECK(share(other, pixels) <= 0.0005);
+}
+
+TEST_CASE_FIXTURE(Gpu, "8a_reproject fills a stretch that begins beyond the border") {
+    // 10 px of disparity for a unit of inverse depth: pixel 5 goes to -12, pixel 6 to 6.2, all others out of sight to the left.
+    const glm::uvec2 size_px(40, 1);
+    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 20.0, 0.5}, size_px}, 0.1);
+    StereoCase c{"stretch",
+                 {},
+                 {eyes[kLeft], eyes[kRight]},
+                 {size_px, std::vector(40, glm::dvec4(1.0)), std::vector(40, 0.0), std::vector(40, 9.0), std::vector(40, 0.0)},
+                 {}};
+    c.dominant.inverse_depth[5] = 1.75;
+    c.dominant.inverse_depth[6] = 0.03;
+    for (const auto& [gap_px, filled] : {std::pair(20, 6), std::pair(2, 0)}) {
+        c.settings.gap_px = gap_px;
+        StereoOnDevice device = toDevice(*this, c);
+        device.reproject();
+        const auto pixels = device.readPixels();
+        const auto expected = reference::reproject(c.dominant, c.eyes, c.settings);
+        int between = 0;
+        for (std::size_t x = 0; x < 40; ++x) {
+            CHECK(test::unpackArrival(pixels[x].nearest).way == expected[x].way);
+            between += expected[x].way == Arrival::kBetween ? 1 : 0;
+        }
+        CHECK(between == filled);
+    }
 }
 
 TEST_CASE_FIXTURE(Gpu, "8b_resolve gives each pixel the twin's class, column and depth, and each tile its error") {
