@@ -57,13 +57,15 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
       commands_(context),
       buffers_(makeFrameBuffers(context, scene.splatCount())),
       state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback) {
-    growFrameBuffers(context, buffers_, {std::min(options.first_capacity.visible, std::max(scene.splatCount(), 1u)), options.first_capacity.pairs});
+    growFrameBuffers(context, buffers_,
+                     {std::min(options.first_capacity.visible, std::max(scene.splatCount(), 1u)), options.first_capacity.pairs});
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
-    check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px, "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal",
-          eyes[0].size_px.x, eyes[0].size_px.y, eyes.back().size_px.x, eyes.back().size_px.y);
+    check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px,
+          "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
+          eyes.back().size_px.x, eyes.back().size_px.y);
     mode_ = settings.mode;
     dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
     prepareImages(eyes, settings);
@@ -83,7 +85,8 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
 
     const auto targetOf = [&](int eye, int list) {
-        return EyeTarget{eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
+        return EyeTarget{
+            eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
     };
     const auto dominantOf = [&](int list) {
         EyeTarget target = targetOf(first, list);
@@ -128,7 +131,9 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 }
 
 void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
-    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo, isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo)), dominant_, images_[dominant_], images_[target.eye]);
+    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo,
+                          isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo)), dominant_, images_[dominant_],
+                          images_[target.eye]);
     if (stereo.patching == Patching::kNone) { return; }
     target.shifted = isShifted(stereoViewOf(eyes[dominant_], eyes[target.eye], stereo));
     if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, target.eye, 0, "affiliated "); }
@@ -228,7 +233,8 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     };
     const bool reprojected = reprojects(settings.mode);
     const bool patched = settings.mode == Mode::kPaper || settings.mode == Mode::kPredicted;
-    const bool moments = settings.keep_moments || settings.mode == Mode::kPredicted || (reprojected && settings.stereo.depth_choice == gpu::kDepthInverse);
+    const bool moments =
+        settings.keep_moments || settings.mode == Mode::kPredicted || (reprojected && settings.stereo.depth_choice == gpu::kDepthInverse);
     const gpu::StereoCounters& stereo = state_.stereo_counters;
     leaveOut(scene_.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_.shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
@@ -238,8 +244,10 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
              "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
     leaveOut(patched && state_.masked_tiles.count == 0, "patching: no tile needs to be rendered again");
     leaveOut(settings.mode == Mode::kPaper && !settings.stereo.center_rois, "centre ROIs: not asked for");
-    leaveOut(settings.mode == Mode::kPaper && settings.stereo.center_rois && stereo.hole_pixels == 0, "centre ROIs: the picture has no holes");
-    leaveOut(settings.mode == Mode::kPredicted && stereo.newcomers == 0, "errors of newcomers: the affiliated eye sees no splat that the dominant one does not");
+    leaveOut(settings.mode == Mode::kPaper && settings.stereo.center_rois && stereo.hole_pixels == 0,
+             "centre ROIs: the picture has no holes");
+    leaveOut(settings.mode == Mode::kPredicted && stereo.newcomers == 0,
+             "errors of newcomers: the affiliated eye sees no splat that the dominant one does not");
 }
 
 template <typename T>
@@ -259,7 +267,9 @@ Image StereoFrame::readDominantDepth() { return {sizes_px_[dominant_], 1, readBu
 Image StereoFrame::readInverseDepthMoments() {
     const std::vector<gpu::StereoPixel> pixels = readBuffer<gpu::StereoPixel>(moments_);
     Image image{sizes_px_[dominant_], 2, {}};
-    for (const gpu::StereoPixel& pixel : pixels) { image.values.insert(image.values.end(), {pixel.inverse_depth_sum, pixel.inverse_depth_square_sum}); }
+    for (const gpu::StereoPixel& pixel : pixels) {
+        image.values.insert(image.values.end(), {pixel.inverse_depth_sum, pixel.inverse_depth_square_sum});
+    }
     return image;
 }
 
@@ -278,7 +288,8 @@ std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
     std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);
     for (std::size_t y = 0; y < size.y; ++y) {
         for (std::size_t x = 0; x < size.x; ++x) {
-            classes[y * size.x + x] = static_cast<std::uint8_t>((words[y * row_words + x / gpu::kTileSize] >> (2 * (x % gpu::kTileSize))) & 3);
+            classes[y * size.x + x] =
+                static_cast<std::uint8_t>((words[y * row_words + x / gpu::kTileSize] >> (2 * (x % gpu::kTileSize))) & 3);
         }
     }
     return classes;

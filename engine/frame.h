@@ -28,11 +28,11 @@ enum class Mode {
 struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
-    double near = 0.2;            // scene units
+    double near = 0.2;  // scene units
     glm::dvec3 background{0.0};
-    StereoSettings stereo;        // how one eye is made from the other; `patching` follows from the mode
-    bool keep_depth = true;       // D of the dominant eye, for readDominantDepth
-    bool keep_moments = false;    // I and J of the dominant eye, for readInverseDepthMoments
+    StereoSettings stereo;      // how one eye is made from the other; `patching` follows from the mode
+    bool keep_depth = true;     // D of the dominant eye, for readDominantDepth
+    bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
 };
 
 struct FrameResult {

@@ -24,7 +24,8 @@ Pose lookAt(const glm::dvec3& eye, const glm::dvec3& look, const glm::dvec3& up)
     const glm::dvec3 forward = look - eye;
     const glm::dvec3 right = glm::cross(forward, up);
     const double sine = glm::length(right) / (glm::length(forward) * glm::length(up));
-    check(sine > 1e-9, "camera: --eye, --look and --up must span a view: look may not equal eye, and up may not lie along the line of sight");
+    check(sine > 1e-9,
+          "camera: --eye, --look and --up must span a view: look may not equal eye, and up may not lie along the line of sight");
     const glm::dvec3 down = glm::cross(forward, right);
     const glm::dmat3 world_from_camera(glm::normalize(right), glm::normalize(down), glm::normalize(forward));
     return {glm::normalize(glm::quat_cast(world_from_camera)), eye};

@@ -12,27 +12,37 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     using Usage = vk::BufferUsageFlagBits;
     using Property = vk::MemoryPropertyFlagBits;
     const vk::Device device = *context.device();
-    const std::string what = fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, static_cast<double>(bytes) / 1048576.0);
-    check(bytes <= context.maxAllocationBytes(), "{}, one allocation holds at most {:.1f} MiB", what, static_cast<double>(context.maxAllocationBytes()) / 1048576.0);
+    const std::string what =
+        fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, static_cast<double>(bytes) / 1048576.0);
+    check(bytes <= context.maxAllocationBytes(), "{}, one allocation holds at most {:.1f} MiB", what,
+          static_cast<double>(context.maxAllocationBytes()) / 1048576.0);
     try {
-        const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eTransferSrc | Usage::eTransferDst;
-        buffer_ = vk::raii::Buffer(context.device(), vk::BufferCreateInfo({}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
+        const auto usage =
+            Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+        buffer_ = vk::raii::Buffer(
+            context.device(),
+            vk::BufferCreateInfo({}, bytes, kind == MemoryKind::kDevice ? usage : Usage::eTransferSrc | Usage::eTransferDst));
         const auto needs = buffer_.getMemoryRequirements();
         std::uint32_t type = 0;
         switch (kind) {
-            case MemoryKind::kDevice: type = context.memoryType(needs.memoryTypeBits, {}, Property::eDeviceLocal); break;
-            case MemoryKind::kUpload: type = context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent, {}); break;
+            case MemoryKind::kDevice:
+                type = context.memoryType(needs.memoryTypeBits, {}, Property::eDeviceLocal);
+                break;
+            case MemoryKind::kUpload:
+                type = context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent, {});
+                break;
             case MemoryKind::kReadback:
                 type = context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent, Property::eHostCached);
                 break;
         }
         const vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
-        memory_ = vk::raii::DeviceMemory(context.device(), vk::MemoryAllocateInfo(needs.size, type, kind == MemoryKind::kDevice ? &flags : nullptr));
+        memory_ = vk::raii::DeviceMemory(context.device(),
+                                         vk::MemoryAllocateInfo(needs.size, type, kind == MemoryKind::kDevice ? &flags : nullptr));
         buffer_.bindMemory(*memory_, 0);
         allocated_bytes_ = needs.size;
-    } catch (const vk::OutOfDeviceMemoryError&) {
+    } catch (const vk::OutOfDeviceMemoryError&) { fail("{}, which it has not free", what); } catch (const vk::OutOfHostMemoryError&) {
         fail("{}, which it has not free", what);
-    } catch (const vk::OutOfHostMemoryError&) { fail("{}, which it has not free", what); }
+    }
     context.name(buffer_, name);
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {

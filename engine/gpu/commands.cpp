@@ -13,7 +13,8 @@ constexpr std::uint32_t kMaxTimestamps = 256;
 }  // namespace
 
 Commands::Commands(const Context& context) : context_(context) {
-    vk::raii::CommandBuffers buffers(context.device(), vk::CommandBufferAllocateInfo(*context.commandPool(), vk::CommandBufferLevel::ePrimary, 1));
+    vk::raii::CommandBuffers buffers(context.device(),
+                                     vk::CommandBufferAllocateInfo(*context.commandPool(), vk::CommandBufferLevel::ePrimary, 1));
     command_buffer_ = std::move(buffers[0]);
     fence_ = context.device().createFence({});
     if (context.timestampPeriodNs() > 0.0) {
@@ -53,16 +54,19 @@ void Commands::endPass() {
 void Commands::waitForAll() {
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
-    const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite,
-                                    Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead | Access::eTransferWrite | Access::eIndirectCommandRead);
-    command_buffer_.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer, Stage::eComputeShader | Stage::eTransfer | Stage::eDrawIndirect, {}, barrier, {}, {});
+    const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead | Access::eShaderWrite |
+                                                                                       Access::eTransferRead | Access::eTransferWrite |
+                                                                                       Access::eIndirectCommandRead);
+    command_buffer_.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer,
+                                    Stage::eComputeShader | Stage::eTransfer | Stage::eDrawIndirect, {}, barrier, {}, {});
 }
 
 void Commands::recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes) {
     assert(bytes == kernel.pushBytes());
     waitForAll();
     command_buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, kernel.pipeline());
-    command_buffer_.pushConstants<std::uint8_t>(kernel.layout(), vk::ShaderStageFlagBits::eCompute, 0, {bytes, static_cast<const std::uint8_t*>(pass)});
+    command_buffer_.pushConstants<std::uint8_t>(kernel.layout(), vk::ShaderStageFlagBits::eCompute, 0,
+                                                {bytes, static_cast<const std::uint8_t*>(pass)});
 }
 
 void Commands::fillZero(const Buffer& buffer) {
@@ -74,7 +78,8 @@ void Commands::fillZero(const Buffer& buffer) {
 void Commands::update(const Buffer& buffer, const void* data, std::uint64_t bytes) {
     assert(bytes <= 65536 && bytes % 4 == 0);
     waitForAll();
-    command_buffer_.updateBuffer<std::uint8_t>(buffer.handle(), 0, {static_cast<std::uint32_t>(bytes), static_cast<const std::uint8_t*>(data)});
+    command_buffer_.updateBuffer<std::uint8_t>(buffer.handle(), 0,
+                                               {static_cast<std::uint32_t>(bytes), static_cast<const std::uint8_t*>(data)});
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset, std::uint64_t to_offset) {
@@ -97,8 +102,9 @@ void Commands::submitAndWait() {
     times_.clear();
     total_ms_ = 0.0;
     if (!*timestamps_ || timestamp_count_ == 0) { return; }
-    const auto [status, ticks] = timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
-                                                                       vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    const auto [status, ticks] =
+        timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
+                                              vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
     for (std::size_t i = 0; i < pass_names_.size(); ++i) {

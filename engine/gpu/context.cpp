@@ -45,7 +45,8 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (!vulkan12.scalarBlockLayout) { return "scalarBlockLayout"; }
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
-    const auto operations = vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
+    const auto operations =
+        vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
     if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
     if (vulkan11.subgroupSize < 8 || vulkan11.subgroupSize > 64) { return "subgroups of 8 to 64 invocations"; }
     return {};
@@ -53,10 +54,14 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
 
 int preferenceOf(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
-        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
-        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
-        default: return 3;
+        case vk::PhysicalDeviceType::eDiscreteGpu:
+            return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu:
+            return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu:
+            return 2;
+        default:
+            return 3;
     }
 }
 
@@ -79,7 +84,8 @@ void Context::createInstance(bool validation) {
     std::vector<const char*> layers, extensions;
     if (validation) {
         const auto available = loader_.enumerateInstanceLayerProperties();
-        const bool found = std::any_of(available.begin(), available.end(), [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
+        const bool found = std::any_of(available.begin(), available.end(),
+                                       [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
         extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
@@ -98,7 +104,8 @@ void Context::createInstance(bool validation) {
         using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
         using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
         messenger_ = vk::raii::DebugUtilsMessengerEXT(
-            instance_, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, onMessage, &sink_));
+            instance_, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
+                                                            Type::eValidation | Type::ePerformance, onMessage, &sink_));
     }
 }
 
@@ -124,7 +131,10 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
     } else {
         for (std::size_t i = 0; i < devices.size(); ++i) {
             if (!missingFeatures(devices[i]).empty()) { continue; }
-            if (!chosen || preferenceOf(devices[i].getProperties().deviceType) < preferenceOf(devices[*chosen].getProperties().deviceType)) { chosen = i; }
+            if (!chosen ||
+                preferenceOf(devices[i].getProperties().deviceType) < preferenceOf(devices[*chosen].getProperties().deviceType)) {
+                chosen = i;
+            }
         }
         if (!chosen) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kHint)); }
     }
@@ -152,7 +162,8 @@ void Context::createDevice() {
     max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
     subgroup_size_ = min_subgroup_size_ = max_subgroup_size_ = vulkan11.subgroupSize;
     if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {
-        const auto sizes = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
+        const auto sizes =
+            physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
         max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
     } else {  // some drivers vary the size between 8 and 32 without saying so

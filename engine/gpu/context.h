@@ -46,7 +46,8 @@ public:
     [[nodiscard]] std::vector<std::string> validationMessages() const;
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
-    [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred) const;
+    [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
+                                           vk::MemoryPropertyFlags preferred) const;
 
     // Gives a Vulkan object its name in validation messages and captures.
     template <typename Handle>

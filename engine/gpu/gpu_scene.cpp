@@ -60,8 +60,11 @@ glm::dvec3 middleOf(const Scene& scene) {
 }
 
 // Writes splats [first, first + count) of `scene` to `to`, laid out as `layout` (of at least `count` splats).
-void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const glm::dvec3& origin, const ChunkLayout& layout, std::uint8_t* to) {
-    const auto put = [&]<typename T>(std::uint64_t array, std::uint64_t i, const T& value) { std::memcpy(to + array + i * sizeof(T), &value, sizeof(T)); };
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const glm::dvec3& origin, const ChunkLayout& layout,
+                std::uint8_t* to) {
+    const auto put = [&]<typename T>(std::uint64_t array, std::uint64_t i, const T& value) {
+        std::memcpy(to + array + i * sizeof(T), &value, sizeof(T));
+    };
     const int coefficients = shCoefficientCount(scene.sh_degree);
     const std::uint64_t sh_words = shWords(scene.sh_degree);
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -84,16 +87,20 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 
 std::uint64_t deviceBytesPerSplat(int sh_degree) { return 48 + shWords(sh_degree) * sizeof(std::uint32_t); }
 
-GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : sh_degree_(scene.sh_degree), origin_(middleOf(scene)) {
+GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress)
+    : sh_degree_(scene.sh_degree), origin_(middleOf(scene)) {
     check(scene.size() < (1u << 31), "{}: {} splats, at most {} can be shown", scene.name, scene.size(), (1u << 31) - 1);
     splat_count_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
-    while (chunk_bits_ > 0 && ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_).bytes > context.maxAllocationBytes()) { --chunk_bits_; }
+    while (chunk_bits_ > 0 &&
+           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_).bytes > context.maxAllocationBytes()) {
+        --chunk_bits_;
+    }
 
     std::vector<gpu::SceneChunk> table;
     const std::uint64_t chunk_splats = 1ull << chunk_bits_;
-    const std::uint64_t upload_splats =
-        std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(sh_degree_)), 1, std::min(kUploadSplats, std::max(splat_count_, 1u)));
+    const std::uint64_t upload_splats = std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(sh_degree_)), 1,
+                                                                  std::min(kUploadSplats, std::max(splat_count_, 1u)));
     const ChunkLayout upload_layout(upload_splats, sh_degree_);
     const Buffer upload(context, "scene upload", upload_layout.bytes, MemoryKind::kUpload);
     Commands commands(context);
@@ -101,8 +108,9 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
         const std::uint64_t count = std::min<std::uint64_t>(chunk_splats, splat_count_ - first);
         const ChunkLayout layout(count, sh_degree_);
         const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
-        table.push_back({buffer.address<gpu::vec3>(layout.positions), buffer.address<gpu::vec4>(layout.rotations), buffer.address<gpu::vec2>(layout.scales),
-                         buffer.address<float>(layout.opacities), buffer.address<gpu::uvec2>(layout.base_colours), buffer.address<std::uint32_t>(layout.sh)});
+        table.push_back({buffer.address<gpu::vec3>(layout.positions), buffer.address<gpu::vec4>(layout.rotations),
+                         buffer.address<gpu::vec2>(layout.scales), buffer.address<float>(layout.opacities),
+                         buffer.address<gpu::uvec2>(layout.base_colours), buffer.address<std::uint32_t>(layout.sh)});
         for (std::uint64_t done = 0; done < count; done += upload_splats) {
             const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
             packSplats(scene, first + done, block, origin_, upload_layout, upload.mapped<std::uint8_t>().data());
@@ -122,8 +130,8 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
     }
     const std::uint64_t table_bytes = std::max<std::uint64_t>(table.size(), 1) * sizeof(gpu::SceneChunk);
     table.resize(table_bytes / sizeof(gpu::SceneChunk));
-    check(table_bytes <= 65536, "{}: {} splats need more than {} allocations of {} MiB", scene.name, scene.size(), 65536 / sizeof(gpu::SceneChunk),
-          context.maxAllocationBytes() >> 20);
+    check(table_bytes <= 65536, "{}: {} splats need more than {} allocations of {} MiB", scene.name, scene.size(),
+          65536 / sizeof(gpu::SceneChunk), context.maxAllocationBytes() >> 20);
     chunk_table_ = Buffer(context, "scene chunks", table_bytes);
     commands.begin();
     commands.update(chunk_table_, table.data(), table_bytes);

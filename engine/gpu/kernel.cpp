@@ -16,7 +16,8 @@ Kernel::Kernel(const Context& context, std::string_view shader, std::uint32_t pu
     layout_ = vk::raii::PipelineLayout(context.device(), vk::PipelineLayoutCreateInfo({}, {}, range));
     std::vector<vk::SpecializationMapEntry> entries;
     for (std::uint32_t id = 0; id < constants.size(); ++id) { entries.emplace_back(id, id * sizeof(std::uint32_t), sizeof(std::uint32_t)); }
-    const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size() * sizeof(std::uint32_t), constants.begin());
+    const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                                constants.size() * sizeof(std::uint32_t), constants.begin());
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
     pipeline_ = vk::raii::Pipeline(context.device(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
     context.name(pipeline_, std::string(shader));

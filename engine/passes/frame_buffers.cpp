@@ -24,7 +24,8 @@ FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count)
     FrameBuffers buffers;
     buffers.splat_count = splat_count;
     buffers.state = Buffer(context, "frame state", sizeof(FrameState));
-    buffers.visibility = Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kGroupSize / 8 + sizeof(gpu::uint)));
+    buffers.visibility =
+        Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kGroupSize / 8 + sizeof(gpu::uint)));
     return buffers;
 }
 

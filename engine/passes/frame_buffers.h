@@ -92,10 +92,14 @@ struct FrameBuffers {
 
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const { return visibility.address<gpu::uint>(cullGroups() * (gpu::kGroupSize / 8)); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {
+        return visibility.address<gpu::uint>(cullGroups() * (gpu::kGroupSize / 8));
+    }
     [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kGroupSize - 1) / gpu::kGroupSize; }
     // Offsets of the lists within `state`.
-    static std::uint64_t visibleList(int i) { return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
+    static std::uint64_t visibleList(int i) {
+        return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState);
+    }
     static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
 };
 

@@ -13,12 +13,12 @@ Passes::Passes(const Context& context, int sh_degree, std::uint32_t threads_per_
       sort_(context),
       kernels_(context) {}
 
-void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
-                           const std::string& role) {
+void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count,
+                           int order_eye, int list, const std::string& role) {
     commands.beginPass(role + "1_cull");
     commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass)),
-                          gpu::CullPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), scene.splatCount(), scene.chunkBits(),
-                                        static_cast<gpu::uint>(first_eye), static_cast<gpu::uint>(eye_count)},
+                          gpu::CullPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), scene.splatCount(),
+                                        scene.chunkBits(), static_cast<gpu::uint>(first_eye), static_cast<gpu::uint>(eye_count)},
                           scene.splatCount());
     commands.beginPass(role + "2_compact");
     scan_.overCount(commands, buffers.groupCounts(), static_cast<gpu::uint>(buffers.cullGroups()),
@@ -26,11 +26,13 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
     recordOrder(commands, scene, buffers, order_eye, list, role);
 }
 
-void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role) {
+void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
+                         const std::string& role) {
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(list));
     commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass)),
-                          gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible, buffers.visible.order().keys,
-                                           buffers.visible.order().values, scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(order_eye)},
+                          gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,
+                                           buffers.visible.order().keys, buffers.visible.order().values, scene.splatCount(),
+                                           scene.chunkBits(), static_cast<gpu::uint>(order_eye)},
                           scene.splatCount());
     commands.beginPass(role + "3_sort_depth");
     // Four rounds: the result is where the input was.
@@ -39,16 +41,18 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
 }
 
 const Kernel& Passes::rasterizeKernel(Kept kept, bool masked) {
-    return kernels_.get("7_rasterize", sizeof(gpu::RasterizePass),
-                        {threads_per_cell_, kept.depth, kept.stereo_pixels, kept.inverse_depth_moments, masked, gpu::kCellsPerTile * threads_per_cell_});
+    return kernels_.get(
+        "7_rasterize", sizeof(gpu::RasterizePass),
+        {threads_per_cell_, kept.depth, kept.stereo_pixels, kept.inverse_depth_moments, masked, gpu::kCellsPerTile * threads_per_cell_});
 }
 
-void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role) {
+void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
+                       const std::string& role) {
     record(commands, scene, buffers, target, nullptr, role);
 }
 
-void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
-                         const std::string& role) {
+void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
+                         const TileMask& mask, const std::string& role) {
     record(commands, scene, buffers, target, &mask, role);
 }
 
@@ -67,23 +71,27 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
 
     commands.beginPass(role + "4_project");
     const std::uint32_t masked = mask != nullptr ? 1 : 0;
-    commands.dispatchIndirect(kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked, target.shifted}),
-                              gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
-                                               buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
-                                               buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},
-                              buffers.state, per_visible);
+    commands.dispatchIndirect(
+        kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked, target.shifted}),
+        gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
+                         buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
+                         buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},
+        buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());
-    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}),
-                              gpu::BinPass{buffers.eyes(), buffers.visible.splats(), buffers.visible.tileBoxes(), buffers.visible.tileCounts(), visible, pairs,
-                                           buffers.pairs.pairs().keys, buffers.pairs.pairs().values, tiles.tiles_before, tiles.tile_list, eye},
-                              buffers.state, per_pair);
+    commands.dispatchIndirect(
+        kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}),
+        gpu::BinPass{buffers.eyes(), buffers.visible.splats(), buffers.visible.tileBoxes(), buffers.visible.tileCounts(), visible, pairs,
+                     buffers.pairs.pairs().keys, buffers.pairs.pairs().values, tiles.tiles_before, tiles.tile_list, eye},
+        buffers.state, per_pair);
     commands.beginPass(role + "6_sort_tiles");
     const unsigned tile_bits = static_cast<unsigned>(std::bit_width(target.size_tiles.x * target.size_tiles.y));
-    const KeyValues sorted = sort_.record(commands, buffers.pairs.pairs(), buffers.pairs.spare(), scratch, buffers.state, pair_list, tile_bits);
+    const KeyValues sorted =
+        sort_.record(commands, buffers.pairs.pairs(), buffers.pairs.spare(), scratch, buffers.state, pair_list, tile_bits);
     const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
     commands.fillZero(buffers.tile_ranges);
-    commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges}, buffers.state, per_pair);
+    commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges},
+                              buffers.state, per_pair);
     commands.beginPass(role + "7_rasterize");
     const gpu::RasterizePass rasterize{buffers.eyes(),
                                        buffers.visible.splats(),
@@ -99,7 +107,8 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     if (mask == nullptr) {
         commands.dispatch(rasterizeKernel(target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
     } else {
-        commands.dispatchIndirect(rasterizeKernel(target.kept, true), rasterize, buffers.state, offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
+        commands.dispatchIndirect(rasterizeKernel(target.kept, true), rasterize, buffers.state,
+                                  offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
     }
 }
 

@@ -49,12 +49,14 @@ public:
 
     // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
     // the depths of `order_eye`. `role` goes before the passes' names.
-    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye, int list,
-                       const std::string& role);
+    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye,
+                       int list, const std::string& role);
     // Passes 2 and 3 alone, once more, by the depths of another eye.
-    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list, const std::string& role);
+    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
+                     const std::string& role);
     // Passes 4 to 7: the picture of an eye.
-    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const std::string& role);
+    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
+                   const std::string& role);
     // The same under a mask: the other tiles stay as they are.
     void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
                      const std::string& role);

@@ -30,7 +30,9 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
         const gpu::uint digits = 1u << bits;
         commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, list, shift, digits}, lists, groups);
         commands.dispatch(spine_, gpu::SortSpinePass{counts, totals, list}, digits);
-        commands.dispatchIndirect(scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, totals, list, shift, digits}, lists, groups);
+        commands.dispatchIndirect(scatter_,
+                                  gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, totals, list, shift, digits},
+                                  lists, groups);
         std::swap(in, spare);
         shift += bits;
     }

@@ -60,7 +60,9 @@ gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const S
 
 bool isRectified(const gpu::StereoView& view) {
     const glm::vec3 zero(0.0f);
-    const auto alongRows = [&](const gpu::PixelMap& map) { return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f; };
+    const auto alongRows = [&](const gpu::PixelMap& map) {
+        return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
+    };
     return alongRows(view.affiliated_from_dominant) && alongRows(view.dominant_from_affiliated);
 }
 
@@ -70,7 +72,8 @@ bool isShifted(const gpu::StereoView& view) {
 }
 
 void StereoPasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
-                          const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated) {
+                          const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant,
+                          const EyeImage& affiliated) {
     const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
     const auto counters = buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0));
@@ -85,8 +88,8 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
 
     commands.beginPass("affiliated 8a_reproject");
     commands.fillZero(stereo.tiles());
-    commands.dispatch(kernels_.get("8a_reproject", sizeof(gpu::ReprojectPass), {along_rows, read_depth}), gpu::ReprojectPass{view, colours, depths, pixels},
-                      tiles.x, tiles.y);
+    commands.dispatch(kernels_.get("8a_reproject", sizeof(gpu::ReprojectPass), {along_rows, read_depth}),
+                      gpu::ReprojectPass{view, colours, depths, pixels}, tiles.x, tiles.y);
     commands.beginPass("affiliated 8b_resolve");
     commands.dispatch(kernels_.get("8b_resolve", sizeof(gpu::ResolvePass), {along_rows, predict}),
                       gpu::ResolvePass{view, colours, pixels, stereo.tileErrors(), counters}, size_px.y);
@@ -100,10 +103,12 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     }
     if (paper && settings.center_rois) {
         commands.beginPass("affiliated 8e_components");
-        const gpu::ComponentsPass pass{view, affiliated.colours.address<gpu::ComponentPixel>(), stereo.boxes(), stereo.tileKinds(), counters, stereo.boxCapacity()};
+        const gpu::ComponentsPass pass{
+            view, affiliated.colours.address<gpu::ComponentPixel>(), stereo.boxes(), stereo.tileKinds(), counters, stereo.boxCapacity()};
         const std::uint64_t groups = offsetof(FrameState, stereo_counters) + offsetof(gpu::StereoCounters, component_groups);
         for (std::uint32_t step = 0; step < 4; ++step) {
-            commands.dispatchIndirect(kernels_.get("8e_components", sizeof(gpu::ComponentsPass), {along_rows, step}), pass, buffers.state, groups);
+            commands.dispatchIndirect(kernels_.get("8e_components", sizeof(gpu::ComponentsPass), {along_rows, step}), pass, buffers.state,
+                                      groups);
         }
         commands.dispatch(kernels_.get("8e_components", sizeof(gpu::ComponentsPass), {along_rows, 4u}), pass, kMarkGroups);
     }
@@ -112,9 +117,9 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
         const std::uint64_t visible_list = FrameBuffers::visibleList(0);
         commands.dispatchIndirect(
             kernels_.get("8f_newcomers", sizeof(gpu::NewcomersPass)),
-            gpu::NewcomersPass{scene.chunks(), buffers.eyes(), view, pixels, buffers.visible.order().values, visible, buffers.visible.tileCounts(),
-                               buffers.state.address<gpu::ListState>(FrameBuffers::pairList(dominant_eye)), stereo.tileErrors(), counters, scene.chunkBits(),
-                               static_cast<gpu::uint>(1 - dominant_eye)},
+            gpu::NewcomersPass{scene.chunks(), buffers.eyes(), view, pixels, buffers.visible.order().values, visible,
+                               buffers.visible.tileCounts(), buffers.state.address<gpu::ListState>(FrameBuffers::pairList(dominant_eye)),
+                               stereo.tileErrors(), counters, scene.chunkBits(), static_cast<gpu::uint>(1 - dominant_eye)},
             buffers.state, visible_list + offsetof(gpu::ListState, per_item));
     }
     if (paper || predict) {

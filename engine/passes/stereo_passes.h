@@ -51,8 +51,8 @@ public:
 
     // Passes 8 and 9. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo
     // pixels, which the affiliated eye's colours replace but for the tiles that are masked.
-    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo, const StereoSettings& settings,
-                bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
+    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
+                const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
 
 private:
     KernelCache kernels_;

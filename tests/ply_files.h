@@ -1,0 +1,175 @@
+// PLY files made to measure, in a folder that goes away with them.
+#pragma once
+
+#include "engine/error.h"
+#include "engine/scene/scene.h"
+
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat::test {
+
+// A folder of its own for each test case, gone afterwards.
+class Folder {
+public:
+    Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("binosplat_scene_test_{}", ::getpid())) {
+        std::filesystem::create_directories(path_);
+    }
+    ~Folder() { std::filesystem::remove_all(path_); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+    [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(file(name), std::ios::binary) << bytes;
+        return file(name);
+    }
+    [[nodiscard]] std::ptrdiff_t fileCount() const {
+        return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+enum class Encoding { kAscii, kLittle, kBig };
+inline constexpr Encoding kEncodings[] = {Encoding::kAscii, Encoding::kLittle, Encoding::kBig};
+
+struct Column {
+    std::string name;
+    std::string type;
+    std::vector<double> values;
+};
+
+template <typename T>
+void appendValue(std::string& bytes, double value, bool big) {
+    T typed = static_cast<T>(value);
+    char raw[sizeof(T)];
+    std::memcpy(raw, &typed, sizeof(T));
+    if (big != (std::endian::native == std::endian::big)) { std::reverse(std::begin(raw), std::end(raw)); }
+    bytes.append(raw, sizeof(T));
+}
+
+inline void appendTyped(std::string& bytes, const std::string& type, double value, Encoding encoding) {
+    const bool big = encoding == Encoding::kBig;
+    if (encoding == Encoding::kAscii) {
+        bytes += fmt::format("{} ", value);
+    } else if (type == "char" || type == "int8") {
+        appendValue<std::int8_t>(bytes, value, big);
+    } else if (type == "uchar" || type == "uint8") {
+        appendValue<std::uint8_t>(bytes, value, big);
+    } else if (type == "short" || type == "int16") {
+        appendValue<std::int16_t>(bytes, value, big);
+    } else if (type == "ushort" || type == "uint16") {
+        appendValue<std::uint16_t>(bytes, value, big);
+    } else if (type == "int" || type == "int32") {
+        appendValue<std::int32_t>(bytes, value, big);
+    } else if (type == "uint" || type == "uint32") {
+        appendValue<std::uint32_t>(bytes, value, big);
+    } else if (type == "float" || type == "float32") {
+        appendValue<float>(bytes, value, big);
+    } else {
+        REQUIRE((type == "double" || type == "float64"));
+        appendValue<double>(bytes, value, big);
+    }
+}
+
+// A PLY file as other programs would write it; `before` and `after` are further elements (header lines and data).
+struct PlyText {
+    std::vector<Column> columns;
+    Encoding encoding = Encoding::kLittle;
+    std::string header_before, data_before, header_after, data_after, line_break = "\n";
+
+    [[nodiscard]] std::string bytes() const {
+        const char* names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+        const std::size_t rows = columns.front().values.size();
+        std::string text =
+            "ply\nformat " + std::string(names[static_cast<int>(encoding)]) + " 1.0\ncomment made for a test\n" + header_before;
+        text += fmt::format("element vertex {}\n", rows);
+        for (const Column& column : columns) { text += "property " + column.type + " " + column.name + "\n"; }
+        text += header_after + "end_header\n";
+        if (line_break != "\n") {
+            std::string broken;
+            for (const char letter : text) { broken += letter == '\n' ? line_break : std::string(1, letter); }
+            text = broken;
+        }
+        text += data_before;
+        for (std::size_t row = 0; row < rows; ++row) {
+            for (const Column& column : columns) { appendTyped(text, column.type, column.values[row], encoding); }
+            if (encoding == Encoding::kAscii) { text += "\n"; }
+        }
+        return text + data_after;
+    }
+    Column& operator[](const std::string& name) {
+        const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == name; });
+        REQUIRE(found != columns.end());
+        return *found;
+    }
+    void remove(const std::string& name) {
+        std::erase_if(columns, [&](const Column& column) { return column.name == name; });
+    }
+};
+
+// Three splats with numbers that are exact in float32; value = 1000 * splat + column would also do, but these are plausible.
+inline PlyText makePly(int rest_count = 0, bool three_scales = false) {
+    PlyText ply;
+    const auto add = [&](const std::string& name, double a, double b, double c) { ply.columns.push_back({name, "float", {a, b, c}}); };
+    add("x", 1.0, 2.0, -3.0);
+    add("y", 0.5, 0.25, 0.125);
+    add("z", 4.0, 5.0, 6.0);
+    for (const char* name : {"nx", "ny", "nz"}) { add(name, 0.0, 0.0, 0.0); }
+    for (int i = 0; i < 3; ++i) { add(fmt::format("f_dc_{}", i), 0.25 * i, 0.5 * i, -0.5 * i); }
+    for (int i = 0; i < rest_count; ++i) { add(fmt::format("f_rest_{}", i), 1.0 + i, 100.0 + i, 200.0 + i); }
+    add("opacity", 0.0, 2.0, -2.0);
+    add("scale_0", 0.0, -1.0, -2.0);
+    add("scale_1", -3.0, -2.5, -1.5);
+    if (three_scales) { add("scale_2", -5.0, -6.0, -4.0); }
+    add("rot_0", 2.0, 1.0, 0.0);
+    add("rot_1", 0.0, 1.0, 0.0);
+    add("rot_2", 0.0, 1.0, -4.0);
+    add("rot_3", 0.0, 1.0, 0.0);
+    return ply;
+}
+
+// The message of the Error that loading gives; empty if there is none.
+inline std::string loadError(const std::string& source, std::uint64_t splats = 0) {
+    try {
+        (void)loadScene(source, splats);
+    } catch (const Error& error) { return error.what(); }
+    return {};
+}
+inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+inline void checkSameScene(const Scene& a, const Scene& b) {
+    REQUIRE(a.size() == b.size());
+    CHECK(a.sh_degree == b.sh_degree);
+    CHECK(a.positions == b.positions);
+    CHECK(a.rotations == b.rotations);
+    CHECK(a.scales == b.scales);
+    CHECK(a.opacities == b.opacities);
+    CHECK(a.sh == b.sh);
+}
+
+// Replaces the first `from`; it must be there.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+}  // namespace binosplat::test
