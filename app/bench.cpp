@@ -108,6 +108,8 @@ void requireScenes(const BenchPlan& plan) {
 
 void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
+    if (!options.motion_file.empty()) { return benchMotion(options, plan); }
+    if (!options.photos_folder.empty()) { return benchPhotos(options, plan); }
     benchSpeed(options, plan);
 }
 

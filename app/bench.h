@@ -8,4 +8,10 @@ namespace binosplat {
 // A scene that is not there is found out before the others are measured. Throws Error naming it.
 void requireScenes(const BenchPlan& plan);
 
+// `bench --motion`: every method at every pose of a recorded head; error, time and flicker. Writes motion.csv, .json and .svg.
+void benchMotion(const BenchOptions& options, const BenchPlan& plan);
+
+// `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes photos.csv and .json.
+void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
+
 }  // namespace binosplat

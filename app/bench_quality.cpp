@@ -6,6 +6,7 @@
 #include "engine/picture/roi_picture.h"
 #include "engine/picture/ssim.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -45,6 +46,12 @@ double squareOf(const Image& a, const Image& b, std::size_t pixel) {
 double psnrOf(double mean_square) { return mean_square > 0.0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity(); }
 
 double OriginScores::psnrDb() const { return psnrOf(mean_square); }
+
+PhotoScores compareWithPhoto(const Image& picture, const Image& photo) {
+    Image shown = picture;
+    for (float& value : shown.values) { value = std::clamp(value, 0.0f, 1.0f); }
+    return {compare(shown, photo).psnrDb(), ssim(shown, photo, Border::kZero).mean().value_or(1.0)};
+}
 
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options) {

@@ -31,6 +31,12 @@ struct QualityOptions {
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
+// Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the border for SSIM.
+struct PhotoScores {
+    double psnr_db, ssim;
+};
+PhotoScores compareWithPhoto(const Image& picture, const Image& photo);
+
 // PSNR against a peak of 1.
 double psnrOf(double mean_square);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <tuple>
 
@@ -51,6 +52,14 @@ double median(std::vector<double> values) {
     std::ranges::nth_element(values, middle);
     const double upper = *middle;
     return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), middle));
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty()) { return 0.0; }
+    const double rank = std::ceil(share * static_cast<double>(values.size()));
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+    std::ranges::nth_element(values, place);
+    return *place;
 }
 
 bool samePoint(const BenchResult& a, const BenchResult& b) {

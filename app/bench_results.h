@@ -39,6 +39,8 @@ struct BenchRun {
 };
 
 double median(std::vector<double> values);
+// The least value that `share` of the values do not exceed (nearest rank); 0 of none.
+double percentile(std::vector<double> values, double share);
 
 // Whether both were measured at the same point: same series, scene, view, headset, splats and size.
 bool samePoint(const BenchResult& a, const BenchResult& b);

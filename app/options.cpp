@@ -157,6 +157,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     bench_command->add_option("SCENE", bench.scenes, "files, directories or builtin:NAME (default: those of the config)");
     bench_command->add_option("--out", bench.out, "directory for bench.json, bench.csv and bench.svg")->required()->type_name("DIR");
     bench_command->add_option("--motion", bench.motion_file, "head poses (CSV) to play relative to the camera")->type_name("TRACE.csv");
+    bench_command->add_option("--motion-axes", bench.motion_axes, "axes of --motion: openxr (default) or unity")->type_name("AXES");
     bench_command->add_option("--photos", bench.photos_folder, "photographs of the cameras of --cameras, to compare with")
         ->type_name("DIR");
     std::string every;
@@ -199,6 +200,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     if (bench_command->parsed()) {
         bench.run = readRun(bench_line, bench.run.config, {"bench", "series", "methods", "views"}, &bench.tables);
         if (every_option->count() > 0) { bench.every = static_cast<std::uint32_t>(readCount({"--every", {every}}, 1, 1000000)); }
+        bench.motion_axes = readChoice({"--motion-axes", {bench.motion_axes}}, {"openxr", "unity"});
         requireBenchKind(bench);
         return bench;
     }

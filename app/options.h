@@ -61,10 +61,11 @@ struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
-    std::vector<SettingsTable> tables;  // the config's tables that the bench alone reads, see bench_plan.h
-    std::string motion_file;            // --motion: head poses to play, relative to the camera
-    std::string photos_folder;          // --photos: what the cameras of --cameras saw
-    std::uint32_t every = 1;            // --every: of a motion's poses or of the cameras
+    std::vector<SettingsTable> tables;   // the config's tables that the bench alone reads, see bench_plan.h
+    std::string motion_file;             // --motion: head poses to play, relative to the camera
+    std::string motion_axes = "openxr";  // --motion-axes: of the recording
+    std::string photos_folder;           // --photos: what the cameras of --cameras saw
+    std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
 };
 
 struct ViewOptions {
