@@ -94,11 +94,16 @@ private:
         const PlotLine& line = panel_.lines[index];
         const char* colour = kColours[index % kColours.size()];
         const char* dash = index < kColours.size() ? "" : " stroke-dasharray='6 3'";
-        std::string svg, corners;
+        std::string svg, path;
+        bool broken = true;  // the line begins anew after a point that has no place
         for (std::size_t i = 0; i < line.points.size(); ++i) {
-            if (!isShown(line.points[i])) { continue; }
+            if (!isShown(line.points[i])) {
+                broken = true;
+                continue;
+            }
             const double x = toX(line.points[i].first), y = toY(line.points[i].second);
-            corners += fmt::format("{:.1f},{:.1f} ", x, y);
+            path += fmt::format("{}{:.1f},{:.1f} ", broken ? "M" : "L", x, y);
+            broken = false;
             if (line.dots) { svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x, y, colour); }
             if (!line.names.empty()) {
                 // To the left of points on the right, where the panel ends.
@@ -107,8 +112,8 @@ private:
                                    on_left ? " text-anchor='end'" : "", escape(line.names[i]));
             }
         }
-        if (line.joined) {
-            svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.5'{}/>", corners, colour, dash);
+        if (line.joined && !path.empty()) {
+            svg += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.5'{}/>", path, colour, dash);
         }
         const double legend_y = y1_ + 10.0 + 18.0 * static_cast<double>(index);
         if (line.joined) {

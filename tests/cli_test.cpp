@@ -41,6 +41,9 @@ TEST_CASE("usageErrorsExitWithTwo") {
     checkRefused(work.run("render builtin:one-splat --out out --headset quest2 --fov-x 60"), 2, "--headset and --fov-x");
     checkRefused(work.run("render builtin:one-splat --out out --cameras c.json --eye 0,0,0"), 2, "--cameras and --eye");
     checkRefused(work.run("bench --out out"), 2, "SCENE");
+    checkRefused(work.run("bench builtin:one-splat --out out --photos p"), 2, "--cameras");
+    checkRefused(work.run("bench builtin:one-splat --out out --every 2"), 2, "--motion or --photos");
+    checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --cameras c.json --photos p"), 2, "--motion and --photos");
     CHECK(work.isEmpty());
 }
 
@@ -242,6 +245,70 @@ TEST_CASE("benchWritesTableJsonCsvAndPlot") {
     checkRefused(work.run("bench builtin:one-splat --out out --config b.toml"), 1, "b.toml:2: repeats is 0, must be a whole number from 1");
     write(work.path / "b.toml", "[[series]]\nsizes = [\"8x8\"]\n");
     checkRefused(work.run("bench builtin:one-splat --out out --config b.toml"), 1, "b.toml:1: name is missing");
+}
+
+TEST_CASE("benchComparesMethodsByOriginOfPixels") {
+    const Workplace work;
+    write(work.path / "b.toml",
+          "[bench]\nrepeats = 1\nwarm-up = 0\ntwin = true\n[[methods]]\nname = \"half\"\nmode = \"predicted\"\nbudget = 0.5\n"
+          "[[series]]\nname = \"s\"\nsizes = [\"96x96\"]\n");
+    const Outcome outcome = work.run("bench builtin:step-edge --out out --config b.toml");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json results = nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"))["results"];
+    REQUIRE(results.size() == 5);
+    CHECK(results[1]["mode"] == "shared");
+    CHECK(results[1]["on_front"] == true);
+    CHECK(!results[1].contains("affiliated_against_full"));
+    CHECK(results[2]["method"] == "half");
+    const nlohmann::json& quality = results[2]["affiliated_against_full"];
+    CHECK(quality["all"]["pixels"] == 96 * 96);
+    CHECK(quality["all"]["psnr_db"] > 25.0);
+    CHECK(quality["all"]["ssim"] > 0.8);
+    CHECK(quality["patched"]["mean_square"] < 1e-6);
+    CHECK(results[2]["stage_ms"].contains("patch"));
+    CHECK(results[3].contains("ratio_to_twin"));
+    CHECK(results[4]["mode"] == "twin");
+}
+
+TEST_CASE("benchPlaysHeadMotion") {
+    const Workplace work;
+    write(work.path / "m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.01,0,0,0,0,0,1\n0.2,0.02,0,0,0,0,0,1\n");
+    const Outcome outcome = work.run("bench builtin:step-edge --size 48x48 --motion m.csv --every 2 --out out");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json results = nlohmann::json::parse(std::ifstream(work.path / "out" / "motion.json"))["results"];
+    REQUIRE(results.size() == 5);
+    CHECK(results[0]["frames"] == 2);
+    CHECK(results[0]["full_change"]["p99"] > 0.0);
+    CHECK(results[4]["mode"] == "predicted");
+    CHECK(results[4]["flicker"]["median"] > 0.0);
+    CHECK(fs::exists(work.path / "out" / "motion.csv"));
+    CHECK(fs::exists(work.path / "out" / "motion.svg"));
+    checkRefused(work.run("bench builtin:one-splat --motion none.csv --out out"), 1, "none.csv");
+}
+
+TEST_CASE("benchComparesWithPhotographs") {
+    const Workplace work;
+    write(
+        work.path / "c.json",
+        R"([{"img_name": "a", "width": 48, "height": 40, "fx": 48, "fy": 48, "position": [0,0,0], "rotation": [[1,0,0],[0,1,0],[0,0,1]]}])");
+    // The photograph is the scene itself, seen by one eye in the middle.
+    REQUIRE(work.run("render builtin:step-edge --cameras c.json --mode mono --out photo").exit_code == 0);
+    const std::string extension = extensionOf(PictureKind::kDisplay);
+    fs::create_directory(work.path / "photos");
+    fs::rename(work.path / "photo" / ("mono" + extension), work.path / "photos" / ("a" + extension));
+    const Outcome outcome = work.run("bench builtin:step-edge --cameras c.json --photos photos --out out");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json results = nlohmann::json::parse(std::ifstream(work.path / "out" / "photos.json"))["results"];
+    REQUIRE(results.size() == 5);
+    CHECK(results[1]["method"] == "shared");
+    CHECK(results[1]["psnr_db_to_photo"] > 50.0);  // 8 bits
+    CHECK(results[1]["psnr_db_lost"] == 0.0);
+    CHECK(results[2]["psnr_db_lost"] > 0.0);
+    fs::remove_all(work.path / "photos");
+    checkRefused(work.run("bench builtin:step-edge --cameras c.json --photos photos --out out"), 1, "photos/a");
 }
 
 TEST_CASE("helpExitsWithZero") {
