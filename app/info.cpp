@@ -1,6 +1,7 @@
 // `binosplat info`: what a scene holds and what rendering it will leave out.
 #include "app/commands.h"
 #include "app/load.h"
+#include "engine/gpu/gpu_scene.h"
 #include "engine/scene/describe.h"
 
 #include <fmt/format.h>
@@ -44,6 +45,9 @@ void runInfo(const InfoOptions& options) {
     printQuantiles("  aspect", summary.aspect_quantiles);
     printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes,
              static_cast<double>(summary.host_bytes) / (1024.0 * 1024.0));
+    const std::uint64_t device_bytes = summary.splats * deviceBytesPerSplat(summary.sh_degree);
+    printRow("", "{} bytes ({:.1f} MiB) on the GPU, {} a splat", device_bytes, static_cast<double>(device_bytes) / (1024.0 * 1024.0),
+             deviceBytesPerSplat(summary.sh_degree));
     for (const std::string& phrase : summary.left_out) { printRow("left out", "{}", phrase); }
     for (const std::string& line : notes.lines) { printRow("note", "{}", line); }
 }

@@ -121,7 +121,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("view",
          [&](const Setting& s) { camera.view = static_cast<std::uint32_t>(readCount(s, 0, std::numeric_limits<std::uint32_t>::max())); });
     read("headset", [&](const Setting& s) { camera.headset = readText(s); });
-    read("near", [&](const Setting& s) { camera.near = readPositive(s); });
+    read("near", [&](const Setting& s) { camera.near = readNumber(s, 1e-6, 1e6); });
     read("background", [&](const Setting& s) { camera.background = readColour(s); });
     read("mode", [&](const Setting& s) { stereo.mode = readChoice(s, {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}); });
     read("dominant", [&](const Setting& s) { stereo.dominant = readChoice(s, {"left", "right"}) == "left" ? kLeft : kRight; });

@@ -104,7 +104,9 @@ std::string reportTable(const FrameReport& report) {
     std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.run.stereo.mode,
                                     report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
     const double percent = report.gpu_total_ms > 0.0 ? 100.0 / report.gpu_total_ms : 0.0;
-    for (const auto& [name, ms] : addUp(report.gpu_ms)) { table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", name, ms, ms * percent); }
+    for (const auto& [name, ms] : addUp(report.gpu_ms)) {
+        table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", name, ms, ms * percent);
+    }
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.gpu_total_ms);
     for (const auto& [name, count] : report.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
     table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.peak_gpu_bytes) / (1024.0 * 1024.0));

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/splat.glsl"
+#include "lib/eye.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
@@ -42,14 +43,14 @@ void main() {
     const uint i = group * kGroupSize + gl_LocalInvocationIndex;
     if (gl_LocalInvocationIndex < kGroupSize / 32) { visible_words[gl_LocalInvocationIndex] = 0; }
     if (gl_LocalInvocationIndex == 0) { visible_count = 0; }
-    barrier();
+    const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);
+    const EyeView last_eye = shareEye(pass.eyes, pass.first_eye + pass.eye_count - 1);
     if (i < pass.splat_count) {
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
         const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
-        bool visible = false;
-        for (uint e = pass.first_eye; e < pass.first_eye + pass.eye_count && !visible; ++e) {
-            visible = isVisible(loadCameraSplat(chunk, in_chunk, pass.eyes.at[e]), pass.eyes.at[e]);
-        }
+        const CameraSplat splat = loadWorldSplat(chunk, in_chunk);
+        const bool visible = isVisible(cameraFromWorld(first_eye, splat), first_eye) ||
+                             (pass.eye_count > 1 && isVisible(cameraFromWorld(last_eye, splat), last_eye));
         if (visible) {
             atomicOr(visible_words[gl_LocalInvocationIndex / 32], 1u << (gl_LocalInvocationIndex & 31));
             atomicAdd(visible_count, 1);

@@ -4,6 +4,7 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/splat.glsl"
+#include "lib/eye.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
@@ -37,6 +38,7 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     const vec2 extent_px = eye.focal_px * extent;
     const float radius_px = ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678));
     const vec2 tiles = vec2(eye.size_tiles);
+    if (any(isnan(middle_px)) || isnan(radius_px) || isinf(radius_px)) { return eye.size_tiles.x * eye.size_tiles.y; }
     const vec2 first = clamp(floor((middle_px - radius_px) / float(kTileSize)), vec2(0), tiles);
     const vec2 end = clamp(floor((middle_px + radius_px + float(kTileSize - 1)) / float(kTileSize)), vec2(0), tiles);
     const vec2 size = max(end - first, vec2(0));
@@ -64,17 +66,17 @@ void main() {
     const uint count = pass.visible.at[0].count;
     const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
     uint square_tiles = 0;
+    const EyeView eye = shareEye(pass.eyes, pass.eye);
     if (rank < count) {
         const uint i = pass.order.at[rank];
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
         const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
-        const uvec2 size_tiles = pass.eyes.at[pass.eye].size_tiles;
+        const uvec2 size_tiles = eye.size_tiles;
 
         ProjectedSplat p;
         Outline outline;
         ivec4 box;
         if (!kShifted || !projectShifted(rank, size_tiles, p, outline, box)) {
-            const EyeView eye = pass.eyes.at[pass.eye];
             const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
             bool has_reference;
             p = projectGeometry(splat, eye, has_reference);
@@ -86,7 +88,7 @@ void main() {
         const uint tiles = countTiles(outline, box, size_tiles.x);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
-            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - pass.eyes.at[pass.eye].position));
+            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
             p.opacity_colour = packOpacityColour(p.opacity_colour.x & kOpacityBits, hasReference(p.opacity_colour), colour);
             pass.splats.at[rank] = p;
         }

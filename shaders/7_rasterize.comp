@@ -7,6 +7,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "passes.h"
+#include "lib/group.glsl"
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 
@@ -31,7 +32,7 @@ shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or 0
 shared vec4 batch_depth[kBatchSize];      // 1/z there, its slopes, -log2(opacity)
 shared uvec2 batch_colour[kBatchSize];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];
-shared uint cells_done;
+shared uint threads_done;
 
 // Which cells of the tile the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
@@ -49,7 +50,7 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
     return cells;
 }
 
-void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
+void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = hasReference(splat.opacity_colour);
     const float scale = sqrt(kLog2PerRho);
@@ -63,7 +64,7 @@ void loadSplat(uint slot, uint rank, vec2 middle_px, uvec2 tile_px) {
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
         if (subgroupElect()) {
-            for (uint word = 0; word < (gl_SubgroupSize + 31) / 32; ++word) {
+            for (uint word = 0; word < (lanes_in_subgroup + 31) / 32; ++word) {
                 if (lanes[word] != 0) { atomicOr(cell_splats[cell][slot / 32 + word], lanes[word] << (slot & 31)); }
             }
         }
@@ -104,22 +105,23 @@ void main() {
         transmittance[p] = inside ? 1 : -1;
         any_open = any_open || inside;
     }
-    if (gl_LocalInvocationIndex == 0) { cells_done = 0; }
+    const uint lanes = laneCount(), thread = threadIndex();
+    if (gl_LocalInvocationIndex == 0) { threads_done = 0; }
     bool counted = false;
 
     for (uint begin = range.x; begin < range.y; begin += kBatchSize) {
         barrier();
         if (!any_open && !counted) {
-            atomicAdd(cells_done, 1);
+            atomicAdd(threads_done, 1);
             counted = true;
         }
         if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
             cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
         }
         barrier();
-        if (cells_done == kThreads) { break; }
-        for (uint slot = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
-            loadSplat(slot, pass.ranks.at[begin + slot], vec2(size_px) * 0.5, tile_px);
+        if (threads_done == kThreads) { break; }
+        for (uint slot = thread; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
+            loadSplat(slot, lanes, pass.ranks.at[begin + slot], vec2(size_px) * 0.5, tile_px);
         }
         barrier();
         for (uint word = 0; word < kBatchSize / 32; ++word) {

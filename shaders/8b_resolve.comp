@@ -46,6 +46,7 @@ float mixedDepthError(StereoView stereo, vec2 pixel_px, float inverse_depth) {
 
 void main() {
     const uint y = gl_WorkGroupID.x;
+    const uint thread = threadIndex();
     const StereoView stereo = pass.stereo.at[0];
     const uint width = stereo.size_px.x;
     const uint row = y * width;
@@ -54,7 +55,7 @@ void main() {
     // Left to right: 1 + the column of the last covered pixel at or before each, kept in the pixel for a moment.
     uint last_before = 0;
     for (uint begin = 0; begin < width; begin += kGroupSize) {
-        const uint x = begin + gl_LocalInvocationIndex;
+        const uint x = begin + thread;
         const uint covered = x < width && pass.pixels.at[row + x].nearest != 0 ? x + 1 : 0;
         uint last_in_step;
         const uint last = max(scanGroupMax(covered, last_in_step), last_before);
@@ -66,7 +67,7 @@ void main() {
     const uint steps = (width + kGroupSize - 1) / kGroupSize;
     for (uint step_back = 0; step_back < steps; ++step_back) {
         const uint begin = (steps - 1 - step_back) * kGroupSize;
-        const uint x = begin + (kGroupSize - 1 - gl_LocalInvocationIndex);
+        const uint x = begin + (kGroupSize - 1 - thread);
         const uint nearest = x < width ? pass.pixels.at[row + x].nearest : 0;
         uint first_in_step;
         const uint first = max(scanGroupMax(nearest != 0 ? width - x : 0, first_in_step), first_after);

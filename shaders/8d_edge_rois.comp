@@ -20,8 +20,9 @@ shared vec4 group_low[kGroupSize];     // least x and y of all samples; greatest
 shared vec4 group_high[kGroupSize];    // greatest x and y of all; least of the right and of the bottom edge's
 
 void findDepthBounds() {
+    const uint thread = threadIndex();
     uint own = 0;
-    for (uint b = 0; b < kBinsPerThread; ++b) { own += pass.bins.at[gl_LocalInvocationIndex * kBinsPerThread + b]; }
+    for (uint b = 0; b < kBinsPerThread; ++b) { own += pass.bins.at[thread * kBinsPerThread + b]; }
     uint total;
     uint before = scanGroup(own, total);
     if (gl_LocalInvocationIndex == 0) {
@@ -31,7 +32,7 @@ void findDepthBounds() {
     barrier();
     const uint outliers = total / kOutliers;
     for (uint b = 0; b < kBinsPerThread; ++b) {
-        const uint bin = gl_LocalInvocationIndex * kBinsPerThread + b;
+        const uint bin = thread * kBinsPerThread + b;
         const uint count = pass.bins.at[bin];
         if (count > 0 && before <= outliers && before + count > outliers) { inverse_depth_bounds[1] = exp2(16 - float(bin) / 32); }
         if (count > 0 && before < total - outliers && before + count >= total - outliers) { inverse_depth_bounds[0] = exp2(16 - float(bin + 1) / 32); }

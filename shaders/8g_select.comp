@@ -18,6 +18,7 @@ uint errorOf(uint tile) { return min(pass.tile_errors.at[tile], 0x7fffffffu); }
 
 // The error that the `wanted`-th worst tile has (1 counts from the worst), and how many tiles of just that error are wanted.
 uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
+    const uint thread = threadIndex();
     uint prefix = 0;
     left_to_choose = wanted;
     for (int shift = 24; shift >= 0; shift -= 8) {
@@ -30,7 +31,7 @@ uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
         }
         barrier();
         // From the greatest digit down: thread t holds digit 255 - t.
-        const uint digit = 255 - gl_LocalInvocationIndex;
+        const uint digit = 255 - thread;
         const uint count = digit_counts[digit];
         const uint wanted_here = left_to_choose;
         uint total;
@@ -54,9 +55,10 @@ void main() {
     uint of_threshold = 0;
     const uint threshold = kPredicted && wanted > 0 ? findThreshold(tiles, wanted, of_threshold) : 0;
 
+    const uint thread = threadIndex();
     uint listed = 0, at_threshold = 0;
     for (uint begin = 0; begin < tiles; begin += kGroupSize) {
-        const uint tile = begin + gl_LocalInvocationIndex;
+        const uint tile = begin + thread;
         bool selected = false;
         if (kPredicted) {
             const uint error = tile < tiles ? errorOf(tile) : 0;

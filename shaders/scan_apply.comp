@@ -12,7 +12,7 @@ const uint kPerThread = kScanBlock / kGroupSize;
 void main() {
     const uint count = pass.list.at[0].count;
     const uint block = groupIndex();
-    const uint first = block * kScanBlock + gl_LocalInvocationIndex * kPerThread;
+    const uint first = block * kScanBlock + threadIndex() * kPerThread;
     uint values[kPerThread];
     uint sum = 0;
     for (uint i = 0; i < kPerThread; ++i) {

@@ -14,11 +14,12 @@ const uint kTooManyKilos = 1u << 22;  // 2^32 / 1024
 
 void main() {
     const uint blocks = kOverList ? (pass.list.at[0].count + kScanBlock - 1) / kScanBlock : pass.block_count;
+    const uint thread = threadIndex();
     uint before_step = 0;
     // The sum may not fit into 32 bits. A second sum, of 1/1024 of each value rounded up, tells: it errs by at most 1024 a block.
     uint kilos = 0;
     for (uint step_begin = 0; step_begin < blocks; step_begin += kGroupSize * kPerThread) {
-        const uint first = step_begin + gl_LocalInvocationIndex * kPerThread;
+        const uint first = step_begin + thread * kPerThread;
         uint values[kPerThread];
         uint sum = 0;
         for (uint i = 0; i < kPerThread; ++i) {

@@ -42,11 +42,12 @@ void main() {
     barrier();
 
     // Rank: how many keys of the subgroup's run have the same digit and come before.
-    const uint run_begin = block * kSortBlock + gl_SubgroupID * gl_SubgroupSize * kSortKeysPerThread + gl_SubgroupInvocationID;
+    const uint lanes = laneCount();
+    const uint run_begin = block * kSortBlock + gl_SubgroupID * lanes * kSortKeysPerThread + gl_SubgroupInvocationID;
     uint keys[kSortKeysPerThread];
     uint ranks[kSortKeysPerThread];
     for (uint i = 0; i < kSortKeysPerThread; ++i) {
-        const uint item = run_begin + i * gl_SubgroupSize;
+        const uint item = run_begin + i * lanes;
         // Past the end stand keys of the last digit; they come after all others and are not written.
         keys[i] = item < count ? pass.keys_in.at[item] : 0xffffffffu;
         const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
@@ -60,9 +61,10 @@ void main() {
     barrier();
 
     // Where each digit begins, in all and in this block, and each subgroup's share of it.
+    const uint thread = threadIndex();
     uint digits_before = 0;
     for (uint first = 0; first < pass.digits; first += kSortGroupSize) {
-        const uint digit = first + gl_LocalInvocationIndex;
+        const uint digit = first + thread;
         uint total;
         const uint before = digits_before + scanGroup(digit < pass.digits ? pass.totals.at[digit] : 0, total);
         digits_before += total;
@@ -77,7 +79,7 @@ void main() {
     barrier();
 
     for (uint i = 0; i < kSortKeysPerThread; ++i) {
-        const uint item = run_begin + i * gl_SubgroupSize;
+        const uint item = run_begin + i * lanes;
         if (item < count) {
             const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
             const uint place = subgroup_digits[gl_SubgroupID * pass.digits + digit] + ranks[i];

@@ -12,9 +12,10 @@ layout(push_constant, scalar) uniform Push { SortSpinePass pass; };
 void main() {
     const uint digit = gl_WorkGroupID.x;
     const uint blocks = (pass.list.at[0].count + kSortBlock - 1) / kSortBlock;
+    const uint thread = threadIndex();
     uint before_step = 0;
     for (uint step_begin = 0; step_begin < blocks; step_begin += kSpineSize) {
-        const uint block = step_begin + gl_LocalInvocationIndex;
+        const uint block = step_begin + thread;
         const uint value = block < blocks ? pass.histograms.at[digit * blocks + block] : 0;
         uint total;
         const uint before = scanGroup(value, total);

@@ -60,7 +60,7 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--eye 0,0,0 --look 0,0,0"), 1, "span a view");
     checkRefused(work.run(render + "--up 0,0,1 --eye 0,0,0 --look 0,0,1"), 1, "span a view");
     checkRefused(work.run(render + "--fov-x 180"), 1, "--fov-x is 180, must be a number from 0.1 to 179");
-    checkRefused(work.run(render + "--near 0"), 1, "--near is 0, must be a number greater than 0");
+    checkRefused(work.run(render + "--near 0"), 1, "--near is 0, must be a number from 1e-06 to 1000000");
     checkRefused(work.run(render + "--near inf"), 1, "--near is inf");
     checkRefused(work.run(render + "--background 0,0,2"), 1, "--background is 0,0,2");
     checkRefused(work.run(render + "--ipd -1"), 1, "--ipd is -1");
@@ -124,7 +124,7 @@ TEST_CASE("configErrorsNameFileAndLine") {
         write(work.path / "a.toml", text);
         checkRefused(work.run("render builtin:one-splat --out out --config a.toml"), 1, part);
     };
-    refuse("[camera]\n\nnear = 0\n", "a.toml:3: near is 0, must be a number greater than 0");
+    refuse("[camera]\n\nnear = 0\n", "a.toml:3: near is 0, must be a number from 1e-06 to 1000000");
     refuse("size = \"0x5\"\n", "a.toml:1: size is 0x5, must be WIDTHxHEIGHT with 1 to 16384");
     refuse("[camera]\neye = [1, 2]\n", "a.toml:2: eye is 1,2, must be three");
     refuse("[stereo]\nmargin = -1\n", "a.toml:2: margin is -1");

@@ -94,9 +94,14 @@ void Commands::submitAndWait() {
     command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
     command_buffer_.end();
     const vk::CommandBuffer commands = *command_buffer_;
-    context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
-    const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
-    check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
+    try {
+        context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
+        const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
+        check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
+    } catch (const vk::SystemError& error) {
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{}: the device gave up in the middle of a frame: {}", context_.deviceName(), error.what()));
+    }
     context_.device().resetFences(*fence_);
 
     times_.clear();
@@ -106,11 +111,12 @@ void Commands::submitAndWait() {
         timestamps_.getResults<std::uint64_t>(0, timestamp_count_, timestamp_count_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
                                               vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
+    const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
     for (std::size_t i = 0; i < pass_names_.size(); ++i) {
-        times_.emplace_back(pass_names_[i], static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * ms_per_tick);
+        times_.emplace_back(pass_names_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick);
     }
-    total_ms_ = static_cast<double>(ticks.back() - ticks.front()) * ms_per_tick;
+    total_ms_ = static_cast<double>((ticks.back() - ticks.front()) & mask) * ms_per_tick;
 }
 
 }  // namespace binosplat

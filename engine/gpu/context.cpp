@@ -39,6 +39,10 @@ std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& devic
 std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (device.getProperties().apiVersion < kApiVersion) { return "Vulkan 1.2"; }
     if (!queueFamilyOf(device)) { return "a compute queue"; }
+    // 1_cull and others run 256 threads; sort_scatter keeps 16 histograms where subgroups have eight.
+    const auto limits = device.getProperties().limits;
+    if (limits.maxComputeWorkGroupInvocations < 256 || limits.maxComputeWorkGroupSize[0] < 256) { return "workgroups of 256 invocations"; }
+    if (limits.maxComputeSharedMemorySize < 20480) { return "20 KiB of shared memory"; }
     const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.bufferDeviceAddress) { return "bufferDeviceAddress"; }
@@ -70,6 +74,12 @@ int preferenceOf(vk::PhysicalDeviceType type) {
 Context::Context(const ContextOptions& options) {
     const char* environment = std::getenv("BINOSPLAT_VALIDATION");
     try {
+        loader_.emplace();
+    } catch (const std::exception& error) {
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver", error.what()));
+    }
+    try {
         createInstance(options.validation || (environment != nullptr && std::strcmp(environment, "1") == 0));
         choosePhysicalDevice(options.device);
         createDevice();
@@ -83,7 +93,7 @@ void Context::createInstance(bool validation) {
     const vk::ApplicationInfo application("binosplat", 1, "binosplat", 1, kApiVersion);
     std::vector<const char*> layers, extensions;
     if (validation) {
-        const auto available = loader_.enumerateInstanceLayerProperties();
+        const auto available = loader_->enumerateInstanceLayerProperties();
         const bool found = std::any_of(available.begin(), available.end(),
                                        [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
@@ -94,7 +104,7 @@ void Context::createInstance(bool validation) {
     const vk::ValidationFeaturesEXT validation_features(synchronization);
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
     if (validation) { info.pNext = &validation_features; }
-    instance_ = vk::raii::Instance(loader_, info);
+    instance_ = vk::raii::Instance(*loader_, info);
     validates_ = validation;
     if (validation) {
         sink_ = [this](const char* message) {
@@ -170,9 +180,9 @@ void Context::createDevice() {
         min_subgroup_size_ = std::min(8u, subgroup_size_);
         max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
-    if (physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits == 64) {
-        timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod);
-    }
+    const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
+    timestamp_mask_ = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+    if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }
 }
 
 std::vector<std::string> Context::validationMessages() const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -37,6 +38,8 @@ public:
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
     // Nanoseconds of a timestamp's step; 0 if the queue has none.
     [[nodiscard]] double timestampPeriodNs() const { return timestamp_period_ns_; }
+    // The bits of a timestamp that count.
+    [[nodiscard]] std::uint64_t timestampMask() const { return timestamp_mask_; }
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
@@ -71,7 +74,7 @@ private:
 
     bool validates_ = false, dynamic_broadcast_ = false;
     Messages messages_;
-    vk::raii::Context loader_;
+    std::optional<vk::raii::Context> loader_;
     vk::raii::Instance instance_{nullptr};
     vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
     vk::raii::PhysicalDevice physical_device_{nullptr};
@@ -82,6 +85,7 @@ private:
     std::string device_name_;
     std::uint64_t max_allocation_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;
+    std::uint64_t timestamp_mask_ = 0;
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
     mutable MemoryUse memory_use_;
 };

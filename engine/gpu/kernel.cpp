@@ -1,6 +1,7 @@
 // Building compute pipelines.
 #include "engine/gpu/kernel.h"
 
+#include "engine/error.h"
 #include "shaders/embedded_shaders.h"
 
 #include <cassert>
@@ -19,7 +20,12 @@ Kernel::Kernel(const Context& context, std::string_view shader, std::uint32_t pu
     const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
                                                 constants.size() * sizeof(std::uint32_t), constants.begin());
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
-    pipeline_ = vk::raii::Pipeline(context.device(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    try {
+        pipeline_ = vk::raii::Pipeline(context.device(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    } catch (const vk::SystemError& error) {
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{}: the driver does not take the shader {}: {}", context.deviceName(), shader, error.what()));
+    }
     context.name(pipeline_, std::string(shader));
 }
 

@@ -28,6 +28,7 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
 
 void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
                          const std::string& role) {
+    commands.beginPass(role + "2_compact");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(list));
     commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass)),
                           gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,

@@ -1,53 +1,65 @@
-// Workgroups: which one this is, and prefix sums across one. No subgroup width is assumed.
+// Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
 
 // Dispatches of many groups are folded into rows.
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-shared uint subgroup_sums[kGroupSize + 1];
+// Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow only.
+uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
+
+// The thread's place in the order that the scans below sum in: by subgroup and lane, which the invocation index need not follow.
+uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
+
+// One value a subgroup, of at least eight lanes, and one for all.
+shared uint subgroup_sums[kGroupSize / 8 + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
 uint scanGroup(uint value, out uint total) {
     const uint before_in_subgroup = subgroupExclusiveAdd(value);
+    const uint of_subgroup = subgroupAdd(value);
+    const uint lanes = laneCount();
     barrier();  // an earlier call may still be reading
-    if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) { subgroup_sums[gl_SubgroupID] = before_in_subgroup + value; }
+    if (subgroupElect()) { subgroup_sums[gl_SubgroupID] = of_subgroup; }
     barrier();
     // The first subgroup sums the subgroups' sums, as many at a time as it is wide.
     if (gl_SubgroupID == 0) {
         uint carry = 0;
-        for (uint first = 0; first < gl_NumSubgroups; first += gl_SubgroupSize) {
+        for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
             const uint s = first + gl_SubgroupInvocationID;
             const uint sum = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
             const uint before = subgroupExclusiveAdd(sum);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = carry + before; }
             carry += subgroupAdd(sum);
         }
-        if (gl_SubgroupInvocationID == 0) { subgroup_sums[kGroupSize] = carry; }
+        if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();
-    total = subgroup_sums[kGroupSize];
+    total = subgroup_sums[gl_NumSubgroups];
     return subgroup_sums[gl_SubgroupID] + before_in_subgroup;
 }
 
 // The greatest `value` of the threads up to and with this one; `greatest` is that of all. Every thread must call it.
 uint scanGroupMax(uint value, out uint greatest) {
     const uint in_subgroup = subgroupInclusiveMax(value);
+    const uint of_subgroup = subgroupMax(value);
+    const uint lanes = laneCount();
     barrier();
-    if (gl_SubgroupInvocationID == gl_SubgroupSize - 1) { subgroup_sums[gl_SubgroupID] = in_subgroup; }
+    if (subgroupElect()) { subgroup_sums[gl_SubgroupID] = of_subgroup; }
     barrier();
     if (gl_SubgroupID == 0) {
         uint carry = 0;
-        for (uint first = 0; first < gl_NumSubgroups; first += gl_SubgroupSize) {
+        for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
             const uint s = first + gl_SubgroupInvocationID;
             const uint own = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
             const uint before = subgroupExclusiveMax(own);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = max(carry, before); }
             carry = max(carry, subgroupMax(own));
         }
-        if (gl_SubgroupInvocationID == 0) { subgroup_sums[kGroupSize] = carry; }
+        if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();
-    greatest = subgroup_sums[kGroupSize];
+    greatest = subgroup_sums[gl_NumSubgroups];
     return max(subgroup_sums[gl_SubgroupID], in_subgroup);
 }

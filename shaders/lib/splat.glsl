@@ -25,17 +25,24 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
-CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) {
+// The same in world space.
+CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
     CameraSplat splat;
-    vec3 t_u, t_v;
-    tangents(chunk.rotations.at[i], t_u, t_v);
-    splat.centre = cameraFromWorld(eye, chunk.positions.at[i] - eye.position);
-    splat.t_u = cameraFromWorld(eye, t_u);
-    splat.t_v = cameraFromWorld(eye, t_v);
+    tangents(chunk.rotations.at[i], splat.t_u, splat.t_v);
+    splat.centre = chunk.positions.at[i];
     splat.scale = chunk.scales.at[i];
     splat.opacity = chunk.opacities.at[i];
     return splat;
 }
+
+CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
+    splat.centre = cameraFromWorld(eye, splat.centre - eye.position);
+    splat.t_u = cameraFromWorld(eye, splat.t_u);
+    splat.t_v = cameraFromWorld(eye, splat.t_v);
+    return splat;
+}
+
+CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) { return cameraFromWorld(eye, loadWorldSplat(chunk, i)); }
 
 // rho at which alpha falls to 1/255; not positive for a splat that is never seen.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
