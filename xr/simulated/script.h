@@ -1,0 +1,135 @@
+// What happens to the simulated headset: poses, angles, controllers and misbehaviour, a pure function of display time that is read from
+// a text file. docs/simulated_script.md has the commands.
+#pragma once
+
+#include "xr/simulated/geometry.h"
+#include "xr/simulated/track.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace simulated {
+
+// One line: file:line: what is wrong, what was expected.
+class ScriptError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+// One controller at a time.
+struct ControllerState {
+    bool tracked = true;  // else poses are neither valid nor tracked and all inputs rest
+    Pose stage_from_grip;
+    Pose stage_from_aim;
+    // By what follows /input/ in a binding path: "trigger/value", "thumbstick/x", "a/click", "squeeze/force" ... An input that is not
+    // here rests at 0. Booleans are 0 or 1; a trigger or squeeze clicks from 0.9 on and counts as touched above 0.
+    std::map<std::string, double, std::less<>> inputs;
+
+    [[nodiscard]] double input(std::string_view identifier_and_component) const;
+};
+
+struct EyeState {
+    Pose stage_from_eye;
+    Fov fov;
+};
+
+// All that is a function of the display time.
+struct State {
+    double time_s = 0.0;
+    Pose stage_from_head;
+    std::array<EyeState, 2> eyes;                // by Side
+    std::array<ControllerState, 2> controllers;  // by Side
+    bool should_render = true;
+    bool visible = true;  // else the session is at most SYNCHRONIZED
+    bool focused = true;  // else the session is at most VISIBLE
+};
+
+// What happens once, when the display time first reaches `time_s`.
+struct ScriptEvent {
+    enum class Kind {
+        kSlowImages,    // the next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED
+        kLoseSession,   // LOSS_PENDING, then XR_ERROR_SESSION_LOST from every call
+        kLoseInstance,  // XrEventDataInstanceLossPending, then XR_ERROR_INSTANCE_LOST
+        kExit,          // STOPPING, then EXITING, as if the wearer left the program
+    };
+    double time_s = 0.0;
+    Kind kind = Kind::kExit;
+    std::uint32_t count = 1;
+};
+[[nodiscard]] const char* nameOf(ScriptEvent::Kind kind);  // the script's word for it
+
+// Which frames' composed pictures are written; frames count from 0 at the session's first xrEndFrame.
+struct FrameChoice {
+    std::uint64_t first = 0;
+    std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t every = 1;
+
+    [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
+};
+
+class Script {
+public:
+    // The headset without a script: the head at rest at (0, 1.6, 0) looking along -z, eyes 0.063 m apart with 90 degree views, controllers
+    // held in front, 90 Hz, 1024 x 1024, no mask, every frame written.
+    Script();
+
+    // `name` is for messages, and files that the script names are found relative to its folder. Throws ScriptError.
+    static Script parse(std::string_view text, const std::string& name);
+    static Script load(const std::filesystem::path& path);
+
+    // Times are seconds of display time since the session was created; any finite time is allowed, also before 0.
+    [[nodiscard]] State at(double time_s) const;
+    // Events with from_s < time <= to_s, in order; pass -infinity as `from_s` for the first frame.
+    [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
+    // LOCAL's origin is the head at time 0, without tilt. STAGE's is on the floor.
+    [[nodiscard]] Pose stageFromLocal() const;
+
+    [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
+
+    double rate_hz = 90.0;
+    glm::uvec2 size_px{1024, 1024};  // recommended, per eye
+    double eye_distance_m = 0.063;
+    std::array<double, 2> cant_rad{0.0, 0.0};
+    std::string system_name = "Simulated headset";  // or the headset file's name
+    bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
+    bool writes_pictures = true;
+    FrameChoice frames;
+    std::set<std::string, std::less<>> extensions_off;
+
+    struct Hand {
+        Track<Pose> stage_from_grip;
+        Pose grip_from_aim;
+        Steps<bool> tracked{true};
+        std::map<std::string, Track<glm::dvec2>, std::less<>> axes;  // trigger and squeeze use x alone
+        struct Press {
+            std::string input;
+            double from_s, to_s;  // from <= time < to
+            bool touch_only;
+        };
+        std::vector<Press> presses;
+    };
+    Track<Pose> stage_from_head;
+    std::array<Hand, 2> hands;
+    std::array<Steps<Fov>, 2> fovs;
+    Steps<bool> should_render{true}, visible{true}, focused{true};
+    std::vector<ScriptEvent> events;  // by time
+};
+
+// A binding path such as /user/hand/right/input/trigger/value at a state: the side and what follows /input/. None if the path is not of
+// that form. Identifiers without component ("/input/trigger") are returned as they are.
+struct InputPath {
+    Side side;
+    std::string_view input;
+};
+[[nodiscard]] std::optional<InputPath> parseInputPath(std::string_view path);
+
+}  // namespace simulated
