@@ -56,7 +56,7 @@ bool projectShifted(uint rank, uvec2 size_tiles, out ProjectedSplat p, out Outli
     p = pass.splats.at[rank];
     const uvec2 seen = pass.tile_boxes.at[rank];
     PixelMap map = pass.stereo.at[0].affiliated_from_dominant;
-    if (seen.x == seen.y || !hasReference(p.opacity_colour) || !shiftAlongRow(p, map.shift.x, map.excess_x.z)) { return false; }
+    if (seen.x == seen.y || !hasReference(p) || !shiftAlongRow(p, map.shift.x, map.excess_x.z)) { return false; }
     outline = outlineOfProjected(p);
     box = tilesWithin(ellipseBounds(outline), size_tiles);
     return outline.ellipse;
@@ -80,7 +80,6 @@ void main() {
             const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
             bool has_reference;
             p = projectGeometry(splat, eye, has_reference);
-            p.opacity_colour = packOpacityColour(packOpacity(splat.opacity), has_reference, vec3(0));
             outline = outlineOfProjected(p);
             box = tileBox(splat, eye, outline);
             if (!kMasked) { square_tiles = squareBoxTiles(splat, eye); }
@@ -88,8 +87,7 @@ void main() {
         const uint tiles = countTiles(outline, box, size_tiles.x);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
-            const vec3 colour = shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position));
-            p.opacity_colour = packOpacityColour(p.opacity_colour.x & kOpacityBits, hasReference(p.opacity_colour), colour);
+            p.colour = packColour(shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position)));
             pass.splats.at[rank] = p;
         }
         // Empty where the splat meets no tile: then there is no splat either.

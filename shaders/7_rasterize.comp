@@ -52,12 +52,12 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
 
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
-    const bool has_reference = hasReference(splat.opacity_colour);
+    const bool has_reference = hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, scale * splat.reference_px);
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : 0);
-    batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat.opacity_colour));
-    batch_colour[slot] = splat.opacity_colour;
+    batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
+    batch_colour[slot] = splat.colour;
     // A subgroup's slots follow one another, so that one lane can set the bits of all; 32 divides the slot of lane 0 or is
     // divided by the subgroup's width.
     const uint cells = cellsOf(splat, tile_px);

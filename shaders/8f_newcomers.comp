@@ -36,7 +36,6 @@ void main() {
     const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
     bool has_reference;
     ProjectedSplat p = projectGeometry(splat, eye, has_reference);
-    p.opacity_colour = packOpacityColour(packOpacity(splat.opacity), has_reference, vec3(0));
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));

@@ -71,25 +71,16 @@ inline std::uint32_t sortableBits(float value) {
 }
 inline float floatOfKey(std::uint32_t key) { return std::bit_cast<float>((key >> 31) != 0 ? key & 0x7fffffffu : ~key); }
 
-// ProjectedSplat::opacity_colour: 18 bits -log2(opacity) in steps of 2^-15, a bit "no reference", three half floats without sign.
+// ProjectedSplat::opacity (-log2, negative where there is no reference) and ::colour (three half floats).
 struct OpacityColour {
     double opacity;
     bool has_reference;
     glm::dvec3 colour;
 };
-inline OpacityColour unpack(glm::uvec2 packed) {
-    const std::uint64_t bits = (std::uint64_t{packed.y} << 32) | packed.x;
-    const auto half = [&](int first_bit) {
-        return static_cast<double>(glm::unpackHalf1x16(static_cast<std::uint16_t>((bits >> first_bit) & 0x7fff)));
-    };
-    return {std::exp2(-static_cast<double>(bits & 0x3ffff) / 32768.0), ((bits >> 18) & 1) == 0, {half(19), half(34), half(49)}};
-}
-inline glm::uvec2 pack(const OpacityColour& value) {
-    const auto half = [&](int channel) { return std::uint64_t{glm::packHalf1x16(static_cast<float>(value.colour[channel]))} & 0x7fff; };
-    const auto opacity = static_cast<std::uint64_t>(std::min(std::round(-std::log2(value.opacity) * 32768.0), 262143.0));
-    const std::uint64_t bits =
-        opacity | (std::uint64_t{value.has_reference ? 0u : 1u} << 18) | (half(0) << 19) | (half(1) << 34) | (half(2) << 49);
-    return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
+inline OpacityColour unpack(const gpu::ProjectedSplat& splat) {
+    const glm::vec2 red_green = glm::unpackHalf2x16(splat.colour.x);
+    return {std::exp2(-std::abs(static_cast<double>(splat.opacity))), !std::signbit(splat.opacity),
+            glm::dvec3(glm::vec3(red_green, glm::unpackHalf2x16(splat.colour.y).x))};
 }
 
 // The twin's splat as the device holds one.
@@ -99,7 +90,9 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     result.plane_from_pixel = splat.disc ? glm::vec3(splat.plane_from_pixel) : glm::vec3(gpu::kMaxPlaneSlope, 0.0f, gpu::kMaxPlaneSlope);
     result.perspective = splat.perspective;
     result.inverse_depth = static_cast<float>(splat.disc ? splat.inverse_depth : 1.0 / splat.depth);
-    result.opacity_colour = pack({splat.opacity, splat.low_pass, splat.colour});
+    result.opacity = std::copysign(static_cast<float>(std::log2(splat.opacity)), splat.low_pass ? 1.0f : -1.0f);
+    const glm::vec3 colour(splat.colour);
+    result.colour = {glm::packHalf2x16(glm::vec2(colour)), glm::packHalf2x16(glm::vec2(colour.z, 0.0f))};
     return result;
 }
 

@@ -68,7 +68,7 @@ struct FieldErrors {
 
     void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
               const glm::dvec3& origin) {
-        const test::OpacityColour packed = test::unpack(splat.opacity_colour);
+        const test::OpacityColour packed = test::unpack(splat);
         if (packed.has_reference != truth.low_pass) {
             ++other_kind;
             return;

@@ -1,4 +1,4 @@
-// The device memory of a frame: what grows with the visible splats (60.5 bytes each), with the pairs (16), with the pixels.
+// The device memory of a frame: what grows with the visible splats (60 bytes each), with the pairs (16), with the pixels.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -43,12 +43,13 @@ public:
     VisibleBuffers(const Context& context, std::uint32_t capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // Depth keys and splat indices; sorting needs `spare`, which afterwards holds the boxes of tiles.
+    // Depth keys and splat indices; sorting needs `spare`. Once they are sorted, the counts of tiles take the keys' place, and the
+    // boxes of tiles that of `spare`.
     [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileBoxes() const { return at<gpu::uvec2>(8); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(16); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(20); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(16); }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
 
 private:
@@ -56,7 +57,7 @@ private:
     [[nodiscard]] gpu::DeviceAddress<T> at(std::uint64_t bytes_before_per_splat) const {
         return buffer_.address<T>(bytes_before_per_splat * capacity_);
     }
-    static constexpr std::uint64_t kBytesPerSplat = 20 + sizeof(gpu::ProjectedSplat);
+    static constexpr std::uint64_t kBytesPerSplat = 16 + sizeof(gpu::ProjectedSplat);
     std::uint32_t capacity_ = 0;
     Buffer buffer_;
 };

@@ -93,9 +93,9 @@ uint packTiles(ivec2 tile) { return uint(tile.x) | (uint(tile.y) << 16); }
 ivec2 unpackTiles(uint packed) { return ivec2(packed & 0xffff, packed >> 16); }
 
 Outline outlineOfProjected(ProjectedSplat p) {
-    const float cut = (kLog2Of255 - negativeLog2Opacity(p.opacity_colour)) / kLog2PerRho;
+    const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
     Outline o = outlineOf(p.reference_px, p.plane_from_pixel, p.perspective, p.inverse_depth, cut);
-    if (!hasReference(p.opacity_colour)) {
+    if (!hasReference(p)) {
         o.ellipse = false;
         o.circle_px = 0;
     }

@@ -47,33 +47,20 @@ CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) { return came
 // rho at which alpha falls to 1/255; not positive for a splat that is never seen.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
 
-const uint kOpacityBits = (1u << 18) - 1;
+// Opacity as -log2, so that alpha = exp2(-(this + kLog2PerRho rho)), with the sign as a flag.
+float packOpacity(float opacity, bool has_reference) {
+    const float negative_log2 = min(abs(log2(opacity)), 150);  // an opacity is at most 1
+    return has_reference ? negative_log2 : uintBitsToFloat(floatBitsToUint(negative_log2) | 0x80000000u);
+}
+bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity) & 0x80000000u) == 0; }
+float negativeLog2Opacity(ProjectedSplat splat) { return abs(splat.opacity); }
 
-// Opacity as -log2 in fixed point, so that alpha = exp2(-(this + kLog2PerRho rho)).
-uint packOpacity(float opacity) { return min(uint(-log2(opacity) * kOpacitySteps + 0.5), kOpacityBits); }
-float negativeLog2Opacity(uint packed) { return float(packed) * (1.0 / kOpacitySteps); }
-
-const uint kNoReferenceBit = 1u << 18;
-
-// `opacity`: as packOpacity gives it.
-uvec2 packOpacityColour(uint opacity, bool has_reference, vec3 colour) {
+uvec2 packColour(vec3 colour) {
     // The greatest half float is 65504; colours are not negative.
     const vec3 finite = mix(vec3(0), min(colour, vec3(65504)), greaterThan(colour, vec3(0)));
-    const uint rg = packHalf2x16(finite.rg);
-    const uint b = packHalf2x16(vec2(finite.b, 0));
-    const uint low = opacity | (has_reference ? 0 : kNoReferenceBit) | (rg << 19);  // 13 of red's 15 bits
-    const uint high = ((rg >> 13) & 3) | ((rg >> 16) << 2) | (b << 17);
-    return uvec2(low, high);
+    return uvec2(packHalf2x16(finite.rg), packHalf2x16(vec2(finite.b, 0)));
 }
-
-vec3 unpackColour(uvec2 packed) {
-    const uint red = (packed.x >> 19) | ((packed.y & 3) << 13);
-    const uint green = (packed.y >> 2) & 0x7fff;
-    const uint blue = packed.y >> 17;
-    return vec3(unpackHalf2x16(red | (green << 16)), unpackHalf2x16(blue).x);
-}
-bool hasReference(uvec2 packed) { return (packed.x & kNoReferenceBit) == 0; }
-float negativeLog2Opacity(uvec2 packed) { return negativeLog2Opacity(packed.x & kOpacityBits); }
+vec3 unpackColour(uvec2 packed) { return vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x); }
 
 // The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane.
 ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_reference) {
@@ -85,7 +72,8 @@ ProjectedSplat projectGeometry(CameraSplat splat, EyeView eye, out bool has_refe
     p.inverse_depth = 1 / c.z;
     p.plane_from_pixel = vec3(kMaxPlaneSlope, 0, kMaxPlaneSlope);
     p.perspective = vec2(0);
-    p.opacity_colour = uvec2(0);
+    p.opacity = packOpacity(splat.opacity, has_reference);
+    p.colour = uvec2(0);
 
     const vec3 t_w = cross(splat.t_u, splat.t_v);
     const float delta = dot(t_w, c);

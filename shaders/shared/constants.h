@@ -43,9 +43,6 @@ BINOSPLAT_CONSTANT float kLog2PerRho = 0.72134752044448f;
 // The low-pass of 2DGS: rho2 = kLowPass * squared distance in pixels, i.e. sigma = sqrt(2)/2 px (Huang et al. 2024, section 4.2).
 BINOSPLAT_CONSTANT float kLowPass = 2.0f;
 
-// -log2(opacity) in 18 bits, 0 to 8 in steps of 2^-15: alpha is off by at most 1.1e-5 of itself.
-BINOSPLAT_CONSTANT float kOpacitySteps = 32768.0f;
-
 // A disc whose plane passes the eye within this sine is seen edge-on: float32 no longer knows which side is seen, and even
 // a disc a thousand pixels long is thinner than 1/1000 px. What is left of it is the low-pass.
 BINOSPLAT_CONSTANT float kEdgeOnSine = 3e-7f;

@@ -39,21 +39,21 @@ struct EyeView {
 };
 BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
 
-// A splat as one eye sees it; 40 bytes. With (dx, dy) the offset of a pixel from `reference_px`, the pixel's ray meets the
+// A splat as one eye sees it; 44 bytes. With (dx, dy) the offset of a pixel from `reference_px`, the pixel's ray meets the
 // disc's plane where
 //   1/z = inverse_depth + perspective.x dx + perspective.y dy
 //   u/z = plane_from_pixel.x dx + plane_from_pixel.y dy
 //   v/z =                         plane_from_pixel.z dy
 // (u, v) in standard deviations, turned within the disc so that v does not depend on dx. All three are linear in the pixel.
-// A centre that is not beyond the near plane has no such reference: then (flag in `opacity_colour`) reference_px holds the
+// A centre that is not beyond the near plane has no such reference: then (see `opacity`) reference_px holds the
 // constant terms of u/z and v/z instead, and offsets count from the middle of the image.
 struct ProjectedSplat {
     vec2 reference_px;
     vec3 plane_from_pixel;
     vec2 perspective;
     float inverse_depth;
-    // 18 bits -log2(opacity), 1 bit "no reference", 3 x 15 bits colour: half floats without their sign.
-    uvec2 opacity_colour;
+    float opacity;  // -log2 of it, not negative; its sign bit is set where there is no reference
+    uvec2 colour;   // r | g << 16, b, as half floats
 };
 BINOSPLAT_ARRAY_OF(ProjectedSplat, ProjectedSplats);
 
