@@ -68,6 +68,10 @@ public:
     // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; likewise.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
+    // The same in device memory, for whoever shows them.
+    [[nodiscard]] const EyeImage& image(int eye) const { return images_[eye]; }
+    [[nodiscard]] const StereoBuffers& stereoBuffers() const { return stereo_buffers_; }
+
 private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);

@@ -45,7 +45,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
                FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth)),
         LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth),
-               FIELD(opacity_colour)),
+               FIELD(opacity), FIELD(colour)),
         LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),
         LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(per_item), FIELD(per_scan_block), FIELD(per_sort_block), FIELD(per_tile)),
         LAYOUT(PixelMap, FIELD(excess_x), FIELD(excess_y), FIELD(excess_z), FIELD(shift)),
@@ -86,6 +86,8 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(SortSpinePass, FIELD(histograms), FIELD(totals), FIELD(list)),
         LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(totals),
                FIELD(list), FIELD(shift), FIELD(digits)),
+        LAYOUT(PresentPass, FIELD(colours), FIELD(depths), FIELD(tile_kinds), FIELD(pixel_classes), FIELD(pixels), FIELD(device_depths),
+               FIELD(size_px), FIELD(near)),
     };
 }
 

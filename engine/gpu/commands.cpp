@@ -13,8 +13,8 @@ constexpr std::uint32_t kMaxTimestamps = 256;
 }  // namespace
 
 Commands::Commands(const Context& context) : context_(context) {
-    vk::raii::CommandBuffers buffers(context.device(),
-                                     vk::CommandBufferAllocateInfo(*context.commandPool(), vk::CommandBufferLevel::ePrimary, 1));
+    pool_ = context.device().createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily()});
+    vk::raii::CommandBuffers buffers(context.device(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1));
     command_buffer_ = std::move(buffers[0]);
     fence_ = context.device().createFence({});
     if (context.timestampPeriodNs() > 0.0) {
@@ -88,6 +88,35 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, s
     command_buffer_.copyBuffer(from.handle(), to.handle(), vk::BufferCopy(from_offset, to_offset, bytes));
 }
 
+void Commands::changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to) {
+    using Access = vk::AccessFlagBits;
+    const bool enters = to == vk::ImageLayout::eTransferDstOptimal;
+    const auto all = Access::eMemoryRead | Access::eMemoryWrite;
+    const vk::ImageMemoryBarrier barrier(enters ? vk::AccessFlags(all) : Access::eTransferWrite, enters ? Access::eTransferWrite : all,
+                                         from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image, {aspect, 0, 1, 0, 1});
+    const auto outside = vk::PipelineStageFlagBits::eAllCommands, inside = vk::PipelineStageFlagBits::eTransfer;
+    command_buffer_.pipelineBarrier(enters ? outside : inside, enters ? inside : outside, {}, {}, {}, barrier);
+}
+
+void Commands::copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect) {
+    using Layout = vk::ImageLayout;
+    waitForAll();
+    changeLayout(image, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const vk::BufferImageCopy region(0, 0, 0, {aspect, 0, 0, 1}, {}, {size_px.x, size_px.y, 1});
+    command_buffer_.copyBufferToImage(from.handle(), image, Layout::eTransferDstOptimal, region);
+    changeLayout(image, aspect, Layout::eTransferDstOptimal,
+                 aspect == vk::ImageAspectFlagBits::eDepth ? Layout::eDepthStencilAttachmentOptimal : Layout::eColorAttachmentOptimal);
+}
+
+void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
+    using Layout = vk::ImageLayout;
+    const auto aspect = vk::ImageAspectFlagBits::eColor;
+    changeLayout(image, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const vk::ClearColorValue value(std::array<float, 4>{colour.r, colour.g, colour.b, colour.a});
+    command_buffer_.clearColorImage(image, Layout::eTransferDstOptimal, value, vk::ImageSubresourceRange(aspect, 0, 1, 0, 1));
+    changeLayout(image, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
+}
+
 void Commands::submitAndWait() {
     endPass();
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
@@ -95,7 +124,10 @@ void Commands::submitAndWait() {
     command_buffer_.end();
     const vk::CommandBuffer commands = *command_buffer_;
     try {
-        context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
+        {
+            const std::lock_guard lock(context_.queueMutex());
+            context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
+        }
         const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
         check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
     } catch (const vk::SystemError& error) {

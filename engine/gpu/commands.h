@@ -49,7 +49,14 @@ public:
     void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
     void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
 
+    // A whole image out of tightly packed rows, or in one colour. It comes with anything in it and leaves as an attachment.
+    void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
+    void clearImage(vk::Image image, const glm::vec4& colour);
+
     void submitAndWait();
+
+    // For what is not a pass: pictures that leave for a headset or a window. Between begin and submitAndWait.
+    [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
     // Of the frame that submitAndWait finished; empty where the device has no timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
@@ -58,9 +65,11 @@ public:
 private:
     void recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes);
     void waitForAll();
+    void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
     void writeTimestamp();
 
     const Context& context_;
+    vk::raii::CommandPool pool_{nullptr};  // its own, so that threads may record at the same time
     vk::raii::CommandBuffer command_buffer_{nullptr};
     vk::raii::Fence fence_{nullptr};
     vk::raii::QueryPool timestamps_{nullptr};

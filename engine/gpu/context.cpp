@@ -80,31 +80,38 @@ Context::Context(const ContextOptions& options) {
                     fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver", error.what()));
     }
     try {
-        createInstance(options.validation || (environment != nullptr && std::strcmp(environment, "1") == 0));
-        choosePhysicalDevice(options.device);
-        createDevice();
+        createInstance(options, options.validation || (environment != nullptr && std::strcmp(environment, "1") == 0));
+        if (options.maker.choose_device) {
+            takePhysicalDevice(options.maker);
+        } else {
+            choosePhysicalDevice(options.device);
+        }
+        createDevice(options);
     } catch (const vk::SystemError& error) {
         throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kHint));
     }
     if (options.max_allocation_bytes != 0) { max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes); }
 }
 
-void Context::createInstance(bool validation) {
+void Context::createInstance(const ContextOptions& options, bool validation) {
     const vk::ApplicationInfo application("binosplat", 1, "binosplat", 1, kApiVersion);
-    std::vector<const char*> layers, extensions;
+    std::vector<const char*> layers, extensions = options.instance_extensions;
     if (validation) {
         const auto available = loader_->enumerateInstanceLayerProperties();
         const bool found = std::any_of(available.begin(), available.end(),
                                        [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
-        extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+        extensions.insert(extensions.end(), {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
     }
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT validation_features(synchronization);
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
     if (validation) { info.pNext = &validation_features; }
-    instance_ = vk::raii::Instance(*loader_, info);
+    const DeviceMaker& maker = options.maker;
+    instance_ = maker.create_instance
+                    ? vk::raii::Instance(*loader_, maker.create_instance(loader_->getDispatcher()->vkGetInstanceProcAddr, info))
+                    : vk::raii::Instance(*loader_, info);
     validates_ = validation;
     if (validation) {
         sink_ = [this](const char* message) {
@@ -151,7 +158,16 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
     physical_device_ = std::move(devices[*chosen]);
 }
 
-void Context::createDevice() {
+void Context::takePhysicalDevice(const DeviceMaker& maker) {
+    physical_device_ = vk::raii::PhysicalDevice(instance_, maker.choose_device(*instance_));
+    const std::string missing = missingFeatures(physical_device_);
+    if (!missing.empty()) {
+        const std::string name = physical_device_.getProperties().deviceName;
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: the device that the runtime wants lacks {}", name, missing));
+    }
+}
+
+void Context::createDevice(const ContextOptions& options) {
     queue_family_ = queueFamilyOf(physical_device_).value();
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
@@ -161,9 +177,12 @@ void Context::createDevice() {
     const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     features.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
     dynamic_broadcast_ = features.subgroupBroadcastDynamicId == VK_TRUE;
-    device_ = vk::raii::Device(physical_device_, vk::DeviceCreateInfo({}, queue_info, {}, {}, nullptr, &features));
+    const vk::DeviceCreateInfo info({}, queue_info, {}, options.device_extensions, nullptr, &features);
+    const DeviceMaker& maker = options.maker;
+    device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
+                                                                                           *physical_device_, info))
+                                  : vk::raii::Device(physical_device_, info);
     queue_ = device_.getQueue(queue_family_, 0);
-    command_pool_ = device_.createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_});
 
     const auto properties = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;

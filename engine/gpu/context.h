@@ -11,10 +11,19 @@
 
 namespace binosplat {
 
+// Somebody else who creates the instance and the device and says which GPU it is: an OpenXR runtime. All three or none.
+struct DeviceMaker {
+    std::function<VkInstance(PFN_vkGetInstanceProcAddr, const VkInstanceCreateInfo&)> create_instance;
+    std::function<VkPhysicalDevice(VkInstance)> choose_device;
+    std::function<VkDevice(PFN_vkGetInstanceProcAddr, VkPhysicalDevice, const VkDeviceCreateInfo&)> create_device;
+};
+
 struct ContextOptions {
     std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
     bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
-    std::uint64_t max_allocation_bytes = 0;  // not more in one allocation; 0: what the device allows
+    std::uint64_t max_allocation_bytes = 0;                                     // not more in one allocation; 0: what the device allows
+    DeviceMaker maker = {};                                                     // instead of Vulkan itself; `device` is then without effect
+    std::vector<const char*> instance_extensions = {}, device_extensions = {};  // beside those that the passes need; literals
 };
 
 // Bytes of device memory in use and the most there ever were.
@@ -30,10 +39,13 @@ public:
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
+    [[nodiscard]] const vk::raii::Instance& instance() const { return instance_; }
     [[nodiscard]] const vk::raii::Device& device() const { return device_; }
     [[nodiscard]] const vk::raii::PhysicalDevice& physicalDevice() const { return physical_device_; }
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
-    [[nodiscard]] const vk::raii::CommandPool& commandPool() const { return command_pool_; }
+    [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
+    // Whoever uses the queue, itself or through OpenXR, holds this: a scene may be on its way up from a second thread.
+    [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
     // Nanoseconds of a timestamp's step; 0 if the queue has none.
@@ -61,9 +73,10 @@ public:
     }
 
 private:
-    void createInstance(bool validation);
+    void createInstance(const ContextOptions& options, bool validation);
     void choosePhysicalDevice(const std::string& wanted);
-    void createDevice();
+    void takePhysicalDevice(const DeviceMaker& maker);
+    void createDevice(const ContextOptions& options);
     void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const;
 
     std::function<void(const char*)> sink_;  // where the messenger writes; it holds this address
@@ -80,7 +93,7 @@ private:
     vk::raii::PhysicalDevice physical_device_{nullptr};
     vk::raii::Device device_{nullptr};
     vk::raii::Queue queue_{nullptr};
-    vk::raii::CommandPool command_pool_{nullptr};
+    mutable std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
     std::uint64_t max_allocation_bytes_ = 0;

@@ -211,6 +211,18 @@ struct SortScatterPass {
     uint digits;
 };
 
+// 10_present: an eye's picture as the headset takes it.
+struct PresentPass {
+    Vec4s colours;
+    Floats depths;         // D, where its depth is wanted
+    Uints tile_kinds;      // where it shows what made it
+    Uints pixel_classes;   // likewise
+    Uints pixels;          // out: 8 bits a channel
+    Floats device_depths;  // out where wanted: near / depth
+    uvec2 size_px;
+    float near;
+};
+
 BINOSPLAT_END_SHARED
 
 #endif

@@ -1,0 +1,51 @@
+// Recording pass 10 and the copies after it.
+#include "engine/present.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+bool Presenter::takes(vk::Format format) {
+    using Format = vk::Format;
+    return format == Format::eR8G8B8A8Srgb || format == Format::eB8G8R8A8Srgb || format == Format::eR8G8B8A8Unorm ||
+           format == Format::eB8G8R8A8Unorm;
+}
+
+Presenter::Presenter(const Context& context, vk::Format format)
+    : context_(context),
+      kernels_(context),
+      blue_first_(format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm),
+      linear_(format == vk::Format::eR8G8B8A8Unorm || format == vk::Format::eB8G8R8A8Unorm) {
+    check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
+}
+
+void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
+    const std::uint64_t pixel_count = std::uint64_t{eye.size_px.x} * eye.size_px.y;
+    const bool with_depth = eye.depth && eye.image->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
+    const auto makeRoom = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
+        if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
+    };
+    // Only ever grown before anything of this submission uses them: both eyes have one size.
+    makeRoom(pixels_, "presented pixels", pixel_count * sizeof(gpu::uint));
+    makeRoom(depths_, "presented depths", with_depth ? pixel_count * sizeof(float) : 0);
+    gpu::PresentPass pass{};
+    pass.colours = eye.image->colours.address<gpu::vec4>();
+    pass.depths = eye.image->depths.address<float>();
+    if (tinted) {
+        pass.tile_kinds = eye.tinted_by->tileKinds();
+        pass.pixel_classes = eye.tinted_by->pixelClasses().address<gpu::uint>();
+    }
+    pass.pixels = pixels_.address<gpu::uint>();
+    pass.device_depths = depths_.address<float>();
+    pass.size_px = eye.size_px;
+    pass.near = static_cast<float>(near);
+    commands.beginPass("10_present");
+    commands.dispatch(kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth}), pass, (eye.size_px.x + 15) / 16,
+                      (eye.size_px.y + 15) / 16);
+    commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
+    if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,34 @@
+// From a frame's pictures to the images that a headset's runtime lends for them.
+#pragma once
+
+#include "engine/frame.h"
+
+namespace binosplat {
+
+// An eye's picture and what else goes with it.
+struct PresentedEye {
+    const EyeImage* image = nullptr;
+    glm::uvec2 size_px{0, 0};
+    const StereoBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
+    vk::Image colour;                          // where the picture goes; 8-bit RGBA or BGRA
+    vk::Image depth;                           // where its depth goes, D32: near / depth, 0 where nothing is; or null
+};
+
+class Presenter {
+public:
+    // Of images of `colour_format`. Throws Error if it has not four channels of 8 bits.
+    Presenter(const Context& context, vk::Format colour_format);
+
+    [[nodiscard]] static bool takes(vk::Format colour_format);
+
+    // Records pass 10. `near` in scene units.
+    void record(Commands& commands, const PresentedEye& eye, double near);
+
+private:
+    const Context& context_;
+    KernelCache kernels_;
+    bool blue_first_, linear_;
+    Buffer pixels_, depths_;  // one eye after the other
+};
+
+}  // namespace binosplat

@@ -1,0 +1,40 @@
+// 10: pictures in bytes.
+#include "engine/reference/present.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::reference {
+namespace {
+
+double lightOf(double encoded) { return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4); }
+
+std::uint32_t byteOf(double value, bool linear) {
+    if (!(value > 0.0)) { return 0; }  // NaN, too
+    const double shown = std::min(value, 1.0);
+    return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation) {
+    std::vector<std::uint32_t> words;
+    for (const glm::dvec4& pixel : rgba) {
+        const std::uint32_t red = byteOf(pixel.r, presentation.linear), green = byteOf(pixel.g, presentation.linear);
+        const std::uint32_t blue = byteOf(pixel.b, presentation.linear), alpha = 255;
+        const std::uint32_t first = presentation.blue_first ? blue : red, third = presentation.blue_first ? red : blue;
+        words.push_back(first | green << 8 | third << 16 | alpha << 24);
+    }
+    return words;
+}
+
+std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation) {
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+        const bool anything = rgba[i].a >= 1.0 / 255.0 && depth_sums[i] > 0.0;
+        shares.push_back(anything ? std::min(presentation.near * rgba[i].a / depth_sums[i], 1.0) : 0.0);
+    }
+    return shares;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,23 @@
+// The float64 twin of 10_present: an eye's picture as the headset takes it.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat::reference {
+
+struct Presentation {
+    bool blue_first = false;  // BGRA in place of RGBA
+    bool linear = false;      // bytes that count as light, of a display-encoded value (IEC 61966-2-1)
+    double near = 0.2;
+};
+
+// A word a pixel, the first channel lowest: nearest of 0 to 255, NaN as 0, opaque.
+std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation);
+// near / (D/A): 1 at the near plane and before it, 0 where alpha stays under 1/255.
+std::vector<double> presentDepths(std::span<const glm::dvec4> rgba, std::span<const double> depth_sums, const Presentation& presentation);
+
+}  // namespace binosplat::reference

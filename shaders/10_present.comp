@@ -1,0 +1,57 @@
+// 10: an eye's picture as the headset's swapchain image wants it: 8 bits a channel and, on request, its depth. Trained values are
+// display-encoded already, which is what the bytes of an sRGB image are.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+
+layout(constant_id = 0) const bool kBlueFirst = false;  // BGRA in place of RGBA
+layout(constant_id = 1) const bool kLinear = false;     // the image is no sRGB one: its bytes count as light
+layout(constant_id = 2) const bool kTint = false;       // by what made each pixel
+layout(constant_id = 3) const bool kDepth = false;
+layout(local_size_x = 16, local_size_y = 16) in;
+
+layout(push_constant, scalar) uniform Push { PresentPass pass; };
+
+// NaN becomes 0, as everything that is not above 0.
+vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), greaterThan(colour, vec3(0))); }
+
+// Light of a display-encoded value (IEC 61966-2-1).
+vec3 decode(vec3 encoded) { return mix(pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))); }
+
+// The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
+vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
+    const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
+    const uint pixel_class = (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u;
+    vec3 shade;
+    if (kind == kTileEdge) {
+        shade = vec3(0, 0.35, 1);
+    } else if (kind == kTileCenter) {
+        shade = vec3(0, 0.8, 0.2);
+    } else if (kind == kTilePredicted) {
+        shade = vec3(0.9, 0, 0.9);
+    } else if (pixel_class == kGap) {
+        shade = vec3(1, 0.85, 0);
+    } else if (pixel_class == kHole) {
+        shade = vec3(1, 0, 0);
+    } else {
+        return colour;
+    }
+    return mix(colour, shade, 0.4);
+}
+
+void main() {
+    const uvec2 at = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(at, pass.size_px))) { return; }
+    const uint i = at.y * pass.size_px.x + at.x;
+    const vec4 pixel = pass.colours.at[i];
+    vec3 colour = clampToDisplay(pixel.rgb);
+    if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
+    if (kLinear) { colour = decode(colour); }
+    const uvec3 bytes = uvec3(colour * 255 + 0.5);
+    pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | 0xff000000u;
+    if (kDepth) {
+        // D/A, as near / depth: 1 at the near plane, 0 where nothing is.
+        const float share = pass.near * pixel.a / pass.depths.at[i];
+        pass.device_depths.at[i] = share > 0 && pixel.a >= kMinAlpha ? min(share, 1) : 0;
+    }
+}

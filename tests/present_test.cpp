@@ -1,0 +1,143 @@
+// Facts about pictures on their way to a headset: pass 10 against its float64 twin, on the device.
+#include "engine/present.h"
+#include "engine/reference/present.h"
+#include "tests/gpu_fixture.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+struct Presented {
+    std::vector<std::uint32_t> pixels;
+    std::vector<float> depths;
+};
+
+// What the pass makes of `colours` (and of `depth_sums`, if there are any).
+Presented runPresent(Gpu& gpu, glm::uvec2 size_px, const std::vector<glm::vec4>& colours, const std::vector<float>& depth_sums,
+                     const reference::Presentation& how) {
+    const Buffer in = gpu.upload("colours", colours), sums = gpu.upload("depth sums", depth_sums);
+    const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", colours.size()), depths = gpu.allocate<float>("depths", colours.size());
+    const bool with_depth = !depth_sums.empty();
+    gpu::PresentPass pass{};
+    pass.colours = in.address<gpu::vec4>();
+    pass.depths = sums.address<float>();
+    pass.pixels = pixels.address<gpu::uint>();
+    pass.device_depths = depths.address<float>();
+    pass.size_px = size_px;
+    pass.near = static_cast<float>(how.near);
+    const Kernel kernel(gpu.context(), "10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth});
+    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 15) / 16); });
+    return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, with_depth ? colours.size() : 0)};
+}
+
+// Every pixel another colour, from well below 0 to well above 1.
+std::vector<glm::vec4> makeColours(glm::uvec2 size_px) {
+    std::vector<glm::vec4> colours;
+    for (std::uint32_t i = 0; i < size_px.x * size_px.y; ++i) {
+        const auto at = static_cast<float>(i);
+        colours.emplace_back(0.6f + 0.8f * std::sin(at), 0.5f + 0.4f * std::sin(0.37f * at), 0.5f + 0.6f * std::cos(0.11f * at),
+                             0.5f + 0.5f * std::sin(0.05f * at));
+    }
+    return colours;
+}
+
+// Bytes may differ by one where the value lies between two, within float32's rounding.
+std::size_t countOff(const std::vector<std::uint32_t>& actual, const std::vector<std::uint32_t>& expected, int tolerance) {
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+        for (int shift = 0; shift < 32; shift += 8) {
+            const int a = static_cast<int>((actual[i] >> shift) & 255), b = static_cast<int>((expected[i] >> shift) & 255);
+            off += std::abs(a - b) > tolerance ? 1 : 0;
+        }
+    }
+    return off;
+}
+
+std::vector<glm::dvec4> asDoubles(const std::vector<glm::vec4>& colours) { return {colours.begin(), colours.end()}; }
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "pictures become the bytes of their twin, at every order of channels and encoding") {
+    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(33, 48)}) {
+        const std::vector<glm::vec4> colours = makeColours(size_px);
+        for (const bool blue_first : {false, true}) {
+            for (const bool linear : {false, true}) {
+                CAPTURE(size_px.x);
+                CAPTURE(blue_first);
+                CAPTURE(linear);
+                const reference::Presentation how{blue_first, linear, 0.2};
+                const Presented actual = runPresent(*this, size_px, colours, {}, how);
+                const std::vector<std::uint32_t> expected = reference::present(asDoubles(colours), how);
+                CHECK(countOff(actual.pixels, expected, 1) == 0);
+                CHECK(countOff(actual.pixels, expected, 0) <= 1 + colours.size() / 500);
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "red comes first, opaque; with blue first it comes third") {
+    const std::vector<glm::vec4> colours{{1.0f, 0.5f, 0.0f, 0.25f}};
+    CHECK(runPresent(*this, {1, 1}, colours, {}, {false, false, 0.2}).pixels[0] == 0xff0080ffu);
+    CHECK(runPresent(*this, {1, 1}, colours, {}, {true, false, 0.2}).pixels[0] == 0xffff8000u);
+    CHECK(runPresent(*this, {1, 1}, colours, {}, {false, true, 0.2}).pixels[0] == 0xff0037ffu);  // 0.5 is 21.4 % of the light
+}
+
+TEST_CASE_FIXTURE(Gpu, "what is no colour becomes one") {
+    const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const std::vector<glm::vec4> colours{{nan, nan, nan, nan}, {infinity, -infinity, nan, 1}, {-1, 2, -0.0f, 1}, {1e38f, -1e38f, 1, 0}};
+    const Presented presented = runPresent(*this, {4, 1}, colours, {}, {false, false, 0.2});
+    CHECK(presented.pixels == std::vector<std::uint32_t>{0xff000000u, 0xff0000ffu, 0xff00ff00u, 0xffff00ffu});
+    CHECK(presented.pixels == reference::present(asDoubles(colours), {false, false, 0.2}));
+}
+
+TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far") {
+    // Alpha 0.5 at depth 4, alpha 1 at the near plane, before it, nothing, hardly anything, alpha without depth.
+    const std::vector<glm::vec4> colours{{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0}, {0, 0, 0, 0.001f}, {0, 0, 0, 0.5f}};
+    const std::vector<float> sums{2.0f, 0.25f, 0.1f, 0.0f, 0.001f, std::numeric_limits<float>::quiet_NaN()};
+    const reference::Presentation how{false, false, 0.25};
+    const Presented presented = runPresent(*this, {6, 1}, colours, sums, how);
+    const std::vector<double> expected = reference::presentDepths(asDoubles(colours), std::vector<double>(sums.begin(), sums.end()), how);
+    CHECK(expected == std::vector<double>{0.0625, 1.0, 1.0, 0.0, 0.0, 0.0});
+    for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom") {
+    const glm::uvec2 size_px(5, 3);
+    using Usage = vk::ImageUsageFlagBits;
+    const vk::raii::Image image(
+        context().device(),
+        vk::ImageCreateInfo({}, vk::ImageType::e2D, vk::Format::eR8G8B8A8Srgb, {size_px.x, size_px.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
+                            vk::ImageTiling::eOptimal, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
+    const auto needs = image.getMemoryRequirements();
+    const vk::raii::DeviceMemory memory(context().device(),
+                                        vk::MemoryAllocateInfo(needs.size, context().memoryType(needs.memoryTypeBits, {}, {})));
+    image.bindMemory(*memory, 0);
+
+    const std::vector<glm::vec4> colours = makeColours(size_px);
+    EyeImage eye{upload("colours", colours), {}};
+    Presenter presenter(context(), vk::Format::eR8G8B8A8Srgb);
+    const Buffer readback(context(), "read-back", colours.size() * 4, MemoryKind::kReadback);
+    run([&](Commands& commands) {
+        presenter.record(commands, {&eye, size_px, nullptr, *image, {}}, 0.2);
+        const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
+                                             vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
+                                             VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
+                                             {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+        const vk::raii::CommandBuffer& raw = commands.buffer();
+        raw.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {}, barrier);
+        raw.copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, readback.handle(),
+                              vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {size_px.x, size_px.y, 1}));
+    });
+    const auto words = readback.mapped<std::uint32_t>();
+    CHECK(countOff({words.begin(), words.end()}, reference::present(asDoubles(colours), {}), 1) == 0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "images of other formats are refused") {
+    CHECK_THROWS_WITH(Presenter(context(), vk::Format::eR16G16B16A16Sfloat), doctest::Contains("8-bit RGBA or BGRA"));
+}
