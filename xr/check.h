@@ -1,0 +1,33 @@
+// Every OpenXR call goes through here: what fails throws, with the call's text.
+#pragma once
+
+#include "engine/error.h"
+
+#include <openxr/openxr.h>
+
+namespace binosplat::xr {
+
+// The session or the whole runtime is gone. Session turns it into an outcome; nobody else needs to catch it.
+class Lost : public Error {
+public:
+    using Error::Error;
+};
+
+// "XR_ERROR_SESSION_LOST", or the number of a result that this build does not know.
+std::string nameOf(XrResult result);
+
+// Returns `result` if it is a success of any kind. Throws Lost where the session or the instance is lost, Error (exit code 3)
+// otherwise, with the name of the function in `call`.
+XrResult checkResult(XrResult result, const char* call);
+
+#define BINOSPLAT_XR(call) ::binosplat::xr::checkResult((call), #call)
+
+// An OpenXR struct of the type that it must state, zero otherwise.
+template <typename Struct>
+[[nodiscard]] Struct structure(XrStructureType type) {
+    Struct made{};
+    made.type = type;
+    return made;
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,158 @@
+// Actions, and what they are bound to.
+#include "xr/input.h"
+
+#include "xr/convert.h"
+
+#include <cstring>
+
+namespace binosplat::xr {
+namespace {
+
+struct Profile {
+    const char* path;
+    const char* trigger;
+    const char* squeeze;              // or null
+    const char* stick;                // or null
+    std::array<const char*, 2> menu;  // left, right; or null
+};
+
+// Under /interaction_profiles and /user/hand/left, /user/hand/right.
+constexpr Profile kProfiles[] = {
+    {"khr/simple_controller", "input/select/click", nullptr, nullptr, {"input/menu/click", "input/menu/click"}},
+    {"oculus/touch_controller", "input/trigger/value", "input/squeeze/value", "input/thumbstick", {"input/y/click", "input/b/click"}},
+    {"valve/index_controller", "input/trigger/value", "input/squeeze/value", "input/thumbstick", {"input/b/click", "input/b/click"}},
+    {"microsoft/motion_controller",
+     "input/trigger/value",
+     "input/squeeze/click",
+     "input/thumbstick",
+     {"input/menu/click", "input/menu/click"}},
+    {"htc/vive_controller", "input/trigger/value", "input/squeeze/click", "input/trackpad", {"input/menu/click", "input/menu/click"}},
+};
+constexpr const char* kHandPaths[] = {"/user/hand/left", "/user/hand/right"};
+
+}  // namespace
+
+Input::Input(const Session& session) : session_(session) {
+    const Instance& instance = session.instance();
+    for (std::size_t h = 0; h < 2; ++h) { hands_[h] = instance.path(kHandPaths[h]); }
+    auto info = structure<XrActionSetCreateInfo>(XR_TYPE_ACTION_SET_CREATE_INFO);
+    std::strcpy(info.actionSetName, "viewer");
+    std::strcpy(info.localizedActionSetName, "Viewer");
+    BINOSPLAT_XR(xrCreateActionSet(instance.handle(), &info, &set_));
+    aim_ = makeAction("aim", "Point at the panel", XR_ACTION_TYPE_POSE_INPUT);
+    grip_ = makeAction("grip", "Hold the scene", XR_ACTION_TYPE_POSE_INPUT);
+    trigger_ = makeAction("trigger", "Click", XR_ACTION_TYPE_FLOAT_INPUT);
+    squeeze_ = makeAction("squeeze", "Grab", XR_ACTION_TYPE_FLOAT_INPUT);
+    stick_ = makeAction("stick", "Move and turn", XR_ACTION_TYPE_VECTOR2F_INPUT);
+    menu_ = makeAction("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT);
+    suggestBindings();
+    auto attach = structure<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
+    attach.countActionSets = 1;
+    attach.actionSets = &set_;
+    BINOSPLAT_XR(xrAttachSessionActionSets(session.handle(), &attach));
+    for (std::size_t h = 0; h < 2; ++h) {
+        auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
+        space.subactionPath = hands_[h];
+        space.poseInActionSpace.orientation.w = 1.0f;
+        space.action = aim_;
+        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &aim_spaces_[h]));
+        space.action = grip_;
+        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &grip_spaces_[h]));
+    }
+}
+
+Input::~Input() {
+    for (std::size_t h = 0; h < 2; ++h) {
+        xrDestroySpace(aim_spaces_[h]);
+        xrDestroySpace(grip_spaces_[h]);
+    }
+    xrDestroyActionSet(set_);
+}
+
+XrAction Input::makeAction(const char* name, const char* description, XrActionType type) {
+    auto info = structure<XrActionCreateInfo>(XR_TYPE_ACTION_CREATE_INFO);
+    std::strcpy(info.actionName, name);
+    std::strcpy(info.localizedActionName, description);
+    info.actionType = type;
+    info.countSubactionPaths = 2;
+    info.subactionPaths = hands_.data();
+    XrAction action = XR_NULL_HANDLE;
+    BINOSPLAT_XR(xrCreateAction(set_, &info, &action));
+    return action;
+}
+
+void Input::suggestBindings() const {
+    const Instance& instance = session_.instance();
+    for (const Profile& profile : kProfiles) {
+        std::vector<XrActionSuggestedBinding> bindings;
+        for (std::size_t h = 0; h < 2; ++h) {
+            const auto bind = [&](XrAction action, const char* where) {
+                if (where != nullptr) { bindings.push_back({action, instance.path(fmt::format("{}/{}", kHandPaths[h], where).c_str())}); }
+            };
+            bind(aim_, "input/aim/pose");
+            bind(grip_, "input/grip/pose");
+            bind(trigger_, profile.trigger);
+            bind(squeeze_, profile.squeeze);
+            bind(stick_, profile.stick);
+            bind(menu_, profile.menu[h]);
+        }
+        auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
+        suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile.path).c_str());
+        suggestion.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
+        suggestion.suggestedBindings = bindings.data();
+        const XrResult result = xrSuggestInteractionProfileBindings(instance.handle(), &suggestion);
+        // A runtime need not know every controller.
+        if (result != XR_ERROR_PATH_UNSUPPORTED) { checkResult(result, "xrSuggestInteractionProfileBindings"); }
+    }
+}
+
+std::array<Hand, 2> Input::read() const {
+    std::array<Hand, 2> hands;
+    const XrActiveActionSet active{set_, XR_NULL_PATH};
+    auto sync = structure<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
+    sync.countActiveActionSets = 1;
+    sync.activeActionSets = &active;
+    if (BINOSPLAT_XR(xrSyncActions(session_.handle(), &sync)) == XR_SESSION_NOT_FOCUSED) { return hands; }
+    for (std::size_t h = 0; h < 2; ++h) {
+        hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h]);
+        hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h]);
+        hands[h].trigger = readNumber(trigger_, hands_[h]);
+        hands[h].squeeze = readNumber(squeeze_, hands_[h]);
+        auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
+        get.subactionPath = hands_[h];
+        get.action = stick_;
+        auto stick = structure<XrActionStateVector2f>(XR_TYPE_ACTION_STATE_VECTOR2F);
+        BINOSPLAT_XR(xrGetActionStateVector2f(session_.handle(), &get, &stick));
+        if (stick.isActive == XR_TRUE) { hands[h].stick = glm::dvec2(glm::vec2(stick.currentState.x, stick.currentState.y)); }
+        get.action = menu_;
+        auto menu = structure<XrActionStateBoolean>(XR_TYPE_ACTION_STATE_BOOLEAN);
+        BINOSPLAT_XR(xrGetActionStateBoolean(session_.handle(), &get, &menu));
+        hands[h].menu = menu.isActive == XR_TRUE && menu.currentState == XR_TRUE;
+    }
+    return hands;
+}
+
+double Input::readNumber(XrAction action, XrPath hand) const {
+    auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
+    get.action = action;
+    get.subactionPath = hand;
+    auto state = structure<XrActionStateFloat>(XR_TYPE_ACTION_STATE_FLOAT);
+    BINOSPLAT_XR(xrGetActionStateFloat(session_.handle(), &get, &state));
+    return state.isActive == XR_TRUE ? static_cast<double>(state.currentState) : 0.0;
+}
+
+std::optional<Pose> Input::locate(XrAction action, XrPath hand, XrSpace space) const {
+    auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
+    get.action = action;
+    get.subactionPath = hand;
+    auto state = structure<XrActionStatePose>(XR_TYPE_ACTION_STATE_POSE);
+    BINOSPLAT_XR(xrGetActionStatePose(session_.handle(), &get, &state));
+    if (state.isActive != XR_TRUE) { return std::nullopt; }
+    auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
+    BINOSPLAT_XR(xrLocateSpace(space, session_.space(), session_.displayTime(), &location));
+    constexpr auto kValid = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+    if ((location.locationFlags & kValid) != kValid) { return std::nullopt; }
+    return fromXr(location.pose);
+}
+
+}  // namespace binosplat::xr

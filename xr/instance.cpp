@@ -1,0 +1,165 @@
+// Finding the runtime and the headset.
+#include "xr/instance.h"
+
+#include "xr/platform.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+namespace binosplat::xr {
+namespace {
+
+constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
+
+[[noreturn]] void refuse(const std::string& what, XrResult result) {
+    throw Error(ExitCode::kNoDevice, fmt::format("{} ({}); {}", what, nameOf(result), kHint));
+}
+
+// The runtime is the loader's choice: XR_RUNTIME_JSON, or active_runtime.json of the user or the system.
+std::string whereLookedFor() {
+    const char* chosen = std::getenv("XR_RUNTIME_JSON");
+    return chosen != nullptr ? fmt::format("XR_RUNTIME_JSON={}", chosen) : "openxr/1/active_runtime.json";
+}
+
+std::vector<XrExtensionProperties> listExtensions() {
+    std::uint32_t count = 0;
+    XrResult result = xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
+    if (XR_FAILED(result)) { refuse(fmt::format("no OpenXR runtime found: looked for {}", whereLookedFor()), result); }
+    std::vector<XrExtensionProperties> extensions(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
+    result = BINOSPLAT_XR(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, extensions.data()));
+    extensions.resize(count);
+    return extensions;
+}
+
+}  // namespace
+
+Instance::Instance() {
+    // The loader speaks on stderr where it finds nothing; one line of ours says it better.
+    setenv("XR_LOADER_DEBUG", "none", 0);
+    create();
+    try {
+        findSystem();
+        readViews();
+    } catch (...) {
+        xrDestroyInstance(instance_);
+        throw;
+    }
+}
+
+Instance::~Instance() { xrDestroyInstance(instance_); }
+
+void Instance::create() {
+    const std::vector<XrExtensionProperties> available = listExtensions();
+    const auto has = [&](const char* name) {
+        return std::ranges::any_of(available, [&](const auto& extension) { return std::strcmp(extension.extensionName, name) == 0; });
+    };
+    if (!has(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)) {
+        refuse("the OpenXR runtime has not XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT);
+    }
+    takes_depth_ = has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+    has_visibility_mask_ = has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
+    std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+    if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
+    if (has_visibility_mask_) { extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
+
+    auto info = structure<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
+    std::strcpy(info.applicationInfo.applicationName, "binosplat");
+    std::strcpy(info.applicationInfo.engineName, "binosplat");
+    info.applicationInfo.applicationVersion = info.applicationInfo.engineVersion = 1;
+    info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.enabledExtensionNames = extensions.data();
+    const XrResult result = xrCreateInstance(&info, &instance_);
+    if (XR_FAILED(result)) { refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereLookedFor()), result); }
+}
+
+void Instance::findSystem() {
+    auto runtime = structure<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
+    BINOSPLAT_XR(xrGetInstanceProperties(instance_, &runtime));
+    auto wanted = structure<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
+    wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+    const XrResult result = xrGetSystem(instance_, &wanted, &system_);
+    if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime.runtimeName), result); }
+    auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
+    BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
+    description_ = fmt::format("{}: {}", runtime.runtimeName, properties.systemName);
+}
+
+void Instance::readViews() {
+    constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    std::uint32_t count = 0;
+    const XrResult result = xrEnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr);
+    if (XR_FAILED(result)) { refuse(fmt::format("{} does not show two eyes", description_), result); }
+    std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
+    BINOSPLAT_XR(xrEnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()));
+    max_size_px_ = glm::uvec2(UINT32_MAX);
+    for (const XrViewConfigurationView& view : views) {
+        recommended_size_px_ = glm::max(recommended_size_px_, glm::uvec2(view.recommendedImageRectWidth, view.recommendedImageRectHeight));
+        max_size_px_ = glm::min(max_size_px_, glm::uvec2(view.maxImageRectWidth, view.maxImageRectHeight));
+    }
+    BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr));
+    std::vector<XrEnvironmentBlendMode> modes(count);
+    BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()));
+    const bool opaque = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end();
+    if (!opaque && !modes.empty()) { blend_mode_ = modes.front(); }
+}
+
+DeviceMaker Instance::deviceMaker() const {
+    const auto refuseVulkan = [](VkResult result, const char* what) {
+        if (result == VK_SUCCESS) { return; }
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: {}", what, vk::to_string(vk::Result(result))));
+    };
+    DeviceMaker maker;
+    maker.create_instance = [this, refuseVulkan](PFN_vkGetInstanceProcAddr get_address, const VkInstanceCreateInfo& vulkan_info) {
+        auto needs = structure<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
+        BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR")(instance_, system_, &needs));
+        const std::uint32_t wanted = vulkan_info.pApplicationInfo->apiVersion;
+        const XrVersion version = XR_MAKE_VERSION(VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted), 0);
+        if (version < needs.minApiVersionSupported) {
+            throw Error(ExitCode::kNoDevice,
+                        fmt::format("{} needs Vulkan {}.{} or newer, this program uses {}.{}", description_,
+                                    XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported),
+                                    VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted)));
+        }
+        auto info = structure<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
+        info.systemId = system_;
+        info.pfnGetInstanceProcAddr = get_address;
+        info.vulkanCreateInfo = &vulkan_info;
+        VkInstance created = VK_NULL_HANDLE;
+        VkResult result = VK_SUCCESS;
+        BINOSPLAT_XR(function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR")(instance_, &info, &created, &result));
+        refuseVulkan(result, "xrCreateVulkanInstanceKHR");
+        return created;
+    };
+    maker.choose_device = [this](VkInstance vulkan_instance) {
+        auto info = structure<XrVulkanGraphicsDeviceGetInfoKHR>(XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
+        info.systemId = system_;
+        info.vulkanInstance = vulkan_instance;
+        VkPhysicalDevice chosen = VK_NULL_HANDLE;
+        BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsDevice2KHR>("xrGetVulkanGraphicsDevice2KHR")(instance_, &info, &chosen));
+        return chosen;
+    };
+    maker.create_device = [this, refuseVulkan](PFN_vkGetInstanceProcAddr get_address, VkPhysicalDevice physical_device,
+                                               const VkDeviceCreateInfo& vulkan_info) {
+        auto info = structure<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
+        info.systemId = system_;
+        info.pfnGetInstanceProcAddr = get_address;
+        info.vulkanPhysicalDevice = physical_device;
+        info.vulkanCreateInfo = &vulkan_info;
+        VkDevice created = VK_NULL_HANDLE;
+        VkResult result = VK_SUCCESS;
+        BINOSPLAT_XR(function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR")(instance_, &info, &created, &result));
+        refuseVulkan(result, "xrCreateVulkanDeviceKHR");
+        return created;
+    };
+    return maker;
+}
+
+XrPath Instance::path(const char* text) const {
+    XrPath path = XR_NULL_PATH;
+    BINOSPLAT_XR(xrStringToPath(instance_, text, &path));
+    return path;
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,60 @@
+// The OpenXR runtime and the headset behind it.
+#pragma once
+
+#include "engine/gpu/context.h"
+#include "xr/check.h"
+
+#include <glm/glm.hpp>
+
+#include <string>
+#include <vector>
+
+namespace binosplat::xr {
+
+class Instance {
+public:
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth and XR_KHR_visibility_mask where they are.
+    // Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset.
+    Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+    ~Instance();
+
+    [[nodiscard]] XrInstance handle() const { return instance_; }
+    [[nodiscard]] XrSystemId system() const { return system_; }
+    // "Monado: Rift S", for people.
+    [[nodiscard]] const std::string& description() const { return description_; }
+    [[nodiscard]] bool takesDepth() const { return takes_depth_; }
+    [[nodiscard]] bool hasVisibilityMask() const { return has_visibility_mask_; }
+    // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
+    [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
+    [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
+    // How layers meet the world: opaque where the headset has it, else what it likes best.
+    [[nodiscard]] XrEnvironmentBlendMode blendMode() const { return blend_mode_; }
+
+    // The instance and the device that Context opens must be this runtime's. Valid as long as the instance.
+    [[nodiscard]] DeviceMaker deviceMaker() const;
+
+    [[nodiscard]] XrPath path(const char* text) const;
+    // A function of an extension. Throws Error if the runtime lists the extension but lacks the function.
+    template <typename Function>
+    [[nodiscard]] Function function(const char* name) const {
+        PFN_xrVoidFunction found = nullptr;
+        checkResult(xrGetInstanceProcAddr(instance_, name, &found), name);
+        return reinterpret_cast<Function>(found);
+    }
+
+private:
+    void create();
+    void findSystem();
+    void readViews();
+
+    XrInstance instance_ = XR_NULL_HANDLE;
+    XrSystemId system_ = XR_NULL_SYSTEM_ID;
+    std::string description_;
+    bool takes_depth_ = false, has_visibility_mask_ = false;
+    glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
+    XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+};
+
+}  // namespace binosplat::xr

@@ -1,0 +1,41 @@
+// Filling in the layers.
+#include "xr/layers.h"
+
+#include "xr/convert.h"
+
+#include <limits>
+
+namespace binosplat::xr {
+
+void Layers::addEyes(const std::array<LayerEye, 2>& eyes) {
+    for (std::size_t e = 0; e < 2; ++e) {
+        eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov, eyes[e].colour->subImage()};
+        if (eyes[e].depth == nullptr) { continue; }
+        // Reversed and without an end: 0 is infinitely far, 1 is the near plane.
+        depths_[e] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
+                      nullptr,
+                      eyes[e].depth->subImage(),
+                      0.0f,
+                      1.0f,
+                      std::numeric_limits<float>::infinity(),
+                      static_cast<float>(eyes[e].near_m)};
+        eyes_[e].next = &depths_[e];
+    }
+    scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, session_.space(), 2, eyes_.data()};
+    list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&scene_));
+}
+
+void Layers::addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain) {
+    XrCompositionLayerQuad& panel = panels_.emplace_back();
+    panel = {XR_TYPE_COMPOSITION_LAYER_QUAD,
+             nullptr,
+             XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT,
+             session_.space(),
+             XR_EYE_VISIBILITY_BOTH,
+             swapchain.subImage(),
+             toXr(room_from_panel),
+             {static_cast<float>(size_m.x), static_cast<float>(size_m.y)}};
+    list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&panel));
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,45 @@
+// What a frame shows, back to front: the scene for both eyes, and flat panels in the room.
+#pragma once
+
+#include "engine/geometry.h"
+#include "xr/swapchain.h"
+
+#include <array>
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace binosplat::xr {
+
+// One eye of the scene's layer. `depth` may be null; then `near_m` is not used.
+struct LayerEye {
+    EyeView view;
+    const Swapchain* colour = nullptr;
+    const Swapchain* depth = nullptr;  // near_m / depth, 0 where nothing is
+    double near_m = 0.0;
+};
+
+class Layers {
+public:
+    explicit Layers(const Session& session) : session_(session) {}
+    Layers(const Layers&) = delete;
+    Layers& operator=(const Layers&) = delete;
+
+    void addEyes(const std::array<LayerEye, 2>& eyes);
+    // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
+    // blended over what lies behind; colours are not multiplied by alpha.
+    void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
+
+    // For Session::endFrame; valid as long as this and the swapchains.
+    [[nodiscard]] std::span<const XrCompositionLayerBaseHeader* const> list() const { return list_; }
+
+private:
+    const Session& session_;
+    std::array<XrCompositionLayerProjectionView, 2> eyes_{};
+    std::array<XrCompositionLayerDepthInfoKHR, 2> depths_{};
+    XrCompositionLayerProjection scene_{};
+    std::deque<XrCompositionLayerQuad> panels_;  // a deque keeps their addresses
+    std::vector<const XrCompositionLayerBaseHeader*> list_;
+};
+
+}  // namespace binosplat::xr

@@ -1,0 +1,86 @@
+// One stay in the headset: the state machine, the pace of frames, and where the eyes are.
+#pragma once
+
+#include "engine/geometry.h"
+#include "xr/instance.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace binosplat::xr {
+
+// What beginFrame() found.
+enum class FrameOutcome {
+    kRender,  // a frame is open and will be seen: draw, then endFrame with its layers
+    kSkip,    // a frame is open but nobody sees it: endFrame without layers
+    kWait,    // no frame is open since the session does not run (yet, or for now): come again
+    kExit,    // the runtime or the user wants the end, or the session is lost: leave; whyEnded() says which
+};
+
+// An eye at the predicted display time.
+struct EyeView {
+    XrPosef pose;
+    XrFovf fov;
+};
+
+// A part of an eye's picture that the lenses never show: triangles in the plane z = -1 of the eye (OpenXR axes).
+struct HiddenMesh {
+    std::vector<XrVector2f> vertices;
+    std::vector<std::uint32_t> indices;
+};
+
+class Session {
+public:
+    // `context` must have been opened with the instance's deviceMaker(); both outlive the session.
+    Session(const Instance& instance, const Context& context);
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    ~Session();
+
+    // Takes the runtime's events, waits for the next frame and opens it.
+    FrameOutcome beginFrame();
+    // Closes the frame with these layers, back to front. Loss of the session shows at the next beginFrame.
+    void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
+    // Asks the runtime for the end; frames go on until beginFrame() returns kExit.
+    void requestExit();
+
+    // Of the open frame.
+    [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
+    // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
+    [[nodiscard]] double stepSeconds() const { return step_seconds_; }
+    // Where the eyes are in space(); empty where the headset does not know how it is turned.
+    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() const;
+    // Whether input comes to this program.
+    [[nodiscard]] bool isFocused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
+    [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
+
+    [[nodiscard]] XrSession handle() const { return session_; }
+    [[nodiscard]] const Instance& instance() const { return instance_; }
+    [[nodiscard]] const Context& context() const { return context_; }
+    // LOCAL: its origin is where the head was at the start, upright.
+    [[nodiscard]] XrSpace space() const { return space_; }
+    // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
+    [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
+
+private:
+    void pollEvents();
+    void changeState(XrSessionState state);
+    void end(const std::string& why);
+    void readHiddenMesh(int eye);
+
+    const Instance& instance_;
+    const Context& context_;
+    XrSession session_ = XR_NULL_HANDLE;
+    XrSpace space_ = XR_NULL_HANDLE;
+    XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
+    XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
+    XrTime last_display_time_ = 0;
+    double step_seconds_ = 0.0;
+    bool running_ = false, ended_ = false;
+    std::string why_ended_;
+    std::array<HiddenMesh, 2> hidden_meshes_;
+};
+
+}  // namespace binosplat::xr

@@ -1,0 +1,100 @@
+// Making, lending and giving back swapchain images.
+#include "xr/swapchain.h"
+
+#include "xr/platform.h"
+
+#include <algorithm>
+
+namespace binosplat::xr {
+namespace {
+
+constexpr XrDuration kWaitNs = 100'000'000;
+constexpr int kMostWaits = 100;
+
+XrSwapchainUsageFlags flagsOf(ImageUse use) {
+    switch (use) {
+        case ImageUse::kCopy:
+            return XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+        case ImageUse::kDraw:
+            return XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
+        case ImageUse::kDepth:
+            break;
+    }
+    return XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+}
+
+}  // namespace
+
+vk::Format chooseFormat(const Session& session, std::span<const vk::Format> wanted) {
+    std::uint32_t count = 0;
+    BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), 0, &count, nullptr));
+    std::vector<std::int64_t> formats(count);
+    BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), count, &count, formats.data()));
+    for (const vk::Format format : wanted) {
+        if (std::ranges::find(formats, static_cast<std::int64_t>(format)) != formats.end()) { return format; }
+    }
+    return vk::Format::eUndefined;
+}
+
+Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format, ImageUse use)
+    : session_(&session), size_px_(size_px), format_(format) {
+    const std::lock_guard lock(session.context().queueMutex());
+    auto info = structure<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
+    info.usageFlags = flagsOf(use);
+    info.format = static_cast<std::int64_t>(format);
+    info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
+    info.width = size_px.x;
+    info.height = size_px.y;
+    BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &swapchain_));
+    std::uint32_t count = 0;
+    BINOSPLAT_XR(xrEnumerateSwapchainImages(swapchain_, 0, &count, nullptr));
+    std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR, nullptr, VK_NULL_HANDLE});
+    BINOSPLAT_XR(xrEnumerateSwapchainImages(swapchain_, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
+    for (const XrSwapchainImageVulkan2KHR& image : images) { images_.emplace_back(image.image); }
+    check(!images_.empty(), "OpenXR: the swapchain of {} has no images", name);
+}
+
+Swapchain& Swapchain::operator=(Swapchain&& other) noexcept {
+    destroy();
+    session_ = std::exchange(other.session_, nullptr);
+    swapchain_ = std::exchange(other.swapchain_, XrSwapchain(XR_NULL_HANDLE));
+    images_ = std::exchange(other.images_, {});
+    size_px_ = other.size_px_;
+    format_ = other.format_;
+    acquired_ = other.acquired_;
+    return *this;
+}
+
+void Swapchain::destroy() {
+    if (swapchain_ == XR_NULL_HANDLE) { return; }
+    const std::lock_guard lock(session_->context().queueMutex());
+    xrDestroySwapchain(swapchain_);
+    swapchain_ = XR_NULL_HANDLE;
+}
+
+vk::Image Swapchain::acquire() {
+    std::uint32_t index = 0;
+    {
+        const std::lock_guard lock(session_->context().queueMutex());
+        BINOSPLAT_XR(xrAcquireSwapchainImage(swapchain_, nullptr, &index));
+    }
+    auto info = structure<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
+    info.timeout = kWaitNs;
+    int waits = 0;
+    while (BINOSPLAT_XR(xrWaitSwapchainImage(swapchain_, &info)) == XR_TIMEOUT_EXPIRED) {
+        if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: a swapchain image did not come free for ten seconds"); }
+    }
+    acquired_ = index;
+    return images_.at(index);
+}
+
+void Swapchain::release() {
+    const std::lock_guard lock(session_->context().queueMutex());
+    BINOSPLAT_XR(xrReleaseSwapchainImage(swapchain_, nullptr));
+}
+
+XrSwapchainSubImage Swapchain::subImage() const {
+    return {swapchain_, {{0, 0}, {static_cast<std::int32_t>(size_px_.x), static_cast<std::int32_t>(size_px_.y)}}, 0};
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,56 @@
+// Images that the runtime lends to be drawn into.
+#pragma once
+
+#include "xr/session.h"
+
+#include <glm/glm.hpp>
+
+#include <vector>
+
+namespace binosplat::xr {
+
+// What images are for.
+enum class ImageUse {
+    kCopy,   // pictures and depths, copied in
+    kDraw,   // the overlay, drawn and copied in
+    kDepth,  // like kCopy, of a depth format
+};
+
+// The first of `wanted` that the runtime has; eUndefined if it has none of them.
+vk::Format chooseFormat(const Session& session, std::span<const vk::Format> wanted);
+
+// Move-only owner.
+class Swapchain {
+public:
+    Swapchain() = default;
+    Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format, ImageUse use);
+    Swapchain(Swapchain&& other) noexcept { *this = std::move(other); }
+    Swapchain& operator=(Swapchain&& other) noexcept;
+    ~Swapchain() { destroy(); }
+
+    // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error if it does not
+    // come free for ten seconds.
+    vk::Image acquire();
+    void release();
+    // Which image acquire() gave, from 0, and how many there are.
+    [[nodiscard]] std::size_t acquiredIndex() const { return acquired_; }
+    [[nodiscard]] const std::vector<vk::Image>& images() const { return images_; }
+
+    [[nodiscard]] XrSwapchain handle() const { return swapchain_; }
+    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    [[nodiscard]] vk::Format format() const { return format_; }
+    // The whole image, for a layer.
+    [[nodiscard]] XrSwapchainSubImage subImage() const;
+
+private:
+    void destroy();
+
+    const Session* session_ = nullptr;
+    XrSwapchain swapchain_ = XR_NULL_HANDLE;
+    std::vector<vk::Image> images_;
+    glm::uvec2 size_px_{0, 0};
+    vk::Format format_ = vk::Format::eUndefined;
+    std::size_t acquired_ = 0;
+};
+
+}  // namespace binosplat::xr
