@@ -1,66 +1,17 @@
-// Writing of PLY: inverse activations into blocks, a temporary file beside the target, one rename at the end.
-#include "engine/error.h"
+// Writing of PLY: inverse activations into blocks.
+#include "engine/scene/part_file.h"
 #include "engine/scene/ply.h"
+#include "engine/scene/quantized.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cerrno>
-#include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <system_error>
-#include <utility>
-
-#include <unistd.h>
 
 namespace binosplat {
 
 namespace {
-
-// The half-written file: gone with this object unless it was renamed to its target.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string& target) : target_(target), path_(fmt::format("{}.part{}", target, ::getpid())) {
-        std::error_code unreadable;  // opening says why
-        check(!std::filesystem::is_directory(target, unreadable), "{}: is a directory, expected a file name to write to", target);
-        // Renaming over a device would replace it.
-        const bool plain = !std::filesystem::exists(target, unreadable) || std::filesystem::is_regular_file(target, unreadable);
-        check(plain, "{}: is not a regular file, expected a file name to write to", target);
-        file_ = std::fopen(path_.c_str(), "wb");
-        check(file_ != nullptr, "{}: cannot be written: {}", target, std::strerror(errno));
-    }
-    ~TemporaryFile() {
-        if (file_ != nullptr) { std::fclose(file_); }
-        if (!renamed_) { std::remove(path_.c_str()); }
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    void write(const void* data, std::size_t bytes) {
-        check(std::fwrite(data, 1, bytes, file_) == bytes, "{}: writing failed: {}", target_, std::strerror(errno));
-    }
-    void commit() {
-        const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-        check(closed, "{}: writing failed: {}", target_, std::strerror(errno));
-        check(std::rename(path_.c_str(), target_.c_str()) == 0, "{}: cannot be put in place: {}", target_, std::strerror(errno));
-        renamed_ = true;
-    }
-
-private:
-    std::string target_, path_;
-    std::FILE* file_ = nullptr;
-    bool renamed_ = false;
-};
-
-// sigmoid(+-100) and exp(-200) are exactly 1, 0 and 0 in float32.
-float storedOpacity(float opacity) {
-    if (!(opacity > 0.0f)) { return -100.0f; }
-    if (opacity >= 1.0f) { return 100.0f; }
-    const double o = opacity;
-    return static_cast<float>(std::log(o / (1.0 - o)));
-}
-float storedScale(float scale) { return scale > 0.0f ? std::log(scale) : -200.0f; }
 
 std::string makeHeader(const Scene& scene) {
     std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", scene.size());
@@ -91,7 +42,7 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
 }  // namespace
 
 void writePly(const Scene& scene, const std::string& path, const Progress& progress) {
-    TemporaryFile file(path);
+    PartFile file(path);
     const std::string header = makeHeader(scene);
     file.write(header.data(), header.size());
 

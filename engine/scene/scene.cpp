@@ -2,6 +2,7 @@
 #include "engine/scene/scene.h"
 
 #include "engine/error.h"
+#include "engine/scene/compressed_ply.h"
 #include "engine/scene/input_file.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
@@ -28,7 +29,9 @@ struct SceneFormat {
     bool (*matches)(Source& source);
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
 };
-constexpr std::array<SceneFormat, 1> kSceneFormats{{
+constexpr std::array<SceneFormat, 2> kSceneFormats{{
+    {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readPly(*source.file, notes, progress); }},
 }};

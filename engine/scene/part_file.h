@@ -1,0 +1,27 @@
+// A file being written beside its target: it takes the target's place in one step when it is whole, and is gone otherwise.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+
+namespace binosplat {
+
+class PartFile {
+public:
+    // Throws Error if `target` cannot be written or is no place for a file.
+    explicit PartFile(const std::string& target);
+    ~PartFile();
+    PartFile(const PartFile&) = delete;
+    PartFile& operator=(const PartFile&) = delete;
+
+    void write(const void* data, std::size_t bytes);
+    void commit();
+
+private:
+    std::string target_, path_;
+    std::FILE* file_ = nullptr;
+    bool renamed_ = false;
+};
+
+}  // namespace binosplat
