@@ -85,12 +85,14 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
 
     const auto targetOf = [&](int eye, int list) {
-        return EyeTarget{
+        EyeTarget target{
             eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
+        target.kept.depth = images_[eye].depths.bytes() > 0;
+        return target;
     };
     const auto dominantOf = [&](int list) {
         EyeTarget target = targetOf(first, list);
-        target.kept = {images_[first].depths.bytes() > 0, settings.keep_moments, settings.keep_moments};
+        target.kept.stereo_pixels = target.kept.inverse_depth_moments = settings.keep_moments;
         return target;
     };
 
@@ -156,7 +158,8 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
         const bool dominant = used && e == dominant_;
         resize(images_[e].colours, "colours", pixels * sizeof(gpu::vec4));
-        resize(images_[e].depths, "depths", dominant && (settings.keep_depth || read_depth) ? pixels * sizeof(float) : 0);
+        const bool keeps_depth = dominant ? settings.keep_depth || read_depth : settings.keep_both_depths && !reprojects(settings.mode);
+        resize(images_[e].depths, "depths", keeps_depth ? pixels * sizeof(float) : 0);
         if (dominant) { resize(moments_, "inverse depth moments", settings.keep_moments ? pixels * sizeof(gpu::StereoPixel) : 0); }
     }
     resize(buffers_.tile_ranges, "tile ranges", (most_tiles + 1) * sizeof(gpu::uvec2));  // one more for pairs in no tile
@@ -238,7 +241,7 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     const gpu::StereoCounters& stereo = state_.stereo_counters;
     leaveOut(scene_.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_.shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
-    leaveOut(eyes.size() == 2, "depth of the affiliated eye: nothing reads it");
+    leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && haveSameDepths(eyes[0], eyes.back()),
              "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");

@@ -30,9 +30,10 @@ struct FrameSettings {
     Side dominant = kLeft;
     double near = 0.2;  // scene units
     glm::dvec3 background{0.0};
-    StereoSettings stereo;      // how one eye is made from the other; `patching` follows from the mode
-    bool keep_depth = true;     // D of the dominant eye, for readDominantDepth
-    bool keep_moments = false;  // I and J of the dominant eye, for readInverseDepthMoments
+    StereoSettings stereo;          // how one eye is made from the other; `patching` follows from the mode
+    bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
+    bool keep_both_depths = false;  // D of the affiliated eye, too, where the mode renders it in full
+    bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
 };
 
 struct FrameResult {

@@ -29,7 +29,7 @@ void Layers::addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, con
     XrCompositionLayerQuad& panel = panels_.emplace_back();
     panel = {XR_TYPE_COMPOSITION_LAYER_QUAD,
              nullptr,
-             XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT,
+             XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT,
              session_.space(),
              XR_EYE_VISIBILITY_BOTH,
              swapchain.subImage(),

@@ -27,7 +27,7 @@ public:
 
     void addEyes(const std::array<LayerEye, 2>& eyes);
     // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
-    // blended over what lies behind; colours are not multiplied by alpha.
+    // blended over what lies behind; its colours are multiplied by alpha already.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
 
     // For Session::endFrame; valid as long as this and the swapchains.

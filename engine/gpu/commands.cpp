@@ -108,6 +108,16 @@ void Commands::copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_
                  aspect == vk::ImageAspectFlagBits::eDepth ? Layout::eDepthStencilAttachmentOptimal : Layout::eColorAttachmentOptimal);
 }
 
+void Commands::copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px) {
+    using Layout = vk::ImageLayout;
+    const auto aspect = vk::ImageAspectFlagBits::eColor;
+    changeLayout(to, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const vk::ImageSubresourceLayers layers(aspect, 0, 0, 1);
+    command_buffer_.copyImage(from, Layout::eTransferSrcOptimal, to, Layout::eTransferDstOptimal,
+                              vk::ImageCopy(layers, {}, layers, {}, {size_px.x, size_px.y, 1}));
+    changeLayout(to, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
+}
+
 void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
     using Layout = vk::ImageLayout;
     const auto aspect = vk::ImageAspectFlagBits::eColor;

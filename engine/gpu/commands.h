@@ -51,6 +51,8 @@ public:
 
     // A whole image out of tightly packed rows, or in one colour. It comes with anything in it and leaves as an attachment.
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
+    // From an image that a copy may read (eTransferSrcOptimal).
+    void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
     void clearImage(vk::Image image, const glm::vec4& colour);
 
     void submitAndWait();

@@ -93,6 +93,15 @@ Context::Context(const ContextOptions& options) {
     if (options.max_allocation_bytes != 0) { max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes); }
 }
 
+Context::~Context() {
+    if (!validates_) { return; }
+    const std::size_t before = validationMessages().size();
+    queue_ = vk::raii::Queue(nullptr);
+    device_ = vk::raii::Device(nullptr);
+    const std::vector<std::string> messages = validationMessages();
+    for (std::size_t i = before; i < messages.size(); ++i) { fmt::print(stderr, "Vulkan validation at the end: {}\n", messages[i]); }
+}
+
 void Context::createInstance(const ContextOptions& options, bool validation) {
     const vk::ApplicationInfo application("binosplat", 1, "binosplat", 1, kApiVersion);
     std::vector<const char*> layers, extensions = options.instance_extensions;

@@ -38,6 +38,8 @@ public:
     explicit Context(const ContextOptions& options = {});
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
+    // Says on stderr what the validation layers find only now, things left over above all.
+    ~Context();
 
     [[nodiscard]] const vk::raii::Instance& instance() const { return instance_; }
     [[nodiscard]] const vk::raii::Device& device() const { return device_; }
