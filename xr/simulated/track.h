@@ -21,6 +21,7 @@ public:
     explicit Track(const Value& resting) : keys_{{0.0, resting}} {}
 
     [[nodiscard]] bool empty() const { return keys_.empty(); }
+    [[nodiscard]] const std::vector<std::pair<double, Value>>& keys() const { return keys_; }
     [[nodiscard]] double lastTime() const { return keys_.back().first; }
     // False, and nothing is added, if `time_s` is not after the last key.
     bool add(double time_s, const Value& value) {

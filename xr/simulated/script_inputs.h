@@ -1,0 +1,33 @@
+// The inputs that a script can move, by the identifiers of OpenXR's binding paths.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace simulated {
+
+enum class InputKind {
+    kButton,  // click, touch
+    kAnalog,  // value, force, click, touch
+    kStick,   // x, y, click, touch; a trackpad also force
+};
+
+inline constexpr std::array<std::pair<std::string_view, InputKind>, 13> kInputs{{{"trigger", InputKind::kAnalog},
+                                                                                 {"squeeze", InputKind::kAnalog},
+                                                                                 {"thumbstick", InputKind::kStick},
+                                                                                 {"trackpad", InputKind::kStick},
+                                                                                 {"a", InputKind::kButton},
+                                                                                 {"b", InputKind::kButton},
+                                                                                 {"x", InputKind::kButton},
+                                                                                 {"y", InputKind::kButton},
+                                                                                 {"menu", InputKind::kButton},
+                                                                                 {"select", InputKind::kButton},
+                                                                                 {"system", InputKind::kButton},
+                                                                                 {"thumbrest", InputKind::kButton},
+                                                                                 {"shoulder", InputKind::kButton}}};
+
+[[nodiscard]] std::optional<InputKind> kindOfInput(std::string_view name);
+
+}  // namespace simulated
