@@ -1,0 +1,23 @@
+#include "xr/simulated/answer.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "xr/simulated/names.h"
+
+namespace simulated {
+
+std::mutex& runtimeLock() {
+    static std::mutex lock;
+    return lock;
+}
+
+void explain(const char* function, const Refusal& refusal) {
+    if (std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") == nullptr) return;
+    std::fprintf(stderr, "simulated runtime: %s: %s: %s\n", function, nameOf(refusal.result), refusal.reason);
+}
+
+// A failure of the runtime itself is always said: no application can know what to do about it.
+void explainFailure(const char* function, const char* what) { std::fprintf(stderr, "simulated runtime: %s: %s\n", function, what); }
+
+}  // namespace simulated

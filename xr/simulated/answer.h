@@ -1,0 +1,47 @@
+// How a function of the API answers: what is wrong with a call is thrown as a Refusal and becomes the result code in one place.
+#pragma once
+
+#include <mutex>
+#include <new>
+#include <utility>
+
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+struct Refusal {
+    XrResult result;
+    const char* reason;
+};
+
+inline void require(bool holds, XrResult otherwise, const char* reason) {
+    if (!holds) throw Refusal{otherwise, reason};
+}
+
+// One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
+std::mutex& runtimeLock();
+
+// With BINOSPLAT_SIMULATED_EXPLAIN set, says on standard error which call was refused and why.
+void explain(const char* function, const Refusal& refusal);
+void explainFailure(const char* function, const char* what);
+
+template <class Body>
+XrResult answerUnlocked(const char* function, Body&& body) {
+    try {
+        return std::forward<Body>(body)();
+    } catch (const Refusal& refusal) {
+        explain(function, refusal);
+        return refusal.result;
+    } catch (const std::bad_alloc&) { return XR_ERROR_OUT_OF_MEMORY; } catch (const std::exception& failure) {
+        explainFailure(function, failure.what());
+        return XR_ERROR_RUNTIME_FAILURE;
+    }
+}
+
+template <class Body>
+XrResult answer(const char* function, Body&& body) {
+    const std::lock_guard guard(runtimeLock());
+    return answerUnlocked(function, std::forward<Body>(body));
+}
+
+}  // namespace simulated

@@ -1,0 +1,50 @@
+// Every function of the API that this runtime has, once: here they are declared, dispatch.cpp finds them by name, docs/openxr_runtime.md
+// says what each checks. Their definitions stand in the file of their chapter.
+#pragma once
+
+#include <type_traits>
+
+#include "xr/simulated/openxr.h"
+
+// clang-format off
+#define SIMULATED_CORE_FUNCTIONS(_)                                                                                                      \
+    _(xrGetInstanceProcAddr) _(xrEnumerateApiLayerProperties) _(xrEnumerateInstanceExtensionProperties) _(xrCreateInstance)             \
+    _(xrDestroyInstance) _(xrGetInstanceProperties) _(xrPollEvent) _(xrResultToString) _(xrStructureTypeToString)                       \
+    _(xrGetSystem) _(xrGetSystemProperties) _(xrEnumerateEnvironmentBlendModes)                                                         \
+    _(xrEnumerateViewConfigurations) _(xrGetViewConfigurationProperties) _(xrEnumerateViewConfigurationViews)                           \
+    _(xrCreateSession) _(xrDestroySession) _(xrBeginSession) _(xrEndSession) _(xrRequestExitSession)                                    \
+    _(xrEnumerateReferenceSpaces) _(xrCreateReferenceSpace) _(xrGetReferenceSpaceBoundsRect) _(xrCreateActionSpace)                     \
+    _(xrLocateSpace) _(xrDestroySpace)                                                                                                  \
+    _(xrEnumerateSwapchainFormats) _(xrCreateSwapchain) _(xrDestroySwapchain) _(xrEnumerateSwapchainImages)                             \
+    _(xrAcquireSwapchainImage) _(xrWaitSwapchainImage) _(xrReleaseSwapchainImage)                                                       \
+    _(xrWaitFrame) _(xrBeginFrame) _(xrEndFrame) _(xrLocateViews)                                                                       \
+    _(xrStringToPath) _(xrPathToString)                                                                                                 \
+    _(xrCreateActionSet) _(xrDestroyActionSet) _(xrCreateAction) _(xrDestroyAction)                                                     \
+    _(xrSuggestInteractionProfileBindings) _(xrAttachSessionActionSets) _(xrGetCurrentInteractionProfile)                               \
+    _(xrGetActionStateBoolean) _(xrGetActionStateFloat) _(xrGetActionStateVector2f) _(xrGetActionStatePose) _(xrSyncActions)            \
+    _(xrEnumerateBoundSourcesForAction) _(xrGetInputSourceLocalizedName)                                                                \
+    _(xrApplyHapticFeedback) _(xrStopHapticFeedback)
+
+// Function, and the extension that has to be enabled for it.
+#define SIMULATED_EXTENSION_FUNCTIONS(_)                                                                                                 \
+    _(xrCreateVulkanInstanceKHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                                  \
+    _(xrCreateVulkanDeviceKHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                                    \
+    _(xrGetVulkanGraphicsDevice2KHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                              \
+    _(xrGetVulkanGraphicsRequirements2KHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                        \
+    _(xrGetVulkanInstanceExtensionsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                            \
+    _(xrGetVulkanDeviceExtensionsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                              \
+    _(xrGetVulkanGraphicsDeviceKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                                \
+    _(xrGetVulkanGraphicsRequirementsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                          \
+    _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)
+// clang-format on
+
+namespace simulated {
+
+#define SIMULATED_DECLARE(name) std::remove_pointer_t<PFN_##name> name;
+#define SIMULATED_DECLARE_EXTENSION(name, extension) std::remove_pointer_t<PFN_##name> name;
+SIMULATED_CORE_FUNCTIONS(SIMULATED_DECLARE)
+SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_DECLARE_EXTENSION)
+#undef SIMULATED_DECLARE
+#undef SIMULATED_DECLARE_EXTENSION
+
+}  // namespace simulated

@@ -1,0 +1,171 @@
+#include "xr/simulated/attachment.h"
+
+#include <algorithm>
+
+#include "xr/simulated/actions.h"
+#include "xr/simulated/profiles.h"
+#include "xr/simulated/session.h"
+
+namespace simulated {
+namespace {
+
+constexpr double kPressed = 0.5;
+constexpr std::string_view kInput = "/input/";
+
+bool endsIn(std::string_view path, std::initializer_list<std::string_view> components) {
+    return std::any_of(components.begin(), components.end(), [&](std::string_view component) { return path.ends_with(component); });
+}
+
+// The component that a suggested path means for an action of this type, as the specification's rules have it; none: it stays unbound.
+std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path, XrActionType type) {
+    const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {
+        for (const char* component : components) {
+            const std::string whole = std::string(path) + component;
+            if (hasComponent(profile, user_path, whole)) return whole;
+        }
+        return std::nullopt;
+    };
+    const bool is_whole = hasComponent(profile, user_path, path);
+    const bool is_number = is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/x", "/y"});
+    switch (type) {
+        case XR_ACTION_TYPE_BOOLEAN_INPUT:
+            if (is_number) return std::string(path);
+            return firstOf({"/click", "/value"});
+        case XR_ACTION_TYPE_FLOAT_INPUT:
+            if (is_number) return std::string(path);
+            return firstOf({"/value", "/click"});
+        case XR_ACTION_TYPE_VECTOR2F_INPUT:
+            if (firstOf({"/x"}) && firstOf({"/y"})) return std::string(path);
+            return std::nullopt;
+        case XR_ACTION_TYPE_POSE_INPUT:
+            if (is_whole && path.ends_with("/pose")) return std::string(path);
+            return firstOf({"/pose"});
+        default:
+            if (is_whole && path.starts_with("/output/")) return std::string(path);
+            return std::nullopt;
+    }
+}
+
+std::optional<BoundSource> bind(const Instance& instance, const Profile& profile, XrPath path, XrActionType type) {
+    const std::string& text = instance.paths.textOf(path);
+    const std::string_view user_path = userPathOf(text);
+    if (!user_path.starts_with("/user/hand/")) return std::nullopt;  // the simulated wearer has no gamepad
+    const std::optional<std::string> component = resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type);
+    if (!component) return std::nullopt;
+    const Side side = user_path == "/user/hand/left" ? kLeft : kRight;
+    const std::size_t start = component->find('/', 1) + 1;
+    const std::size_t end = component->find('/', start);
+    return BoundSource{path, instance.paths.findPath(user_path), side, component->substr(start, end - start), component->substr(start)};
+}
+
+glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source, XrActionType type) {
+    if (type == XR_ACTION_TYPE_VECTOR2F_INPUT)
+        return {controller.input(source.component + "/x"), controller.input(source.component + "/y")};
+    const double value = controller.input(source.component);
+    if (type == XR_ACTION_TYPE_BOOLEAN_INPUT) return {value >= kPressed ? 1.0 : 0.0, 0.0};
+    return {value, 0.0};
+}
+
+bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
+    return active.set == action.set && (active.subaction_path == XR_NULL_PATH || active.subaction_path == source.user_path);
+}
+
+bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& action, const BoundSource& source) {
+    return std::any_of(active.begin(), active.end(), [&](const ActiveSet& set) { return isActivatedBy(set, action, source); });
+}
+
+using Priorities = std::map<std::pair<Side, std::string>, std::uint32_t>;
+
+// The highest priority that any active action has on each source; lower ones are as if they were not bound.
+Priorities highestPriorities(const std::vector<AttachedAction>& actions, const std::vector<ActiveSet>& active) {
+    Priorities highest;
+    for (const AttachedAction& action : actions) {
+        for (const BoundSource& source : action.sources) {
+            if (!isActivated(active, action, source)) continue;
+            auto& priority = highest[{source.side, source.source}];
+            priority = std::max(priority, action.priority);
+        }
+    }
+    return highest;
+}
+
+ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state, const std::vector<ActiveSet>& active,
+                         const Priorities& highest) {
+    ActionReading reading;
+    for (const BoundSource& source : action.sources) {
+        if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
+        if (!isActivated(active, action, source) || action.priority < highest.at({source.side, source.source})) continue;
+        const ControllerState& controller = state.controllers[source.side];
+        if (!controller.tracked) continue;
+        reading.is_active = true;
+        if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
+        // Of several sources the strongest counts; for booleans that is "or".
+        const glm::dvec2 value = valueOf(controller, source, action.type);
+        if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) reading.value = value;
+    }
+    return reading;
+}
+
+}  // namespace
+
+AttachedAction* Attachment::find(std::uint64_t action) {
+    const auto found = std::find_if(actions.begin(), actions.end(), [&](const auto& attached) { return attached.number == action; });
+    return found == actions.end() ? nullptr : &*found;
+}
+
+bool Attachment::chooseProfile(Instance& instance) {
+    if (profile != nullptr) return false;
+    for (const Profile& candidate : allProfiles()) {
+        if (!candidate.user_paths.front().starts_with("/user/hand/")) continue;
+        const XrPath path = instance.paths.findPath(candidate.path);
+        const auto suggested = std::find_if(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
+        if (suggested == suggestions.end()) continue;
+        profile = &candidate;
+        for (const SuggestedBinding& binding : suggested->bindings) {
+            AttachedAction* const action = find(binding.action);
+            if (action == nullptr) continue;
+            if (auto source = bind(instance, candidate, binding.path, action->type)) action->sources.push_back(std::move(*source));
+        }
+        return true;
+    }
+    return false;
+}
+
+void Attachment::read(const State& state, const std::vector<ActiveSet>& active, XrTime time) {
+    const Priorities highest = highestPriorities(actions, active);
+    for (AttachedAction& action : actions) {
+        for (auto& [subaction_path, reading] : action.readings) {
+            ActionReading now = readAction(action, subaction_path, state, active, highest);
+            if (now.is_active) {
+                now.has_changed = reading.is_active && now.value != reading.value;
+                now.changed_at = reading.is_active && !now.has_changed ? reading.changed_at : time;
+            }
+            reading = now;
+        }
+    }
+}
+
+AttachedAction& getAttached(Session& session, XrAction action) {
+    const Action& described = getAction(session.instance, action);
+    AttachedAction* const attached = session.attachment ? session.attachment->find(described.number) : nullptr;
+    require(attached != nullptr, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action's set is not attached to this session");
+    return *attached;
+}
+
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+    if (!session.attachment || !session.is_running) return std::nullopt;
+    for (const AttachedAction& attached : session.attachment->actions) {
+        if (attached.number != action) continue;
+        const auto reading = attached.readings.find(subaction_path);
+        if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
+        for (const BoundSource& source : attached.sources) {
+            if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
+            const ControllerState& controller = state.controllers[source.side];
+            if (!controller.tracked) return std::nullopt;
+            return source.source == "aim" ? controller.stage_from_aim : controller.stage_from_grip;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace simulated

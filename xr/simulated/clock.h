@@ -1,0 +1,40 @@
+// Where OpenXR's time comes from. In lock-step, the default, a frame takes exactly one period however long it took to render, nobody
+// sleeps, and every run is the same. With the real clock, frames are paced as by a display.
+#pragma once
+
+#include <chrono>
+
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+class Clock {
+public:
+    // True for real pacing. The period must not be zero.
+    Clock(bool is_real, XrDuration period);
+
+    struct Frame {
+        XrTime display_time;
+        // With the real clock: when its xrWaitFrame returns.
+        std::chrono::steady_clock::time_point wake_time;
+    };
+    Frame nextFrame();
+    XrTime now() const;
+    XrDuration period() const { return frame_period; }
+    bool isReal() const { return is_real; }
+    // Seconds since this clock was made: the time that scripts know.
+    double secondsAt(XrTime time) const { return static_cast<double>(time - kStart) * 1e-9; }
+    XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
+
+private:
+    // Not zero, which is no valid time, and the same in every run.
+    static constexpr XrTime kStart = 1'000'000'000;
+
+    bool is_real;
+    XrDuration frame_period;
+    // The number of the frame on display, counted in periods since the start.
+    std::int64_t frame = -1;
+    std::chrono::steady_clock::time_point birth = std::chrono::steady_clock::now();
+};
+
+}  // namespace simulated

@@ -1,0 +1,78 @@
+// The application's Vulkan device, as this runtime uses it: images made on it, and their texels read back on the application's queue in
+// the calls where OpenXR allows that (XR_KHR_vulkan_enable2, "Concurrency").
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+struct GraphicsBinding {
+    PFN_vkGetInstanceProcAddr loader;
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    std::uint32_t queue_family;
+    std::uint32_t queue;
+};
+
+// Of the system's Vulkan loader, for instances that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE without one.
+PFN_vkGetInstanceProcAddr systemVulkanLoader();
+
+struct SwapchainFormat {
+    VkFormat format;
+    const char* name;
+    VkImageAspectFlags aspects;
+    // Bytes of a texel of the colour or depth aspect in a buffer.
+    std::uint32_t texel_bytes;
+};
+
+struct ImageInfo {
+    SwapchainFormat format;
+    VkExtent2D size;
+    std::uint32_t layers;
+    std::uint32_t mips;
+    VkImageUsageFlags usage;
+    VkImageCreateFlags flags;
+};
+
+class DeviceImage;
+
+class Device {
+public:
+    // XR_ERROR_GRAPHICS_DEVICE_INVALID if the queue is not one that can draw.
+    explicit Device(const GraphicsBinding& binding);
+    ~Device();
+
+    // The formats that this device can draw to, in the order of preference.
+    [[nodiscard]] const std::vector<SwapchainFormat>& formats() const;
+    // XR_ERROR_FEATURE_UNSUPPORTED, XR_ERROR_VALIDATION_FAILURE beyond the device's limits.
+    void checkImage(const ImageInfo& info) const;
+    [[nodiscard]] std::unique_ptr<DeviceImage> createImage(const ImageInfo& info);
+    // A new image is brought into the layout that the application finds it in.
+    void prepare(const DeviceImage& image);
+    // The colour (or depth) of all array layers at the first mip level, tightly packed. The image is in the same layout before and after.
+    [[nodiscard]] std::vector<std::byte> read(const DeviceImage& image);
+
+    struct Implementation;
+
+private:
+    std::unique_ptr<Implementation> implementation;
+};
+
+class DeviceImage {
+public:
+    ImageInfo info;
+
+    DeviceImage(const ImageInfo& info, Device::Implementation& device);
+    ~DeviceImage();
+    [[nodiscard]] VkImage handle() const;
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation;
+};
+
+}  // namespace simulated

@@ -1,0 +1,35 @@
+// The queue that xrPollEvent empties. It is bounded: what does not fit is counted, and the application is told how many it lost.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <deque>
+
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+class Events {
+public:
+    template <class Event>
+    void push(const Event& event) {
+        static_assert(sizeof(Event) <= sizeof(XrEventDataBuffer));
+        XrEventDataBuffer buffer{};
+        std::memcpy(&buffer, &event, sizeof event);
+        pushBuffer(buffer);
+    }
+
+    // False: nothing is waiting.
+    bool pop(XrEventDataBuffer& event);
+
+    // Events of a session that is gone.
+    void forget(XrSession session);
+
+private:
+    void pushBuffer(const XrEventDataBuffer& event);
+
+    std::deque<XrEventDataBuffer> waiting;
+    std::uint32_t lost = 0;
+};
+
+}  // namespace simulated

@@ -1,0 +1,52 @@
+// Chapters 4 and 5: an instance, its system, and all that lives as long as they do.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "xr/simulated/bindings.h"
+#include "xr/simulated/events.h"
+#include "xr/simulated/handles.h"
+#include "xr/simulated/paths.h"
+#include "xr/simulated/simulation.h"
+
+namespace simulated {
+
+struct Session;
+
+struct Instance : Object {
+    using Handle = XrInstance;
+
+    std::set<std::string> extensions;
+    Paths paths;
+    Events events;
+    std::unique_ptr<Simulation> simulation;
+    // Announced by the script; calls fail once the grace is over.
+    std::optional<XrTime> lost_from;
+    // What the application suggested, by interaction profile, in the order in which it first named them.
+    std::vector<SuggestedProfile> suggestions;
+    bool has_asked_requirements = false;
+    // What xrGetVulkanGraphicsDevice(2)KHR gave and for which VkInstance, and where the functions of each VkInstance come from.
+    VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
+    VkInstance graphics_instance = VK_NULL_HANDLE;
+    std::map<VkInstance, PFN_vkGetInstanceProcAddr> vulkan_loaders;
+    Session* session = nullptr;
+
+    ~Instance() override { Simulation::end(std::move(simulation)); }
+};
+
+// XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST.
+Instance& getInstance(XrInstance instance);
+
+constexpr XrSystemId kSystemId = 1;
+constexpr std::uint32_t kMostLayers = XR_MIN_COMPOSITION_LAYERS_SUPPORTED;
+constexpr std::uint32_t kMostSwapchainPixels = 8192;
+
+// XR_ERROR_SYSTEM_INVALID.
+void checkSystem(XrSystemId system);
+// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for all but primary stereo.
+void checkViewConfiguration(XrViewConfigurationType type);
+
+}  // namespace simulated

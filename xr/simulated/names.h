@@ -1,0 +1,13 @@
+// Enumerants as the specification spells them; null for values that it does not know.
+#pragma once
+
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+const char* nameOf(XrResult result);
+const char* nameOf(XrStructureType type);
+// "FOCUSED".
+const char* wordOf(XrSessionState state);
+
+}  // namespace simulated

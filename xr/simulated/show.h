@@ -1,0 +1,11 @@
+// What the wearer sees of a frame: composed, written and logged, if BINOSPLAT_SIMULATED_OUT names a folder.
+#pragma once
+
+#include "xr/simulated/session.h"
+
+namespace simulated {
+
+// For a frame that passed every check.
+void showFrame(Session& session, const XrFrameEndInfo& info, const State& state);
+
+}  // namespace simulated

@@ -1,0 +1,58 @@
+#include "xr/simulated/simulation.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <string_view>
+
+namespace simulated {
+namespace {
+
+const char* environment(const char* name) {
+    const char* const value = std::getenv(name);
+    return value == nullptr || *value == '\0' ? nullptr : value;
+}
+
+bool wantsRealClock() {
+    const char* const name = environment("BINOSPLAT_SIMULATED_CLOCK");
+    const std::string_view clock = name == nullptr ? "lockstep" : name;
+    if (clock != "lockstep" && clock != "real") {
+        throw std::runtime_error("BINOSPLAT_SIMULATED_CLOCK is '" + std::string(clock) + "', must be lockstep or real");
+    }
+    return clock == "real";
+}
+
+std::optional<Output> makeOutput() {
+    const char* const folder = environment("BINOSPLAT_SIMULATED_OUT");
+    if (folder == nullptr) return std::nullopt;
+    std::filesystem::create_directories(folder);
+    return Output{folder, FrameLog(std::filesystem::path(folder) / "frames.jsonl")};
+}
+
+std::unique_ptr<Simulation>& survivor() {
+    static std::unique_ptr<Simulation> simulation;
+    return simulation;
+}
+
+}  // namespace
+
+Script scriptOfEnvironment() {
+    const char* const file = environment("BINOSPLAT_SIMULATED_SCRIPT");
+    return file == nullptr ? Script() : Script::load(file);
+}
+
+std::unique_ptr<Simulation> Simulation::begin() {
+    if (survivor() != nullptr) {
+        survivor()->survives = false;
+        return std::move(survivor());
+    }
+    Script script = scriptOfEnvironment();
+    const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
+    return std::make_unique<Simulation>(Simulation{std::move(script), clock, makeOutput()});
+}
+
+void Simulation::end(std::unique_ptr<Simulation> simulation) {
+    if (simulation != nullptr && simulation->survives) survivor() = std::move(simulation);
+}
+
+}  // namespace simulated

@@ -1,0 +1,41 @@
+// What is simulated: the script that moves the headset, the clock that moves the script, and where the wearer's view is written.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "xr/simulated/clock.h"
+#include "xr/simulated/frame_log.h"
+#include "xr/simulated/script.h"
+
+namespace simulated {
+
+constexpr std::size_t kEyes = 2;
+
+struct Output {
+    std::filesystem::path folder;
+    FrameLog log;
+};
+
+// BINOSPLAT_SIMULATED_SCRIPT, or the resting headset. Throws ScriptError.
+Script scriptOfEnvironment();
+
+struct Simulation {
+    Script script;
+    Clock clock;
+    // None: nothing is read back, composed or written.
+    std::optional<Output> output;
+    std::uint64_t frames_shown = 0;
+    double events_until_s = -std::numeric_limits<double>::infinity();
+    // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
+    bool survives = false;
+
+    // By BINOSPLAT_SIMULATED_SCRIPT, BINOSPLAT_SIMULATED_CLOCK and BINOSPLAT_SIMULATED_OUT. Throws ScriptError, std::runtime_error.
+    static std::unique_ptr<Simulation> begin();
+    static void end(std::unique_ptr<Simulation> simulation);
+
+    [[nodiscard]] State at(XrTime time) const { return script.at(clock.secondsAt(time)); }
+};
+
+}  // namespace simulated

@@ -1,0 +1,39 @@
+// Section 10.1: swapchains of three images on the application's device. Images are acquired in turn, waited for and released oldest first.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "xr/simulated/device.h"
+#include "xr/simulated/handles.h"
+
+namespace simulated {
+
+struct Session;
+
+struct Swapchain : Object {
+    using Handle = XrSwapchain;
+
+    Session& session;
+    ImageInfo info;
+    bool is_static = false;
+    std::vector<std::unique_ptr<DeviceImage>> images;
+    std::vector<bool> is_prepared;
+    // Acquired and not released, oldest first; whether the oldest was waited for.
+    std::deque<std::uint32_t> acquired;
+    bool is_oldest_waited = false;
+    std::uint64_t acquisitions = 0;
+    // What the compositor sees: the image that was released last, and its texels if anybody wants them.
+    bool has_released = false;
+    std::uint32_t released_index = 0;
+    std::vector<std::byte> released_texels;
+
+    explicit Swapchain(Session& owner) : session(owner) {}
+};
+
+// XR_ERROR_HANDLE_INVALID also for a swapchain of another session.
+Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain);
+
+}  // namespace simulated

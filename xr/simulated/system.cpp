@@ -1,0 +1,100 @@
+// Chapters 5 and 8: the headset as a system, its views and blend modes.
+#include "xr/simulated/api.h"
+#include "xr/simulated/instance.h"
+#include "xr/simulated/structures.h"
+
+namespace simulated {
+
+void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
+
+void checkViewConfiguration(XrViewConfigurationType type) {
+    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO,
+            XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
+    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
+}
+
+XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
+        XrSystemId& output = checkedOutput(systemId);
+        const bool is_known = info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY || info.formFactor == XR_FORM_FACTOR_HANDHELD_DISPLAY;
+        require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such form factor");
+        require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        output = kSystemId;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSystemProperties* properties) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        XrSystemProperties& output = checked(properties, XR_TYPE_SYSTEM_PROPERTIES);
+        output.systemId = kSystemId;
+        output.vendorId = 0;
+        copyText(output.systemName, owner.simulation->script.system_name);
+        output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
+        output.trackingProperties = {XR_TRUE, XR_TRUE};
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId, uint32_t viewConfigurationTypeCapacityInput,
+                                       uint32_t* viewConfigurationTypeCountOutput, XrViewConfigurationType* viewConfigurationTypes) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        checkSystem(systemId);
+        return fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes,
+                         {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO});
+    });
+}
+
+XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                          XrViewConfigurationProperties* configurationProperties) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(viewConfigurationType);
+        XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
+        output.viewConfigurationType = viewConfigurationType;
+        // Scripts change the angles in mid-run.
+        output.fovMutable = XR_TRUE;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                           uint32_t viewCapacityInput, uint32_t* viewCountOutput, XrViewConfigurationView* views) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(viewConfigurationType);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return XR_SUCCESS;
+        for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW);
+        const glm::uvec2 size_px = owner.simulation->script.size_px;
+        for (std::size_t eye = 0; eye < kEyes; ++eye) {
+            views[eye].recommendedImageRectWidth = size_px.x;
+            views[eye].recommendedImageRectHeight = size_px.y;
+            views[eye].maxImageRectWidth = kMostSwapchainPixels;
+            views[eye].maxImageRectHeight = kMostSwapchainPixels;
+            views[eye].recommendedSwapchainSampleCount = 1;
+            views[eye].maxSwapchainSampleCount = 1;
+        }
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                          uint32_t environmentBlendModeCapacityInput, uint32_t* environmentBlendModeCountOutput,
+                                          XrEnvironmentBlendMode* environmentBlendModes) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(viewConfigurationType);
+        return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes,
+                         {XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
+    });
+}
+
+}  // namespace simulated
