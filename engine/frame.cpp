@@ -13,20 +13,28 @@ namespace {
 // Components of holes that get a box of their own: 64 KiB.
 constexpr std::uint32_t kHoleBoxes = 4096;
 
+// Splits what the device holds in two floats.
+template <typename Wide, typename Narrow>
+void split(const Wide& value, Narrow& high, Narrow& low) {
+    high = Narrow(value);
+    low = Narrow(value - Wide(high));
+}
+
 gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
-    const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
-    const auto row = [&](int i) { return glm::vec3(camera_from_world[0][i], camera_from_world[1][i], camera_from_world[2][i]); };
+    const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
     const Intrinsics& k = eye.intrinsics;
-    return {row(0),
-            row(1),
-            row(2),
-            glm::vec3(eye.world_from_camera.position - scene_origin),
-            glm::vec2(k.fx, k.fy),
-            glm::vec2(k.cx, k.cy),
-            eye.size_px,
-            tilesOf(eye.size_px),
-            static_cast<float>(near),
-            static_cast<float>(1.0 / near)};
+    gpu::EyeView view{};
+    split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
+    split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
+    split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
+    split(eye.world_from_camera.position - scene_origin, view.position, view.position_low);
+    split(glm::dvec2(k.fx, k.fy), view.focal_px, view.focal_px_low);
+    split(glm::dvec2(k.cx, k.cy), view.principal_px, view.principal_px_low);
+    view.size_px = eye.size_px;
+    view.size_tiles = tilesOf(eye.size_px);
+    view.near = static_cast<float>(near);
+    view.max_inverse_depth = static_cast<float>(1.0 / near);
+    return view;
 }
 
 // Whether every point is as deep for one eye as for the other: then one depth order serves both. Canted eyes differ.

@@ -80,6 +80,7 @@ void main() {
             const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
             bool has_reference;
             p = projectGeometry(splat, eye, has_reference);
+            if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
             outline = outlineOfProjected(p);
             box = tileBox(splat, eye, outline);
             if (!kMasked) { square_tiles = squareBoxTiles(splat, eye); }
@@ -87,7 +88,7 @@ void main() {
         const uint tiles = countTiles(outline, box, size_tiles.x);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
-            p.colour = packColour(shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position)));
+            p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position)));
             pass.splats.at[rank] = p;
         }
         // Empty where the splat meets no tile: then there is no splat either.

@@ -27,7 +27,7 @@ const float kFar = 3e38;                                       // a rho that is 
 const float kNoLowPass = 1e30;                                 // likewise, but nearer than a hit at no depth (z infinite)
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
-shared vec4 batch_reference[kBatchSize];  // reference_px, u/z and v/z there
+shared vec4 batch_reference[kBatchSize];  // reference_px relative to the tile, u/z and v/z there
 shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or 0
 shared vec4 batch_depth[kBatchSize];      // 1/z there, its slopes, -log2(opacity)
 shared uvec2 batch_colour[kBatchSize];
@@ -54,7 +54,9 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
-    batch_reference[slot] = has_reference ? vec4(splat.reference_px, 0, 0) : vec4(middle_px, scale * splat.reference_px);
+    // Relative to the tile, single precision places the centre to 1e-6 px.
+    batch_reference[slot] = has_reference ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
+                                          : vec4(middle_px - vec2(tile_px), scale * splat.reference_px);
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
@@ -89,7 +91,7 @@ void main() {
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
     const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
     const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize);
-    const vec2 first_px = vec2(first_pixel) + 0.5;
+    const vec2 first_px = vec2(first_pixel - tile_px) + 0.5;  // relative to the tile
     const uvec2 range = pass.ranges.at[tile];
 
     vec3 colour[kPixels];

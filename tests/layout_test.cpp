@@ -43,7 +43,9 @@ std::vector<Layout> hostLayouts() {
     return {
         LAYOUT(SceneChunk, FIELD(positions), FIELD(rotations), FIELD(scales), FIELD(opacities), FIELD(base_colours), FIELD(sh)),
         LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
-               FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth)),
+               FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth),
+               FIELD(camera_from_world_x_low), FIELD(camera_from_world_y_low), FIELD(camera_from_world_z_low), FIELD(position_low),
+               FIELD(focal_px_low), FIELD(principal_px_low)),
         LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth),
                FIELD(opacity), FIELD(colour)),
         LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),

@@ -36,12 +36,16 @@ struct TwinStages {
 inline gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
     const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
     gpu::EyeView view{};
-    view.camera_from_world_x = world_from_camera[0];
-    view.camera_from_world_y = world_from_camera[1];
-    view.camera_from_world_z = world_from_camera[2];
-    view.position = eye.world_from_camera.position - scene_origin;
-    view.focal_px = {eye.intrinsics.fx, eye.intrinsics.fy};
-    view.principal_px = {eye.intrinsics.cx, eye.intrinsics.cy};
+    const auto split = [](const auto& value, auto& high, auto& low) {
+        high = value;
+        low = value - std::remove_cvref_t<decltype(value)>(high);
+    };
+    split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
+    split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
+    split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
+    split(eye.world_from_camera.position - scene_origin, view.position, view.position_low);
+    split(glm::dvec2(eye.intrinsics.fx, eye.intrinsics.fy), view.focal_px, view.focal_px_low);
+    split(glm::dvec2(eye.intrinsics.cx, eye.intrinsics.cy), view.principal_px, view.principal_px_low);
     view.size_px = eye.size_px;
     view.size_tiles = (eye.size_px + 15u) / 16u;
     view.near = static_cast<float>(near);
@@ -81,6 +85,16 @@ inline OpacityColour unpack(const gpu::ProjectedSplat& splat) {
     const glm::vec2 red_green = glm::unpackHalf2x16(splat.colour.x);
     return {std::exp2(-std::abs(static_cast<double>(splat.opacity))), !std::signbit(splat.opacity),
             glm::dvec3(glm::vec3(red_green, glm::unpackHalf2x16(splat.colour.y).x))};
+}
+
+// ProjectedSplat::reference_px with what its two floats lack: eight bits each, in units of half their last place.
+inline glm::dvec2 referenceOf(const gpu::ProjectedSplat& splat) {
+    const glm::vec4 rest = glm::unpackSnorm4x8(splat.colour.y);
+    glm::dvec2 reference(splat.reference_px);
+    for (int axis = 0; axis < 2; ++axis) {
+        reference[axis] += static_cast<double>(rest[2 + axis]) * std::ldexp(1.0, std::ilogb(reference[axis]) - 24);
+    }
+    return reference;
 }
 
 // The twin's splat as the device holds one.

@@ -81,8 +81,9 @@ struct FieldErrors {
         if (truth.low_pass) {
             const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
             for (int axis = 0; axis < 2; ++axis) {
-                const double unit = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + kEpsilon * principal[axis];
-                note("reference_px", static_cast<double>(splat.reference_px[axis]) - truth.reference_px[axis], unit);
+                // A position's own rounding, where it lies far from the scene's origin, and 2^-7 of the two floats'.
+                const double coarse = focal[axis] * (1.0 + std::abs(c[axis]) / z) * rounding / z + kEpsilon * principal[axis];
+                note("reference_px", test::referenceOf(splat)[axis] - truth.reference_px[axis], coarse / 128.0);
             }
             note("1/z", static_cast<double>(splat.inverse_depth) * z - 1.0, rounding / z);
         }

@@ -7,6 +7,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace binosplat {
@@ -42,21 +43,26 @@ std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }
 
-// Where most splats are: the median along each axis. The middle of the bounds would lie far off with the farthest splat, and the
-// near ones would lose their digits to it.
-glm::dvec3 middleOf(const Scene& scene) {
+// Zero, or where most splats are if they are far off: along each axis the median, since the middle of the bounds would lie far off
+// with the farthest splat. Positions that differ by less than a factor of two have exact differences, so that nothing is rounded
+// for most splats of a far-off scene; those of a scene about zero stay as they are.
+constexpr double kFarOff = 16.0;  // median deviations
+glm::dvec3 originFor(const Scene& scene) {
     if (scene.size() == 0) { return glm::dvec3(0.0); }
     const std::size_t stride = scene.size() / kOriginSamples + 1;
     std::vector<float> values;
-    glm::dvec3 middle;
+    glm::dvec3 origin;
     for (int axis = 0; axis < 3; ++axis) {
         values.clear();
         for (std::size_t i = 0; i < scene.size(); i += stride) { values.push_back(scene.positions[i][axis]); }
         const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
         std::nth_element(values.begin(), half, values.end());
-        middle[axis] = static_cast<double>(*half);
+        const float median = *half;
+        for (float& value : values) { value = std::abs(value - median); }
+        std::nth_element(values.begin(), half, values.end());
+        origin[axis] = std::abs(static_cast<double>(median)) > kFarOff * static_cast<double>(*half) ? static_cast<double>(median) : 0.0;
     }
-    return middle;
+    return origin;
 }
 
 // Writes splats [first, first + count) of `scene` to `to`, laid out as `layout` (of at least `count` splats).
@@ -88,7 +94,7 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 std::uint64_t deviceBytesPerSplat(int sh_degree) { return 48 + shWords(sh_degree) * sizeof(std::uint32_t); }
 
 GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress)
-    : sh_degree_(scene.sh_degree), origin_(middleOf(scene)) {
+    : sh_degree_(scene.sh_degree), origin_(originFor(scene)) {
     check(scene.size() < (1u << 31), "{}: {} splats, at most {} can be shown", scene.name, scene.size(), (1u << 31) - 1);
     splat_count_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }

@@ -36,6 +36,13 @@ struct EyeView {
     uvec2 size_tiles;
     float near;
     float max_inverse_depth;  // 1 / near
+    // What single precision leaves of the fields above: (x + x_low) has 48 bits.
+    vec3 camera_from_world_x_low;
+    vec3 camera_from_world_y_low;
+    vec3 camera_from_world_z_low;
+    vec3 position_low;
+    vec2 focal_px_low;
+    vec2 principal_px_low;
 };
 BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
 
@@ -53,7 +60,7 @@ struct ProjectedSplat {
     vec2 perspective;
     float inverse_depth;
     float opacity;  // -log2 of it, not negative; its sign bit is set where there is no reference
-    uvec2 colour;   // r | g << 16, b, as half floats
+    uvec2 colour;   // r | g << 16, b, as half floats; in the last 16 bits what reference_px lacks, see packRest
 };
 BINOSPLAT_ARRAY_OF(ProjectedSplat, ProjectedSplats);
 
