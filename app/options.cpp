@@ -12,6 +12,7 @@
 #include <cctype>
 #include <limits>
 #include <span>
+#include <string_view>
 
 namespace binosplat {
 
@@ -45,6 +46,21 @@ void addCommonRows(CLI::App& command, CommandLine& line, std::string& config) {
     addRows(command, line, kCameraRows, "Camera");
     addRows(command, line, kStereoRows, "Stereo");
     addRows(command, line, kRunRows, "Run");
+    command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
+}
+
+// Of the camera only what a headset leaves open.
+void addViewRows(CLI::App& command, CommandLine& line, std::string& config) {
+    for (const OptionRow& row : kCameraRows) {
+        const std::string_view key = row.key;
+        if (key == "eye" || key == "look" || key == "up" || key == "near" || key == "background") {
+            addRows(command, line, std::span(&row, 1), "Camera");
+        }
+    }
+    for (const OptionRow& row : kStereoRows) {
+        if (std::string_view(row.key) != "ipd") { addRows(command, line, std::span(&row, 1), "Stereo"); }
+    }
+    addRows(command, line, std::span(kRunRows, 1), "Run");  // metres-per-unit: the device is the headset's
     command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
 }
 
@@ -145,7 +161,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
-    CommandLine render_line, bench_line;
+    CommandLine render_line, bench_line, view_line;
     RenderOptions render;
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
@@ -168,9 +184,15 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     ViewOptions view;
     CLI::App* view_command = app.add_subcommand("view", "Show a scene in an OpenXR headset");
     view_command->add_option("SCENE", view.scene, "file, directory or builtin:NAME")->required();
-    view_command->add_option("--config", view.config, "TOML file of options")->type_name("FILE");
+    addViewRows(*view_command, view_line, view.run.config);
     CLI::Option* simulate = view_command->add_option("--simulate", view.script, "use the simulated headset, driven by SCRIPT if given");
     simulate->expected(0, 1)->type_name("[SCRIPT]");
+    CLI::Option* view_out =
+        view_command->add_option("--out", view.out, "where the simulated headset writes what its wearer sees")->type_name("DIR");
+    std::string frames;
+    CLI::Option* frames_option = view_command->add_option("--frames", frames, "stop after N frames")->type_name("N");
+    view_command->add_flag("--load-first", view.load_first, "load the scene before the session starts, not meanwhile");
+    view_command->add_flag("--hide-panel", view.hide_panel, "start without the panel");
 
     InfoOptions info;
     CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");
@@ -194,11 +216,11 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     }
 
     if (render_command->parsed()) {
-        render.run = readRun(render_line, render.run.config, {}, nullptr);
+        render.run = readRun(render_line, render.run.config, {"view"}, nullptr);
         return render;
     }
     if (bench_command->parsed()) {
-        bench.run = readRun(bench_line, bench.run.config, {"bench", "series", "methods", "views"}, &bench.tables);
+        bench.run = readRun(bench_line, bench.run.config, {"bench", "series", "methods", "views", "view"}, &bench.tables);
         if (every_option->count() > 0) { bench.every = static_cast<std::uint32_t>(readCount({"--every", {every}}, 1, 1000000)); }
         bench.motion_axes = readChoice({"--motion-axes", {bench.motion_axes}}, {"openxr", "unity"});
         requireBenchKind(bench);
@@ -206,7 +228,9 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     }
     if (view_command->parsed()) {
         view.simulate = simulate->count() > 0;
-        if (!view.config.empty()) { readRun({}, view.config, {}, nullptr); }
+        if (view_out->count() > 0 && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
+        view.run = readRun(view_line, view.run.config, {"view"}, &view.tables);
+        if (frames_option->count() > 0) { view.frames = readCount({"--frames", {frames}}, 1, 1000000000); }
         return view;
     }
     if (info_command->parsed()) { return info; }

@@ -1,11 +1,36 @@
-// `binosplat view`: the OpenXR viewer, where the build has one.
+// `binosplat view`: a scene in a headset.
 #include "app/commands.h"
+#include "app/simulate.h"
+#include "app/viewer.h"
 #include "engine/error.h"
 
 namespace binosplat {
 
-void runView(const ViewOptions&) {
-    throw Error(ExitCode::kNoDevice, "the OpenXR viewer is not part of this build; use `binosplat render`");
+namespace {
+
+// The validation layers are for finding our mistakes: what they say is an error, not a remark.
+void requireNoValidationMessages(const Context& context) {
+    const std::vector<std::string> messages = context.validationMessages();
+    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
+}
+
+}  // namespace
+
+void runView(const ViewOptions& given) {
+    ViewOptions options = given;
+    if (options.simulate) { simulateHeadset(options); }
+    const xr::Instance instance;
+    ContextOptions context_options;
+    context_options.maker = instance.deviceMaker();
+    const Context context(context_options);
+    {
+        xr::Session session(instance, context);
+        const glm::uvec2 size_px = instance.recommendedSizePx();
+        fmt::print("{}, {}x{} per eye, on {}\n", instance.description(), size_px.x, size_px.y, context.deviceName());
+        Viewer(options, session).run();
+    }
+    if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
+    requireNoValidationMessages(context);
 }
 
 }  // namespace binosplat

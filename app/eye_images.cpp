@@ -1,0 +1,61 @@
+// Swapchains of both eyes.
+#include "app/eye_images.h"
+
+#include "engine/error.h"
+
+namespace binosplat {
+
+vk::Format chooseEyeFormat(const xr::Session& session) {
+    using Format = vk::Format;
+    const std::array wanted{Format::eR8G8B8A8Srgb, Format::eB8G8R8A8Srgb, Format::eR8G8B8A8Unorm, Format::eB8G8R8A8Unorm};
+    const Format format = xr::chooseFormat(session, wanted);
+    if (format == Format::eUndefined) {
+        throw Error(ExitCode::kNoDevice, session.instance().description() + " has no 8-bit RGBA or BGRA images");
+    }
+    return format;
+}
+
+EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px)
+    : presenter_(presenter), size_px_(size_px) {
+    const std::array depth_formats{vk::Format::eD32Sfloat};
+    const bool depth = session.instance().takesDepth() && xr::chooseFormat(session, depth_formats) == vk::Format::eD32Sfloat;
+    for (std::size_t e = 0; e < 2; ++e) {
+        const std::string eye = e == kLeft ? "the left eye" : "the right eye";
+        colour_[e] = xr::Swapchain(session, eye, size_px, format, xr::ImageUse::kCopy);
+        if (depth) { depth_[e] = xr::Swapchain(session, eye + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth); }
+    }
+}
+
+void EyeImages::present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near) {
+    const auto e = static_cast<std::size_t>(eye);
+    PresentedEye presented{&image, size_px_, tinted_by, colour_[e].acquire(), {}};
+    colour_taken_[e] = true;
+    shows_depth_[e] = takesDepth() && image.depths.bytes() > 0;
+    if (shows_depth_[e]) {
+        presented.depth = depth_[e].acquire();
+        depth_taken_[e] = true;
+    }
+    presenter_.record(commands, presented, near);
+}
+
+void EyeImages::clear(Commands& commands, int eye, const glm::vec3& colour) {
+    const auto e = static_cast<std::size_t>(eye);
+    commands.clearImage(colour_[e].acquire(), glm::vec4(colour, 1.0f));
+    colour_taken_[e] = true;
+    shows_depth_[e] = false;
+}
+
+void EyeImages::release() {
+    for (std::size_t e = 0; e < 2; ++e) {
+        if (colour_taken_[e]) { colour_[e].release(); }
+        if (depth_taken_[e]) { depth_[e].release(); }
+        colour_taken_[e] = depth_taken_[e] = false;
+    }
+}
+
+xr::LayerEye EyeImages::layerEye(int eye, const xr::EyeView& view, double near_m) const {
+    const auto e = static_cast<std::size_t>(eye);
+    return {view, &colour_[e], shows_depth_[e] ? &depth_[e] : nullptr, near_m};
+}
+
+}  // namespace binosplat

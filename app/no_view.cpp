@@ -1,0 +1,11 @@
+// `binosplat view` of a build without OpenXR.
+#include "app/commands.h"
+#include "engine/error.h"
+
+namespace binosplat {
+
+void runView(const ViewOptions&) {
+    throw Error(ExitCode::kNoDevice, "the OpenXR viewer is not part of this build; use `binosplat render`");
+}
+
+}  // namespace binosplat

@@ -1,0 +1,125 @@
+// The panel, top to bottom.
+#include "app/overlay.h"
+
+#include "app/modes.h"
+#include "app/report.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+namespace binosplat {
+
+namespace {
+
+constexpr float kLabelShare = 0.62f;  // of the width, for sliders beside their label
+
+void text(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }
+
+// A row of names of which one is chosen.
+template <std::size_t N>
+void chooseFrom(const char* label, const std::array<const char*, N>& names, std::string& chosen, std::size_t per_row) {
+    text(label);
+    for (std::size_t i = 0; i < N; ++i) {
+        if (i % per_row != 0) {
+            ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
+        }
+        if (ImGui::RadioButton(names[i], chosen == names[i])) { chosen = names[i]; }
+    }
+}
+
+void drawMethod(ViewSettings& settings) {
+    StereoOptions& stereo = settings.stereo;
+    chooseFrom("Method", std::array{"two-pass", "shared", "reproject", "paper", "predicted", "mono"}, stereo.mode, 3);
+    std::string side = stereo.dominant == kLeft ? "left" : "right";
+    chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
+    stereo.dominant = side == "left" ? kLeft : kRight;
+    chooseFrom("Depth of a pixel", std::array{"sum", "mean", "inverse"}, stereo.depth, 3);
+    ImGui::Checkbox("Centre ROI (paper)", &stereo.center_roi);
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
+    ImGui::Checkbox("Show what made it", &settings.tint);
+    int margin = static_cast<int>(stereo.margin_px);
+    if (ImGui::SliderInt("margin (paper)", &margin, 0, 128, "%d px")) {
+        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, 0, 128));
+    }
+    auto budget = static_cast<float>(100.0 * stereo.budget);
+    if (ImGui::SliderFloat("budget (predicted)", &budget, 0.0f, 100.0f, "%.0f %% of tiles")) {
+        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, 0.0, 1.0);
+    }
+}
+
+// The images are made anew for another resolution, so it changes once the slider is let go.
+void drawResolution(ViewSettings& settings) {
+    static constexpr float kLeast = 0.25f, kMost = 1.5f;
+    ImGuiStorage* storage = ImGui::GetStateStorage();
+    const ImGuiID id = ImGui::GetID("resolution being chosen");
+    auto scale = storage->GetFloat(id, static_cast<float>(settings.resolution_scale));
+    ImGui::SliderFloat("resolution", &scale, kLeast, kMost, "%.2f");
+    if (ImGui::IsItemActive()) {
+        storage->SetFloat(id, scale);
+        return;
+    }
+    if (ImGui::IsItemDeactivatedAfterEdit()) { settings.resolution_scale = static_cast<double>(std::clamp(scale, kLeast, kMost)); }
+    storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
+}
+
+void drawTimes(const OverlayStatus& status) {
+    const std::vector<float>& times = status.frame_ms;
+    const float last = times.empty() ? 0.0f : times.back();
+    const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
+    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, 50.0f, ImVec2(0.0f, 60.0f));
+    if (status.frame == nullptr) { return; }
+    const auto count = [&](const std::string& name) {
+        const auto found = status.frame->counters.find(name);
+        return found == status.frame->counters.end() ? 0.0 : static_cast<double>(found->second);
+    };
+    const double tiles = std::max({count("tiles_left"), count("tiles_right"), 1.0});
+    text(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
+                     100.0 * count("tiles_patched") / tiles, 100.0 * count("pixels_hole") / std::max(count("pixels_left"), 1.0),
+                     std::max({count("splats_visible"), count("splats_visible_left"), count("splats_visible_right")}) / 1000.0));
+    ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
+    ImGui::Columns(2, "stages", false);
+    for (const auto& [name, ms] : addUp(status.frame->gpu_ms)) {
+        text(fmt::format("{:>7.3f} {}", ms, name));
+        ImGui::NextColumn();
+    }
+    ImGui::Columns(1);
+    ImGui::EndChild();
+}
+
+}  // namespace
+
+OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const OverlayStatus& status) {
+    OverlayActions actions;
+    ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+    ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
+    ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kLabelShare);
+    text(status.scene);
+    if (status.loading) {
+        ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f));
+    } else {
+        drawMethod(settings);
+        drawResolution(settings);
+        actions.save = ImGui::Button("Save");
+        ImGui::SameLine();
+        actions.load = ImGui::Button("Load");
+        ImGui::SameLine();
+        actions.reset_scene = ImGui::Button("Scene back to its place");
+        ImGui::SameLine();
+        actions.quit = ImGui::Button("Quit");
+        text(status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message);
+        drawTimes(status);
+    }
+    ImGui::PopItemWidth();
+    // The ray's end.
+    if (ImGui::IsMousePosValid()) {
+        ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
+    }
+    ImGui::End();
+    return actions;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,48 @@
+// Loading beside the frames.
+#include "app/scene_loader.h"
+
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+// Of the whole, what reading the file takes; the rest is the way to the device.
+constexpr double kReadingShare = 0.8;
+
+struct Cancelled {};
+
+}  // namespace
+
+SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options)
+    : thread_([this, &context, name = std::move(scene), run = std::move(options)] { load(context, name, run); }) {}
+
+SceneLoader::~SceneLoader() {
+    cancelled_ = true;
+    if (thread_.joinable()) { thread_.join(); }
+}
+
+void SceneLoader::load(const Context& context, const std::string& name, const RunOptions& options) {
+    try {
+        LoadNotes notes;
+        const Scene scene = loadScene(name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; });
+        const Similarity start = startPlacement(options, scene);
+        // Readers may report from threads of their own, which must not throw; the upload reports from this one.
+        loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
+            if (cancelled_) { throw Cancelled(); }
+            progress_ = kReadingShare + (1.0 - kReadingShare) * share;
+        });
+        loaded_->start = start;
+        loaded_->notes = std::move(notes);
+    } catch (const Cancelled&) {  // nobody waits
+    } catch (...) { error_ = std::current_exception(); }
+    done_ = true;
+}
+
+std::unique_ptr<LoadedScene> SceneLoader::take() {
+    thread_.join();
+    if (error_) { std::rethrow_exception(error_); }
+    return std::move(loaded_);
+}
+
+}  // namespace binosplat
