@@ -1,4 +1,4 @@
-// Image files; the only place that knows OpenImageIO.
+// Image files; this and webp.cpp alone know OpenImageIO.
 #include "engine/picture/image_io.h"
 
 #include "engine/error.h"

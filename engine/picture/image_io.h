@@ -1,4 +1,4 @@
-// Image files: EXR and PNG through OpenImageIO, and nothing else knows that library; PFM and PPM in a build without it.
+// Image files: EXR and PNG through OpenImageIO, which nothing outside this folder knows; PFM and PPM in a build without it.
 // A failed write leaves no file. Files that others may watch are written where OutputFiles stages them.
 #pragma once
 

@@ -6,6 +6,7 @@
 #include "engine/scene/input_file.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/sog.h"
 #include "engine/scene/splat_file.h"
 
 #include <array>
@@ -30,11 +31,15 @@ struct SceneFormat {
     bool (*matches)(Source& source);
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
 };
-constexpr std::array<SceneFormat, 3> kSceneFormats{{
+constexpr std::array<SceneFormat, 5> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readPly(*source.file, notes, progress); }},
+    {"SOG (directory)", [](Source& source) { return !source.file && isSogFolder(source.path); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFolder(source.path, notes, progress); }},
+    {"SOG (.sog)", [](Source& source) { return source.file && isSogFile(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFile(*source.file, notes, progress); }},
     {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },  // a guess, so it comes last
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSplatFile(*source.file, notes, progress); }},
 }};

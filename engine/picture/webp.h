@@ -1,0 +1,30 @@
+// Lossless WebP pictures as data: eight bits a channel, as they were stored.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// Four bytes per pixel, rows top to bottom; alpha is not multiplied into the others.
+struct Pixels {
+    glm::uvec2 size_px{0, 0};
+    std::vector<std::uint8_t> rgba;
+};
+
+// Whether this build can decode WebP: it needs OpenImageIO.
+bool canDecodeWebp();
+
+// The size that the header of a lossless WebP file states, so that it can be judged before anything is decoded. Throws Error naming `name`
+// if there is no lossless picture in `file`.
+glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name);
+
+// Without alpha the fourth byte is 255, and decoding takes half the time. Throws Error naming `name`.
+Pixels decodeWebp(std::span<const std::byte> file, bool with_alpha, const std::string& name);
+
+}  // namespace binosplat

@@ -1,0 +1,121 @@
+// A directory through InputFile, an archive through libzip.
+#include "engine/scene/sog_files.h"
+
+#include "engine/error.h"
+
+#include <filesystem>
+
+#ifdef BINOSPLAT_OPENIMAGEIO
+#include <zip.h>
+#endif
+
+namespace binosplat {
+
+namespace {
+
+void requirePlainName(const std::string& place, const std::string& name) {
+    const bool plain = !name.empty() && name != "." && name != ".." && name.size() < 256 &&
+                       name.find_first_of(std::string_view("/\\:\0", 4)) == std::string::npos;
+    check(plain, "{}: names a file that is not beside it, expected a plain file name", place);
+}
+
+class FolderFiles final : public SogFiles {
+public:
+    explicit FolderFiles(std::string folder) : folder_(std::move(folder)) {}
+
+    std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
+        requirePlainName(place("meta.json"), name);
+        InputFile file(place(name));
+        check(file.sizeBytes() <= max_bytes, "{}: is {} bytes long, expected at most {}", file.name(), file.sizeBytes(), max_bytes);
+        std::vector<std::byte> bytes;
+        bytes.reserve(file.sizeBytes());
+        for (;;) {
+            const std::span<const std::byte> block = file.readBlock(std::size_t{1} << 16);
+            if (block.empty()) { return bytes; }
+            check(bytes.size() + block.size() <= max_bytes, "{}: grows while it is read", file.name());
+            bytes.insert(bytes.end(), block.begin(), block.end());
+        }
+    }
+    std::string place(const std::string& name) const override { return (std::filesystem::path(folder_) / name).string(); }
+
+private:
+    std::string folder_;
+};
+
+#ifdef BINOSPLAT_OPENIMAGEIO
+
+struct ArchiveCloser {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+struct EntryCloser {
+    void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+
+class BundleFiles final : public SogFiles {
+public:
+    BundleFiles(std::string path, std::uint64_t size_bytes) : path_(std::move(path)), size_bytes_(size_bytes) {
+        int code = 0;
+        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
+        if (archive_ == nullptr) {
+            zip_error_t error;
+            zip_error_init_with_code(&error, code);
+            const std::string reason = zip_error_strerror(&error);
+            zip_error_fini(&error);
+            fail("{}: not a whole zip archive ({}), expected a .sog bundle", path_, reason);
+        }
+        // Some archives hold the folder, not its files: all are looked for where meta.json is.
+        const zip_int64_t meta = zip_name_locate(archive_.get(), "meta.json", ZIP_FL_NODIR);
+        check(meta >= 0, "{}: a zip archive without a meta.json, expected a .sog bundle", path_);
+        const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(meta), 0);
+        check(name != nullptr, "{}: meta.json: its name cannot be read", path_);
+        prefix_ = name;
+        prefix_.resize(prefix_.size() - std::string_view("meta.json").size());
+    }
+
+    std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
+        requirePlainName(place("meta.json"), name);
+        const zip_int64_t index = zip_name_locate(archive_.get(), (prefix_ + name).c_str(), 0);
+        check(index >= 0, "{}: not in the archive", place(name));
+        zip_stat_t entry;
+        zip_stat_init(&entry);
+        check(zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
+              "{}: its size cannot be read", place(name));
+        // Pictures are compressed already and meta.json is text: what grows a hundredfold is there to fill the memory.
+        const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
+        check(entry.size <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size, bound);
+        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0));
+        check(opened != nullptr, "{}: cannot be read ({})", place(name), zip_strerror(archive_.get()));
+        std::vector<std::byte> bytes(entry.size);
+        std::uint64_t done = 0;
+        while (done < entry.size) {
+            const zip_int64_t got = zip_fread(opened.get(), bytes.data() + done, entry.size - done);
+            check(got >= 0, "{}: cannot be read ({})", place(name), zip_file_strerror(opened.get()));
+            check(got > 0, "{}: ends after {} of {} bytes", place(name), done, entry.size);
+            done += static_cast<std::uint64_t>(got);
+        }
+        // The checksum is compared where the entry ends.
+        std::byte behind{};
+        check(zip_fread(opened.get(), &behind, 1) == 0, "{}: cannot be read ({})", place(name), zip_file_strerror(opened.get()));
+        return bytes;
+    }
+    std::string place(const std::string& name) const override { return path_ + ": " + prefix_ + name; }
+
+private:
+    std::string path_, prefix_;
+    std::uint64_t size_bytes_;
+    std::unique_ptr<zip_t, ArchiveCloser> archive_;
+};
+
+#endif
+
+}  // namespace
+
+std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) { return std::make_unique<FolderFiles>(folder); }
+
+#ifdef BINOSPLAT_OPENIMAGEIO
+std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { return std::make_unique<BundleFiles>(file.name(), file.sizeBytes()); }
+#else
+std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { fail("{}: cannot be read, this build is without libzip", file.name()); }
+#endif
+
+}  // namespace binosplat

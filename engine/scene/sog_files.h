@@ -1,0 +1,27 @@
+// The files of a SOG scene by name: in a directory, or in a .sog bundle, which is a zip archive.
+#pragma once
+
+#include "engine/scene/input_file.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+class SogFiles {
+public:
+    virtual ~SogFiles() = default;
+    // The bytes of `name`, at most `max_bytes`. Throws Error if it is missing, larger, or not a plain file name: no path leads out.
+    [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
+    // How messages call a file: path and name.
+    [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
+};
+
+std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
+
+// Only in a build with OpenImageIO, as all of SOG. Throws Error if `file` is no zip archive or holds no meta.json.
+std::unique_ptr<SogFiles> openSogBundle(const InputFile& file);
+
+}  // namespace binosplat
