@@ -1,0 +1,237 @@
+// Facts about scripts with mistakes: each is named with its file and line, and nothing crashes.
+#include "xr/simulated/script.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+using namespace simulated;
+
+namespace {
+
+std::string messageOf(const std::string& text, const std::string& name = "a.script") {
+    try {
+        (void)Script::parse(text, name);
+    } catch (const ScriptError& error) { return error.what(); }
+    return "accepted";
+}
+
+void refuses(const std::string& text, const std::string& part, const std::string& name = "a.script") {
+    const std::string message = messageOf(text, name);
+    INFO(text, " gives: ", message);
+    CHECK(message.find(part) != std::string::npos);
+    CHECK(message.find('\n') == std::string::npos);
+}
+
+struct Folder {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_script_errors_" + std::to_string(::getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() { std::filesystem::remove_all(path); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
+    void refuses(const std::string& text, const std::string& part) const { ::refuses(text, part, (path / "a.script").string()); }
+};
+
+const std::string kHeadset =
+    "name = \"n\"\nsource = \"s\"\nsize = \"100x100\"\ncanting_deg = 0\neye_distance_m = 0.06\n"
+    "[left]\nleft = -40\nright = 40\nup = 40\ndown = -40\n[right]\nleft = -40\nright = 40\nup = 40\ndown = -40\n";
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    return text.replace(text.find(what), what.size(), with);
+}
+
+}  // namespace
+
+TEST_CASE("unknownCommandsAreNamedWithTheirLine") {
+    refuses("rate 90\n\n# so\nhed 0 position 0 0 0", "a.script:4: hed is not a command, must be one of: aim, at, axis");
+    refuses("Rate 90", "a.script:1: Rate is not a command");
+    refuses(std::string("ra\0te 90", 8), "ra?te is not a command");
+    refuses(std::string(5000, 'x'), "xxx... is not a command");
+}
+
+TEST_CASE("missingNumbersAreSaid") {
+    refuses("rate", "a.script:1: the rate in frames per second is missing, must be a number from 1 to 1000");
+    refuses("\nsize 100", "a.script:2: the height in pixels is missing");
+    refuses("head 0 position 1 2", "position z is missing");
+    refuses("head 0 rotation 0 0 1", "rotation w is missing");
+    refuses("eye left angles -40 40 40", "the angle down in degrees is missing");
+    refuses("axis left thumbstick 0 1", "the axis upwards is missing");
+    refuses("at 1 slow-images", "the number of slow images is missing");
+}
+
+TEST_CASE("numbersThatAreNoneAreSaid") {
+    for (const char* word : {"nan", "inf", "-inf", "1e999", "12x", "0x10", "1,5", "+1", "--1", "1.2.3"}) {
+        refuses(std::string("ipd ") + word, std::string("the eye distance in metres is ") + word + ", must be a number from 0 to 1");
+    }
+    refuses("head nan position 0 0 0", "the time in seconds is nan");
+}
+
+TEST_CASE("numbersOutOfRangeAreRefused") {
+    refuses("rate 0", "must be a number from 1 to 1000");
+    refuses("rate 1001", "must be a number from 1 to 1000");
+    refuses("size 0 100", "the width in pixels is 0, must be a whole number from 1 to 16384");
+    refuses("size 100 16385", "the height in pixels is 16385");
+    refuses("size 99999999999999999999 100", "the width in pixels is 99999999999999999999");
+    refuses("size 10.5 100", "the width in pixels is 10.5");
+    refuses("size -1 100", "the width in pixels is -1");
+    refuses("ipd -0.01", "the eye distance in metres is -0.01");
+    refuses("head 1e7 position 0 0 0", "the time in seconds is 1e7");
+    refuses("head 0 position 1e6 0 0", "position x is 1e6");
+    refuses("axis left trigger 0 1.01", "the value is 1.01, must be a number from 0 to 1");
+    refuses("axis left thumbstick 0 0 -1.5", "the axis upwards is -1.5");
+}
+
+TEST_CASE("anglesMustMakeAView") {
+    refuses("eye left angles -90 40 40 -40", "the angle to the left in degrees is -90, must be a number from -85 to 85");
+    refuses("eye left angles 40 40 40 -40", "the angles are 40 to the left and 40 to the right, left must be less");
+    refuses("eye left angles -40 40 -40 40", "the angles are -40 up and 40 down, down must be less");
+    refuses("eye left cant 46", "the turn outwards in degrees is 46");
+    refuses("at 1 eye right angles -40 40 86 -40", "a.script:1: the angle up in degrees is 86");
+}
+
+TEST_CASE("aRotationOfLengthZeroIsNone") {
+    refuses("head 0 rotation 0 0 0 0", "a.script:1: the rotation's length is 0, must be 1");
+    refuses("controller left 0 rotation 0 1e-9 0 0", "the rotation's length is 1e-09");
+}
+
+TEST_CASE("timesMustIncrease") {
+    refuses("head 1 position 0 0 0\nhead 0.5 position 0 0 0", "a.script:2: the time is 0.5, must be after the key before, at 1");
+    refuses("head 1 position 0 0 0\nhead 1 position 0 0 0", "a.script:2: the time is 1, must be after");
+    refuses("controller left 1 turn 0 0\ncontroller right 0 turn 0 0\ncontroller left 0 turn 0 0", "a.script:3: the time is 0");
+    refuses("axis left trigger 1 0\naxis left trigger 1 1", "a.script:2: the time is 1");
+    refuses("at 2 exit\nat 1 lose-session", "a.script:2: the time is 1, must not be before the `at` before, at 2");
+    refuses("at 2 should-render off\nat 2 should-render on", "a.script:2: the time is 2, must be after the one of the same change");
+    refuses("press left a 2 2", "it lasts from 2 to 2, must end after it begins");
+}
+
+TEST_CASE("choicesAreListed") {
+    refuses("eye middle cant 5", "the side is middle, must be left or right");
+    refuses("eye left", "what is set is missing, must be angles or cant");
+    refuses("at 1 should-render maybe", "whether to render is maybe, must be on or off");
+    refuses("at 1 dance", "what happens is dance, must be should-render, visible, focused, slow-images");
+    refuses("press left nose 0 1", "nose is not an input, must be one of: trigger, squeeze");
+    refuses("axis left a 0 1", "a has no axis, must be trigger, squeeze, thumbstick or trackpad");
+    refuses("frames", "the frames are missing, must be all, none, every N, or from A to B");
+    refuses("frames every 0", "how many frames apart is 0");
+    refuses("frames from 5 to 4", "the last frame is 4, must be a whole number from 5");
+    refuses("frames from 5", "the last frame is missing, must be from A to B");
+    refuses("head 0", "the pose is missing, must be position X Y Z");
+}
+
+TEST_CASE("whatIsTooMuchIsRefused") {
+    refuses("rate 90 100", "a.script:1: 100 is too much, the line must end before it");
+    refuses("head 0 position 0 0 0 sideways", "sideways is too much");
+    refuses("frames none at all", "at is too much");
+}
+
+TEST_CASE("settingsStandOnce") {
+    refuses("rate 90\nsize 1 1\nrate 90", "a.script:3: rate is set again, first on line 1, must be set once");
+    refuses("eye left cant 1\neye left cant 2", "eye left cant is set again");
+    refuses("extension XR_a off\nextension XR_a off", "XR_a is off already");
+    CHECK(messageOf("eye left cant 1\neye right cant 2\neye left angles -1 1 1 -1") == "accepted");
+}
+
+TEST_CASE("extensionsHaveTheirPrefixAndCanOnlyBeTurnedOff") {
+    refuses("extension KHR_visibility_mask off", "must begin with XR_");
+    refuses("extension XR_KHR_visibility_mask on", "what to do with it is on, must be off");
+}
+
+TEST_CASE("openQuotesAreRefused") { refuses("headset \"a b.toml", "a.script:1: a quote is not closed"); }
+
+TEST_CASE("filesThatCannotBeReadAreSaidWithTheLineThatNamesThem") {
+    const Folder folder;
+    folder.refuses("\nheadset none.toml", "a.script:2: ");
+    folder.refuses("\nheadset none.toml", "none.toml: cannot be read (No such file or directory), must be a TOML file of a headset");
+    folder.refuses("head-motion none.csv", "none.csv: cannot be read (No such file or directory), must be a CSV file of head motion");
+    folder.refuses("headset .", "cannot be read (not a regular file)");
+    folder.refuses("head-motion /dev/zero", "/dev/zero: cannot be read (not a regular file)");
+    folder.write("long.csv", std::string((std::size_t{16} << 20) + 1, '#'));
+    folder.refuses("head-motion long.csv", "cannot be read (longer than 16 MiB)");
+    CHECK_THROWS_WITH_AS((void)Script::load(folder.path / "none.script"),
+                         (folder.path.string() + "/none.script: cannot be read (No such file or directory), must be a script").c_str(),
+                         ScriptError);
+    CHECK_THROWS_AS((void)Script::load("/dev/zero"), ScriptError);
+}
+
+TEST_CASE("aHeadsetStandsBeforeWhatChangesIt") {
+    const Folder folder;
+    folder.write("h.toml", kHeadset);
+    folder.refuses("ipd 0.06\nheadset h.toml", "a.script:2: headset sets ipd, too, must stand before it");
+    folder.refuses("headset h.toml\nipd 0.06", "accepted");
+}
+
+TEST_CASE("headsetFilesWithMistakesAreRefusedWithTheirOwnLine") {
+    const Folder folder;
+    const auto refusesHeadset = [&](const std::string& text, const std::string& part) {
+        folder.write("h.toml", text);
+        folder.refuses("headset h.toml", part);
+    };
+    refusesHeadset("name = \"n", "h.toml:1: ");
+    refusesHeadset(replaced(kHeadset, "size = \"100x100\"\n", ""), "size is missing, must be given");
+    refusesHeadset(replaced(kHeadset, "100x100", "100*100"), "h.toml:3: size is 100*100, must be WxH with 1 to 16384 per side");
+    refusesHeadset(replaced(kHeadset, "100x100", "100x0"), "h.toml:3: size is 100x0");
+    refusesHeadset(replaced(kHeadset, "0.06", "nan"), "h.toml:5: eye_distance_m must be a number from 0 to 1");
+    refusesHeadset(replaced(kHeadset, "left = -40", "left = 50"), "h.toml:6: left.left must be less than left.right");
+    refusesHeadset(replaced(kHeadset, "up = 40", "up = \"high\""), "h.toml:9: left.up must be a number from -85 to 85");
+    refusesHeadset(replaced(kHeadset, "[right]", "[middle]"), "middle is not a key of a headset");
+    refusesHeadset(replaced(kHeadset, "canting_deg", "kanting"), "h.toml:4: kanting is not a key of a headset, must be name, source");
+}
+
+TEST_CASE("recordingsWithMistakesAreRefusedWithTheirOwnLine") {
+    const Folder folder;
+    const auto refusesMotion = [&](const std::string& text, const std::string& part) {
+        folder.write("m.csv", text);
+        folder.refuses("head-motion m.csv", part);
+    };
+    refusesMotion("", "m.csv: holds no poses");
+    refusesMotion("time,x,y,z,qx,qy,qz,qw\n", "m.csv: holds no poses");
+    refusesMotion("0,0,0,0,0,0,1\n", "m.csv:1: 7 columns, must be 8");
+    refusesMotion("0,0,0,0,0,0,0,1\n0,0,0,0,0,0,0,1\n", "m.csv:2: the time is 0, must be after the pose before");
+    refusesMotion("0,0,0,0,0,0,0,0\n", "m.csv:1: the orientation's length is 0, must be 1");
+    refusesMotion("0,nan,0,0,0,0,0,1\n", "m.csv:1: column 2 is nan, must be a finite number");
+    refusesMotion("0,0,0,0,0,0,,1\n", "m.csv:1: column 7 is empty");
+    refusesMotion("5e12,0,0,0,0,0,0,1\n", "m.csv:1: the time is 5000000000000, must be seconds");
+    folder.write("m.csv", "0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n");
+    folder.refuses("head-motion m.csv skip 2", "a.script:1: the seconds to skip are 2, must be at most 1, the recording's length");
+    folder.refuses("head-motion m.csv axes opengl", "the axes is opengl, must be openxr or unity");
+    folder.refuses("head-motion m.csv\nhead 0 turn 0 0\nhead 1 turn 0 0", "a.script:3: the head has a recorded motion");
+    folder.refuses("head 0 turn 0 0\nhead 1 turn 0 0\nhead-motion m.csv", "a.script:3: the head has keys on more than one line");
+}
+
+TEST_CASE("aScriptCutOffAnywhereIsAScriptOrAnError") {
+    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    text += "headset \"none such.toml\"\nvisibility-mask on\naim left turn 5 5\nat 5 eye left angles -1 1 1 -1\nat 6 controller left off\n";
+    REQUIRE(text.size() > 900);
+    std::size_t accepted = 0, refused = 0;
+    for (std::size_t length = 0; length <= text.size(); ++length) {
+        const std::string message = messageOf(text.substr(0, length));
+        ++(message == "accepted" ? accepted : refused);
+        if (message != "accepted") { CHECK(message.starts_with("a.script:")); }
+    }
+    // Cut at the ends of lines it is a shorter script, within most words it is none.
+    CHECK(accepted > 20);
+    CHECK(refused > 200);
+}
+
+TEST_CASE("aScriptWithAnyByteChangedIsAScriptOrAnError") {
+    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        for (const char byte : {'\0', '\n', '"', '#', '-', '9', '\xff'}) {
+            std::string changed = text;
+            changed[i] = byte;
+            const std::string message = messageOf(changed);
+            if (message == "accepted") { continue; }
+            ++refused;
+            if (!message.starts_with("a.script:")) { FAIL_CHECK(message); }
+        }
+    }
+    CHECK(refused > 1000);
+}
