@@ -210,6 +210,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
     counters["scene_bytes"] = scene_.bytes();
     counters["visible_bytes"] = buffers_.visible.bytes();
     counters["pair_bytes"] = buffers_.pairs.bytes();
+    counters["scratch_bytes"] = buffers_.scratch.bytes();
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::string suffix = settings.mode == Mode::kMono ? "" : e == kLeft ? "_left" : "_right";
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
