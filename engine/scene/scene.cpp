@@ -8,6 +8,7 @@
 #include "engine/scene/procedural.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/splat_file.h"
+#include "engine/scene/spz.h"
 
 #include <array>
 #include <filesystem>
@@ -31,7 +32,7 @@ struct SceneFormat {
     bool (*matches)(Source& source);
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
 };
-constexpr std::array<SceneFormat, 5> kSceneFormats{{
+constexpr std::array<SceneFormat, 6> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
@@ -40,6 +41,8 @@ constexpr std::array<SceneFormat, 5> kSceneFormats{{
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFolder(source.path, notes, progress); }},
     {"SOG (.sog)", [](Source& source) { return source.file && isSogFile(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFile(*source.file, notes, progress); }},
+    {"SPZ", [](Source& source) { return source.file && isSpz(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readSpz(*source.file, notes, progress); }},
     {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },  // a guess, so it comes last
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSplatFile(*source.file, notes, progress); }},
 }};

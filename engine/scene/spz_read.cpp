@@ -1,0 +1,161 @@
+// Unpacking of SPZ.
+#include "engine/error.h"
+#include "engine/scene/gzip.h"
+#include "engine/scene/quantized.h"
+#include "engine/scene/scene_builder.h"
+#include "engine/scene/spz.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+// A scene of so many bytes per byte of its file is none: positions alone do not compress so well.
+constexpr std::uint64_t kMaxExpansion = 256;
+
+struct Header {
+    std::uint32_t version = 0;
+    std::uint64_t splats = 0;
+    int sh_degree = 0;  // kept; see sh_bytes for what is there
+    int fractional_bits = 0;
+    std::size_t rotation_bytes = 0, sh_bytes = 0;  // per splat
+
+    [[nodiscard]] std::uint64_t bytesPerSplat() const { return 16 + rotation_bytes + sh_bytes; }
+};
+
+Header parseHeader(const std::string& file, std::span<const std::byte> bytes) {
+    check(bytes.size() == spz::kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file, bytes.size(), spz::kHeaderBytes);
+    Header header;
+    header.version = loadLittle<std::uint32_t>(bytes, 4);
+    check(header.version == 2 || header.version == 3, "{}: header: SPZ version {}, expected 2 or 3", file, header.version);
+    header.splats = loadLittle<std::uint32_t>(bytes, 8);
+    const int degree = std::to_integer<int>(bytes[12]);
+    check(degree <= 4, "{}: header: SH degree {}, expected 0 to 4", file, degree);
+    header.sh_degree = std::min(degree, kMaxShDegree);
+    header.sh_bytes = 3 * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
+    header.rotation_bytes = header.version == 2 ? 3 : 4;
+    header.fractional_bits = std::to_integer<int>(bytes[13]);
+    check(header.fractional_bits <= 23, "{}: header: {} fractional bits of 24, expected 0 to 23", file, header.fractional_bits);
+    return header;
+}
+
+// All attributes, one after the other.
+struct Attributes {
+    std::vector<std::byte> bytes;
+    const std::byte *positions, *alphas, *colours, *scales, *rotations, *sh;
+};
+
+Attributes readAttributes(InputFile& file, GzipReader& stream, const Header& header) {
+    const std::uint64_t total = header.splats * header.bytesPerSplat();
+    check(total <= kMaxExpansion * file.sizeBytes() + 65536,
+          "{}: header: {} splats of {} bytes in a file of {}, expected fewer than {} per byte", file.name(), header.splats,
+          header.bytesPerSplat(), file.sizeBytes(), kMaxExpansion);
+    Attributes attributes{};
+    attributes.bytes.resize(total);
+    const std::size_t got = stream.read(attributes.bytes);
+    check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
+    // The checksum is compared where the stream ends; records of extensions may lie before that.
+    std::array<std::byte, 4096> behind;
+    std::uint64_t extra = 0;
+    for (std::size_t more = 0; (more = stream.read(behind)) > 0;) {
+        extra += more;
+        check(extra <= kMaxExpansion * file.sizeBytes() + 65536, "{}: data: {} bytes and more behind the last splat", file.name(), extra);
+    }
+    attributes.positions = attributes.bytes.data();
+    attributes.alphas = attributes.positions + 9 * header.splats;
+    attributes.colours = attributes.alphas + header.splats;
+    attributes.scales = attributes.colours + 3 * header.splats;
+    attributes.rotations = attributes.scales + 3 * header.splats;
+    attributes.sh = attributes.rotations + header.rotation_bytes * header.splats;
+    return attributes;
+}
+
+float loadByte(const std::byte* at) { return static_cast<float>(std::to_integer<int>(*at)); }
+
+// 24 bits, two's complement.
+float loadFixed(const std::byte* at, int fractional_bits) {
+    int value = 0;
+    for (int i = 0; i < 3; ++i) { value |= std::to_integer<int>(at[i]) << 8 * i; }
+    if (value >= 1 << 23) { value -= 1 << 24; }
+    return std::ldexp(static_cast<float>(value), -fractional_bits);
+}
+
+// w, x, y, z as stored, before the axes change. Version 2: x, y, z in bytes, w not negative.
+std::array<float, 4> loadRotation2(const std::byte* at) {
+    const auto component = [&](std::size_t i) { return loadByte(at + i) / 127.5f - 1.0f; };
+    return fromSmallestThree(0, {component(0), component(1), component(2)});
+}
+
+// Version 3: two bits for the largest of x, y, z, w; of the others, first to last from the top, a sign bit and nine bits up to 1/sqrt(2).
+std::array<float, 4> loadRotation3(const std::byte* at) {
+    const auto word = loadLittle<std::uint32_t>(std::span(at, 4), 0);
+    const auto component = [&](int shift) {
+        const float size = static_cast<float>(word >> shift & 511u) / 511.0f * 0.70710678f;
+        return (word >> (shift + 9) & 1u) != 0 ? -size : size;
+    };
+    const std::array<float, 4> xyzw = fromSmallestThree(word >> 30, {component(20), component(10), component(0)});
+    return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
+}
+
+void unpackSplat(const Header& header, const Attributes& attributes, std::size_t splat, StoredBlock& block, std::size_t row) {
+    const auto put = [&](int attribute, float value) { block.column(attribute)[row] = value; };
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int offset = static_cast<int>(axis);
+        const float position = loadFixed(attributes.positions + 9 * splat + 3 * axis, header.fractional_bits);
+        put(kStoredX + offset, axis == 0 ? position : 0.0f - position);
+        put(kStoredScale0 + offset, loadByte(attributes.scales + 3 * splat + axis) / 16.0f - 10.0f);
+        put(kStoredDc0 + offset, (loadByte(attributes.colours + 3 * splat + axis) / 255.0f - 0.5f) / spz::kColourScale);
+    }
+    put(kStoredOpacity, storedOpacity(loadByte(attributes.alphas + splat) / 255.0f));
+    const std::byte* packed = attributes.rotations + header.rotation_bytes * splat;
+    const std::array<float, 4> rotation = header.version == 2 ? loadRotation2(packed) : loadRotation3(packed);
+    // Turning the axes by half a turn about x turns the quaternion's y and z round.
+    for (int i = 0; i < 4; ++i) {
+        const float component = rotation[static_cast<std::size_t>(i)];
+        put(kStoredRot0 + i, i < 2 ? component : -component);
+    }
+    const int coefficients = shCoefficientCount(header.sh_degree) - 1;
+    for (int k = 0; k < coefficients; ++k) {
+        for (int channel = 0; channel < 3; ++channel) {
+            const float value = (loadByte(attributes.sh + header.sh_bytes * splat + 3 * k + channel) - 128.0f) / 128.0f;
+            put(kStoredRest0 + channel * coefficients + k, spz::kShChangesSign[k + 1] ? 0.0f - value : value);
+        }
+    }
+}
+
+}  // namespace
+
+bool isSpz(InputFile& file) {
+    const std::string_view mark("NGSP");
+    if (file.peek(4) == mark) { return true; }
+    const std::vector<std::byte> start = peekGzip(file, 4);
+    return start.size() == 4 && loadLittle<std::uint32_t>(start, 0) == spz::kMagic;
+}
+
+Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
+    check(file.peek(4) != "NGSP", "{}: header: an SPZ container that is not in gzip (version 4, Zstandard), expected version 2 or 3",
+          file.name());
+    if (progress) { progress(0.0); }
+    GzipReader stream(file);
+    std::array<std::byte, spz::kHeaderBytes> header_bytes{};
+    const std::size_t header_size = stream.read(header_bytes);
+    const Header header = parseHeader(file.name(), std::span(header_bytes).first(header_size));
+    const Attributes attributes = readAttributes(file, stream, header);
+
+    SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
+    StoredBlock block;
+    for (std::uint64_t done = 0, blocks = 0; done < header.splats; done += block.rows, ++blocks) {
+        if (progress && blocks % 128 == 0) { progress(0.5 + 0.5 * static_cast<double>(done) / static_cast<double>(header.splats)); }
+        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, header.splats - done));
+        for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(header, attributes, done + row, block, row); }
+        builder.append(block);
+    }
+    if (progress) { progress(1.0); }
+    Scene scene = builder.finish(notes);
+    if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
+    return scene;
+}
+
+}  // namespace binosplat
