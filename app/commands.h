@@ -10,5 +10,6 @@ void runBench(const BenchOptions& options);
 void runView(const ViewOptions& options);
 void runInfo(const InfoOptions& options);
 void runScene(const SceneOptions& options);
+void runConvert(const ConvertOptions& options);
 
 }  // namespace binosplat

@@ -24,7 +24,8 @@ struct Match : Handlers... {
 void run(int argument_count, const char* const* arguments) {
     std::visit(Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
                      [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
-                     [](const SceneOptions& options) { runScene(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
+                     [](const SceneOptions& options) { runScene(options); }, [](const ConvertOptions& options) { runConvert(options); },
+                     [](const HelpText& help) { fmt::print("{}", help.text); }},
                parseOptions(argument_count, arguments));
     if (std::fflush(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
 }

@@ -206,6 +206,11 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         scene_command->add_option("--splats", splats, "how many splats (default: the scene's own number)")->type_name("N");
     scene_command->add_option("--out", scene.out, "file to write")->required()->type_name("FILE.ply");
 
+    ConvertOptions convert;
+    CLI::App* convert_command = app.add_subcommand("convert", "Write a scene as a 2DGS PLY or an SPZ file");
+    convert_command->add_option("SCENE", convert.scene, "file, directory or builtin:NAME")->required();
+    convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
+
     try {
         app.parse(readableArguments(argument_count, arguments));
     } catch (const CLI::CallForHelp&) {
@@ -234,6 +239,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         return view;
     }
     if (info_command->parsed()) { return info; }
+    if (convert_command->parsed()) { return convert; }
     if (splats_option->count() > 0) { scene.splats = readCount({"--splats", {splats}}, 1, std::uint64_t{1} << 31); }
     return scene;
 }

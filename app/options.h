@@ -90,11 +90,16 @@ struct SceneOptions {
     std::filesystem::path out;
 };
 
+struct ConvertOptions {
+    std::string scene;
+    std::filesystem::path out;
+};
+
 struct HelpText {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, HelpText>;
+using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, HelpText>;
 
 // Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);

@@ -1,0 +1,34 @@
+// `binosplat convert`: any scene that can be read, as a 2DGS PLY or an SPZ file.
+#include "app/commands.h"
+#include "app/load.h"
+#include "engine/error.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/spz.h"
+
+#include <filesystem>
+
+namespace binosplat {
+
+void runConvert(const ConvertOptions& options) {
+    const std::string out = options.out.string();
+    const bool as_spz = options.out.extension() == ".spz";
+    check(as_spz || options.out.extension() == ".ply", "{}: must be a file whose name ends in .ply or .spz", out);
+    const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
+    check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
+
+    LoadNotes notes;
+    const Scene scene = loadWithProgress(options.scene, 0, notes);
+    {
+        ProgressLine line("writing " + out);
+        const Progress progress = [&](double share) { line.show(share); };
+        if (as_spz) {
+            writeSpz(scene, out, progress);
+        } else {
+            writePly(scene, out, progress);
+        }
+    }
+    fmt::print("{}: {} splats, SH degree {}, {} bytes\n", out, scene.size(), scene.sh_degree, std::filesystem::file_size(options.out));
+    for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
+}
+
+}  // namespace binosplat

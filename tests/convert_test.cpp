@@ -1,0 +1,64 @@
+// `binosplat convert`, run as a program.
+#include "engine/scene/scene.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+std::ptrdiff_t fileCount(const Workplace& work) {
+    return std::distance(std::filesystem::directory_iterator(work.path), std::filesystem::directory_iterator());
+}
+
+void checkRefused(const Workplace& work, const std::string& arguments, int exit_code, const std::string& part) {
+    const Outcome outcome = work.run(arguments);
+    CHECK(outcome.exit_code == exit_code);
+    CHECK(outcome.errors.find(part) != std::string::npos);
+    CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+}
+
+}  // namespace
+
+TEST_CASE("a scene goes through PLY unchanged and through SPZ within its quanta") {
+    const Workplace work;
+    REQUIRE(work.run("convert builtin:slanted-wall a.ply").exit_code == 0);
+    const Outcome outcome = work.run("convert a.ply b.spz");
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.output.find("b.spz: 1681 splats, SH degree 0") == 0);
+    REQUIRE(work.run("convert b.spz c.ply").exit_code == 0);
+    CHECK(fileCount(work) == 3);
+
+    const Scene made = loadScene("builtin:slanted-wall");
+    const Scene ply = loadScene((work.path / "a.ply").string()), spz = loadScene((work.path / "c.ply").string());
+    REQUIRE(ply.size() == made.size());
+    REQUIRE(spz.size() == made.size());
+    CHECK(ply.positions == made.positions);
+    CHECK(ply.sh == made.sh);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        CHECK(glm::distance(spz.positions[i], made.positions[i]) < 2e-5f);
+        CHECK(std::abs(spz.opacities[i] - made.opacities[i]) < 0.002f);
+    }
+}
+
+TEST_CASE("a scene may take the place of its own file") {
+    const Workplace work;
+    REQUIRE(work.run("convert builtin:one-splat a.ply").exit_code == 0);
+    REQUIRE(work.run("convert a.ply a.ply").exit_code == 0);
+    CHECK(loadScene((work.path / "a.ply").string()).size() == 1);
+    CHECK(fileCount(work) == 1);
+}
+
+TEST_CASE("what cannot be converted leaves nothing behind") {
+    const Workplace work;
+    checkRefused(work, "convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply or .spz");
+    checkRefused(work, "convert builtin:one-splat nowhere/a.ply", 1, "nowhere must be a directory");
+    checkRefused(work, "convert absent.ply a.ply", 1, "absent.ply: no such file");
+    checkRefused(work, "convert builtin:one-splat", 2, "OUT");
+    CHECK(work.isEmpty());
+    std::filesystem::create_directory(work.path / "folder.spz");
+    checkRefused(work, "convert builtin:one-splat folder.spz", 1, "folder.spz: is a directory");
+    CHECK(std::filesystem::is_empty(work.path / "folder.spz"));
+}
