@@ -13,7 +13,8 @@ std::mutex& runtimeLock() {
 }
 
 void explain(const char* function, const Refusal& refusal) {
-    if (std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") == nullptr) return;
+    // The loader asks for everything that it has heard of; that is no mistake of the application's.
+    if (std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") == nullptr || refusal.result == XR_ERROR_FUNCTION_UNSUPPORTED) return;
     std::fprintf(stderr, "simulated runtime: %s: %s: %s\n", function, nameOf(refusal.result), refusal.reason);
 }
 

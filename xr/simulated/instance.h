@@ -42,7 +42,7 @@ Instance& getInstance(XrInstance instance);
 
 constexpr XrSystemId kSystemId = 1;
 constexpr std::uint32_t kMostLayers = XR_MIN_COMPOSITION_LAYERS_SUPPORTED;
-constexpr std::uint32_t kMostSwapchainPixels = 8192;
+constexpr std::uint32_t kMostSwapchainPixels = 16384;
 
 // XR_ERROR_SYSTEM_INVALID.
 void checkSystem(XrSystemId system);

@@ -30,8 +30,18 @@ std::optional<Output> makeOutput() {
 }
 
 std::unique_ptr<Simulation>& survivor() {
+    // The loader closes the library between two instances; it is linked so that it stays loaded, or this would be forgotten.
     static std::unique_ptr<Simulation> simulation;
     return simulation;
+}
+
+std::string originOfEnvironment() {
+    std::string origin;
+    for (const char* name : {"BINOSPLAT_SIMULATED_SCRIPT", "BINOSPLAT_SIMULATED_CLOCK", "BINOSPLAT_SIMULATED_OUT"}) {
+        const char* const value = environment(name);
+        origin.append(value == nullptr ? "" : value).append("\n");
+    }
+    return origin;
 }
 
 }  // namespace
@@ -42,13 +52,17 @@ Script scriptOfEnvironment() {
 }
 
 std::unique_ptr<Simulation> Simulation::begin() {
-    if (survivor() != nullptr) {
-        survivor()->survives = false;
-        return std::move(survivor());
+    // Another script or folder is another run within the same process.
+    const std::string origin = originOfEnvironment();
+    std::unique_ptr<Simulation> survived = std::move(survivor());
+    if (survived != nullptr && survived->origin == origin) {
+        survived->survives = false;
+        return survived;
     }
+    survived.reset();
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
-    return std::make_unique<Simulation>(Simulation{std::move(script), clock, makeOutput()});
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput()});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

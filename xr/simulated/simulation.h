@@ -22,6 +22,8 @@ struct Output {
 Script scriptOfEnvironment();
 
 struct Simulation {
+    // What the environment said.
+    std::string origin;
     Script script;
     Clock clock;
     // None: nothing is read back, composed or written.
