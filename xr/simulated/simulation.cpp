@@ -59,7 +59,6 @@ std::unique_ptr<Simulation> Simulation::begin() {
         survived->survives = false;
         return survived;
     }
-    survived.reset();
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
     return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput()});
