@@ -1,0 +1,70 @@
+// The Khronos example program hello_xr, unchanged, on the simulated runtime: run with a script, its frames and pictures read back.
+#pragma once
+
+#include "tests/simulated_fixture.h"
+#include "xr/simulated/picture_file.h"
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace binosplat::test {
+
+using Json = nlohmann::json;
+
+// Debian's libopenxr-utils has it. Tests that need it are skipped, visibly, where it is absent.
+inline bool haveHelloXr() {
+    const bool have = std::system("command -v hello_xr > /dev/null") == 0;
+    if (!have) { MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)"); }
+    return have;
+}
+
+class HelloXr : public Headset {
+public:
+    int exit_status = -1;  // 124: it did not end within its time
+    std::string output;
+    std::vector<Json> frames;  // by line of the log
+
+    // It ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
+    explicit HelloXr(const std::string& script, const std::string& options = "") : Headset(script) {
+        const std::string pipe = (folder / "keys").string(), log = (folder / "output").string();
+        const std::string command =
+            "mkfifo " + pipe + " && timeout 60 hello_xr -g Vulkan2 " + options + " 0<>" + pipe + " > " + log + " 2>&1";
+        const int status = std::system(command.c_str());
+        exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        output = readFile(log);
+        std::ifstream lines(written / "frames.jsonl");
+        for (std::string line; std::getline(lines, line);) { frames.push_back(Json::parse(line)); }
+    }
+
+    [[nodiscard]] std::filesystem::path pictureFile(std::size_t frame) const {
+        char name[32];
+        std::snprintf(name, sizeof name, "frame_%06zu.png", frame);
+        return written / name;
+    }
+    // One eye's half of a frame's picture.
+    [[nodiscard]] simulated::RgbPicture eye(std::size_t frame, simulated::Side side) const {
+        const simulated::RgbPicture both = simulated::readPng(pictureFile(frame));
+        simulated::RgbPicture half{{both.size_px.x / 2, both.size_px.y}, {}};
+        const std::size_t row_bytes = std::size_t{3} * half.size_px.x;
+        for (std::size_t y = 0; y < half.size_px.y; ++y) {
+            const auto row = both.bytes.begin() + static_cast<std::ptrdiff_t>((2 * y + side) * row_bytes);
+            half.bytes.insert(half.bytes.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
+        }
+        return half;
+    }
+
+    [[nodiscard]] static std::string readFile(const std::filesystem::path& path) {
+        std::ifstream stream(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+};
+
+}  // namespace binosplat::test

@@ -1,0 +1,157 @@
+// Facts about a runtime that misbehaves as real ones do, seen by a program that was not written for it: hello_xr.
+#include "tests/hello_xr.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace binosplat::test;
+
+namespace {
+
+// Periods of 10 ms are whole nanoseconds: frame n is displayed at n * 0.01 s exactly.
+const std::string kQuiet = "rate 100\nsize 64 64\nframes none\n";
+
+bool mentions(const Json& frame, const std::string& event) {
+    return std::ranges::any_of(frame["events"], [&](const Json& one) { return one == event; });
+}
+
+std::size_t count(const HelloXr& run, const std::string& event) {
+    return static_cast<std::size_t>(std::ranges::count_if(run.frames, [&](const Json& frame) { return mentions(frame, event); }));
+}
+
+// Frames that reached the wearer.
+std::size_t shownBetween(const HelloXr& run, std::size_t first, std::size_t end) {
+    std::size_t shown = 0;
+    for (std::size_t i = first; i < end; ++i) { shown += run.frames.at(i)["layers"].empty() ? 0 : 1; }
+    return shown;
+}
+
+}  // namespace
+
+TEST_CASE("anExitOfTheWearerEndsTheProgram") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(count(run, "exit") == 1);
+    CHECK(mentions(run.frames.at(20), "exit"));
+    CHECK(count(run, "state FOCUSED") == 1);
+    CHECK(run.output.find("XR_SESSION_STATE_EXITING") != std::string::npos);
+}
+
+TEST_CASE("framesThatShouldNotBeRenderedHaveNoLayers") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 should-render off\nat 0.3 should-render on\nat 0.4 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(shownBetween(run, 10, 20) == 10);
+    CHECK(shownBetween(run, 20, 30) == 0);
+    CHECK(shownBetween(run, 30, 40) == 10);
+    CHECK(run.frames.at(20)["should_render"] == false);
+    CHECK(run.frames.at(30)["should_render"] == true);
+}
+
+TEST_CASE("aProgramMayNotRenderItsVeryFirstVisibleFrames") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at -1 should-render off\nat 0.2 should-render on\nat 0.3 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(shownBetween(run, 0, 20) == 0);
+    CHECK(shownBetween(run, 20, 30) == 10);
+}
+
+TEST_CASE("aHiddenSessionComesBack") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 visible off\nat 0.3 visible on\nat 0.5 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(run.frames.at(29)["session_state"] == "SYNCHRONIZED");
+    CHECK(run.frames.at(29)["should_render"] == false);
+    CHECK(run.frames.at(40)["session_state"] == "FOCUSED");
+    CHECK(count(run, "state FOCUSED") == 2);
+}
+
+TEST_CASE("aSessionWithoutFocusIsStillSeen") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 focused off\nat 0.4 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(run.frames.at(30)["session_state"] == "VISIBLE");
+    CHECK(shownBetween(run, 20, 40) == 20);
+}
+
+TEST_CASE("aLostSessionIsLeftAndMadeAnew") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 lose-session\nat 0.6 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(count(run, "lose-session") == 1);
+    CHECK(count(run, "state FOCUSED") == 2);
+    CHECK(run.output.find("XR_SESSION_STATE_LOSS_PENDING") != std::string::npos);
+    // Frames count on, and the new session's are later ones.
+    for (std::size_t i = 0; i < run.frames.size(); ++i) { REQUIRE(run.frames[i]["frame"] == i); }
+    for (std::size_t i = 1; i < run.frames.size(); ++i) {
+        REQUIRE(run.frames[i]["display_time_ns"].get<std::int64_t>() > run.frames[i - 1]["display_time_ns"].get<std::int64_t>());
+    }
+}
+
+TEST_CASE("aLostInstanceIsLeftAndMadeAnew") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 lose-instance\nat 0.6 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(count(run, "state FOCUSED") == 2);
+}
+
+TEST_CASE("slowImagesDoNotStopAProgramThatWaitsForThem") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.1 slow-images 7\nat 0.3 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(count(run, "slow-images 7") == 1);
+    CHECK(shownBetween(run, 5, 30) == 25);
+}
+
+TEST_CASE("changedAnglesReachTheProgramInTheirFrame") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "at 0.2 eye left angles -30 20 25 -35\nat 0.4 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    const auto submitted = [&](std::size_t frame, int eye, const char* side) {
+        const double angle_rad = run.frames.at(frame)["layers"].at(0)["views"].at(static_cast<std::size_t>(eye))["fov"][side];
+        return angle_rad * 180.0 / std::numbers::pi;
+    };
+    CHECK(submitted(19, 0, "left") == doctest::Approx(-45.0));
+    CHECK(submitted(20, 0, "left") == doctest::Approx(-30.0));
+    CHECK(submitted(20, 0, "right") == doctest::Approx(20.0));
+    CHECK(submitted(20, 0, "up") == doctest::Approx(25.0));
+    CHECK(submitted(20, 0, "down") == doctest::Approx(-35.0));
+    CHECK(submitted(20, 1, "left") == doctest::Approx(-45.0));
+}
+
+TEST_CASE("submittedPosesAreTheHeadsOfTheirDisplayTime") {
+    if (!haveHelloXr()) { return; }
+    // A metre per second to the right, in LOCAL, whose origin is the head at time 0.
+    const HelloXr run(kQuiet + "head 0 position 0 1.6 0\nhead 1 position 1 1.6 0\nat 0.4 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    for (const std::size_t frame : {9u, 18u, 30u}) {
+        const Json& logged = run.frames.at(frame);
+        const double time_s = (logged["display_time_ns"].get<double>() - run.frames[0]["display_time_ns"].get<double>()) * 1e-9;
+        const double left_x = logged["layers"].at(0)["views"].at(0)["pose"]["position"].at(0);
+        CHECK(left_x == doctest::Approx(time_s - 0.0315).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("theMenuButtonReachesTheProgramsQuitAction") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "press left menu 0.2 0.3\nat 3 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    CHECK(count(run, "exit") == 0);
+    CHECK(run.frames.size() < 50);
+}
+
+TEST_CASE("aProgramWhoseExtensionIsMissingSaysSo") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "extension XR_KHR_vulkan_enable2 off\nat 0.2 exit\n");
+    CHECK(run.frames.empty());
+    CHECK(run.output.find("XR_ERROR_EXTENSION_NOT_PRESENT") != std::string::npos);
+}
+
+TEST_CASE("aBrokenScriptIsNamedWithItsLine") {
+    if (!haveHelloXr()) { return; }
+    const HelloXr run("size 64 64\nhed 0 position 0 0 0\n");
+    CHECK(run.frames.empty());
+    CHECK_MESSAGE(run.output.find("test.script:2: hed is not a command") != std::string::npos, run.output);
+}
