@@ -115,12 +115,15 @@ AttachedAction* Attachment::find(std::uint64_t action) {
 
 bool Attachment::chooseProfile(Instance& instance) {
     if (profile != nullptr) return false;
-    for (const Profile& candidate : allProfiles()) {
+    std::vector<Profile> candidates(allProfiles().begin(), allProfiles().end());
+    std::stable_partition(candidates.begin(), candidates.end(),
+                          [&](const Profile& one) { return one.path == instance.simulation->favourite_profile; });
+    for (const Profile& candidate : candidates) {
         if (!candidate.user_paths.front().starts_with("/user/hand/")) continue;
         const XrPath path = instance.paths.findPath(candidate.path);
         const auto suggested = std::find_if(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
         if (suggested == suggestions.end()) continue;
-        profile = &candidate;
+        profile = findProfile(candidate.path);
         for (const SuggestedBinding& binding : suggested->bindings) {
             AttachedAction* const action = find(binding.action);
             if (action == nullptr) continue;

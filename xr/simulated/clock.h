@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "xr/simulated/openxr.h"
 
@@ -22,7 +23,7 @@ public:
     XrTime now() const;
     XrDuration period() const { return frame_period; }
     bool isReal() const { return is_real; }
-    // Seconds since this clock was made: the time that scripts know.
+    // Seconds since the first frame: the time that scripts know. It does not count how long a program takes to start.
     double secondsAt(XrTime time) const { return static_cast<double>(time - kStart) * 1e-9; }
     XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
 
@@ -34,7 +35,7 @@ private:
     XrDuration frame_period;
     // The number of the frame on display, counted in periods since the start.
     std::int64_t frame = -1;
-    std::chrono::steady_clock::time_point birth = std::chrono::steady_clock::now();
+    std::optional<std::chrono::steady_clock::time_point> birth;
 };
 
 }  // namespace simulated

@@ -68,7 +68,8 @@ void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
 }
 
 Picture pictureOf(const Session& session, const XrSwapchainSubImage& image) {
-    const Swapchain& swapchain = getSwapchain(session, image.swapchain);
+    Swapchain& swapchain = getSwapchain(session, image.swapchain);
+    fetchTexels(swapchain);
     const VkFormat format = swapchain.info.format.format;
     Picture picture;
     picture.size_px = {swapchain.info.size.width, swapchain.info.size.height};
@@ -77,7 +78,7 @@ Picture pictureOf(const Session& session, const XrSwapchainSubImage& image) {
     const bool is_srgb = format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB;
     picture.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
     const std::size_t layer_bytes = swapchain.released_texels.size() / swapchain.info.layers;
-    picture.bytes = std::span(swapchain.released_texels).subspan(image.imageArrayIndex * layer_bytes, layer_bytes);
+    picture.bytes = std::span<const std::byte>(swapchain.released_texels).subspan(image.imageArrayIndex * layer_bytes, layer_bytes);
     return picture;
 }
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "xr/simulated/profiles.h"
+
 namespace simulated {
 namespace {
 
@@ -29,6 +31,19 @@ std::optional<Output> makeOutput() {
     return Output{folder, FrameLog(std::filesystem::path(folder) / "frames.jsonl")};
 }
 
+// "valve/index_controller".
+std::string favouriteProfile() {
+    const char* const name = environment("BINOSPLAT_SIMULATED_PROFILE");
+    if (name == nullptr) return {};
+    std::string path("/interaction_profiles/");
+    path.append(name);
+    if (findProfile(path) == nullptr) {
+        throw std::runtime_error(std::string("BINOSPLAT_SIMULATED_PROFILE is '").append(name) +
+                                 "', must be one of the core, such as oculus/touch_controller");
+    }
+    return path;
+}
+
 std::unique_ptr<Simulation>& survivor() {
     // The loader closes the library between two instances; it is linked so that it stays loaded, or this would be forgotten.
     static std::unique_ptr<Simulation> simulation;
@@ -37,7 +52,8 @@ std::unique_ptr<Simulation>& survivor() {
 
 std::string originOfEnvironment() {
     std::string origin;
-    for (const char* name : {"BINOSPLAT_SIMULATED_SCRIPT", "BINOSPLAT_SIMULATED_CLOCK", "BINOSPLAT_SIMULATED_OUT"}) {
+    for (const char* name :
+         {"BINOSPLAT_SIMULATED_SCRIPT", "BINOSPLAT_SIMULATED_CLOCK", "BINOSPLAT_SIMULATED_OUT", "BINOSPLAT_SIMULATED_PROFILE"}) {
         const char* const value = environment(name);
         origin.append(value == nullptr ? "" : value).append("\n");
     }
@@ -61,7 +77,7 @@ std::unique_ptr<Simulation> Simulation::begin() {
     }
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
-    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput()});
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), favouriteProfile()});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

@@ -28,12 +28,14 @@ struct Simulation {
     Clock clock;
     // None: nothing is read back, composed or written.
     std::optional<Output> output;
+    // The interaction profile that the controllers play if the application knows it.
+    std::string favourite_profile;
     std::uint64_t frames_shown = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
     bool survives = false;
 
-    // By BINOSPLAT_SIMULATED_SCRIPT, BINOSPLAT_SIMULATED_CLOCK and BINOSPLAT_SIMULATED_OUT. Throws ScriptError, std::runtime_error.
+    // By BINOSPLAT_SIMULATED_SCRIPT, _CLOCK, _OUT and _PROFILE. Throws ScriptError, std::runtime_error.
     static std::unique_ptr<Simulation> begin();
     static void end(std::unique_ptr<Simulation> simulation);
 

@@ -71,6 +71,13 @@ Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
     return found;
 }
 
+void fetchTexels(Swapchain& swapchain) {
+    // Depth is looked at by nobody here.
+    if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) return;
+    swapchain.released_texels = swapchain.session.device.read(*swapchain.images[swapchain.released_index]);
+    swapchain.has_texels = true;
+}
+
 XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityInput, uint32_t* formatCountOutput, int64_t* formats) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
@@ -125,6 +132,8 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
         require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all images are acquired already");
         const auto next = static_cast<std::uint32_t>(owner.acquisitions % owner.images.size());
+        // The image on show is given away again: the application holds all others.
+        if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);
         if (!owner.is_prepared[next]) owner.session.device.prepare(*owner.images[next]);
         owner.is_prepared[next] = true;
         ++owner.acquisitions;
@@ -161,11 +170,7 @@ XrResult xrReleaseSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageRe
         owner.acquired.pop_front();
         owner.is_oldest_waited = false;
         owner.has_released = true;
-        // Depth is looked at by nobody here.
-        const bool is_colour = owner.info.format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
-        if (is_colour && owner.session.instance.simulation->output) {
-            owner.released_texels = owner.session.device.read(*owner.images[owner.released_index]);
-        }
+        owner.has_texels = false;
         return successOf(owner.session);
     });
 }

@@ -25,9 +25,10 @@ struct Swapchain : Object {
     std::deque<std::uint32_t> acquired;
     bool is_oldest_waited = false;
     std::uint64_t acquisitions = 0;
-    // What the compositor sees: the image that was released last, and its texels if anybody wants them.
+    // What the compositor sees: the image that was released last, and its texels once somebody wanted them.
     bool has_released = false;
     std::uint32_t released_index = 0;
+    bool has_texels = false;
     std::vector<std::byte> released_texels;
 
     explicit Swapchain(Session& owner) : session(owner) {}
@@ -35,5 +36,8 @@ struct Swapchain : Object {
 
 // XR_ERROR_HANDLE_INVALID also for a swapchain of another session.
 Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain);
+
+// Reads the last released image back, if that was not done since. Only in calls that may use the application's queue.
+void fetchTexels(Swapchain& swapchain);
 
 }  // namespace simulated

@@ -1,0 +1,150 @@
+// The simulated runtime as a library that strangers load: what it shows, how it negotiates, and programs that were not written for it.
+#include "tests/simulated_fixture.h"
+
+#include <dlfcn.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+using namespace binosplat::test;
+
+namespace {
+
+struct Run {
+    int exit_code = -1;
+    std::string output;
+};
+
+// Standard input is a pipe that nobody writes to: hello_xr ends at the first key.
+Run run(const Headset& headset, const std::string& command, const std::string& environment = "") {
+    const std::string log = (headset.folder / "log").string(), keys = (headset.folder / "keys").string();
+    const std::string line =
+        "rm -f " + keys + " && mkfifo " + keys + " && " + environment + " timeout 100 " + command + " 0<>" + keys + " > " + log + " 2>&1";
+    const int status = std::system(line.c_str());
+    std::ifstream stream(log);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
+}
+
+bool isInstalled(const std::string& program) { return std::system(("command -v " + program + " > /dev/null").c_str()) == 0; }
+
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+void checkSilent(const std::string& output) {
+    for (const char* complaint : {"VUID-", "SYNC-HAZARD", "UNASSIGNED-", "Validation Error", "Validation Warning"}) {
+        const std::size_t place = output.find(complaint);
+        if (place != std::string::npos) FAIL_CHECK(output.substr(place, 500));
+    }
+}
+
+struct LoaderInfo {
+    int type = 1;
+    std::uint32_t version = 1;
+    std::size_t size = sizeof(LoaderInfo);
+    std::uint32_t least_interface = 1, most_interface = 1;
+    XrVersion least_api = XR_MAKE_VERSION(1, 0, 0), most_api = XR_MAKE_VERSION(1, 0x3FF, 0xFFF);
+};
+struct RuntimeRequest {
+    int type = 3;
+    std::uint32_t version = 1;
+    std::size_t size = sizeof(RuntimeRequest);
+    std::uint32_t interface = 0;
+    XrVersion api = 0;
+    PFN_xrGetInstanceProcAddr get_instance_proc_addr = nullptr;
+};
+
+constexpr const char* kLeaving = "size 128 128\nframes every 10\npress right squeeze 0.1 0.3\nat 0.4 exit\n";
+constexpr const char* kValidation =
+    "VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT";
+
+}  // namespace
+
+TEST_CASE("the library shows one function, which negotiates version 1") {
+    const std::filesystem::path library =
+        std::filesystem::path(BINOSPLAT_SIMULATED_RUNTIME).parent_path() / "libbinosplat_simulated_runtime.so";
+    void* const handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+    REQUIRE(handle != nullptr);
+    for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) CHECK(dlsym(handle, name) == nullptr);
+    const auto negotiate =
+        reinterpret_cast<XrResult (*)(const LoaderInfo*, RuntimeRequest*)>(dlsym(handle, "xrNegotiateLoaderRuntimeInterface"));
+    REQUIRE((negotiate != nullptr));
+    const auto negotiated = [&](auto&& change) {
+        LoaderInfo info;
+        RuntimeRequest request;
+        change(info, request);
+        return negotiate(&info, &request);
+    };
+    CHECK(negotiated([](auto&, auto&) {}) == XR_SUCCESS);
+    CHECK(negotiated([](auto& info, auto&) { info.type = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto& info, auto&) { info.version = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto& info, auto&) { info.size = 8; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto& info, auto&) { info.least_interface = info.most_interface = 2; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto& info, auto&) { info.least_api = XR_MAKE_VERSION(2, 0, 0); }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto&, auto& request) { request.type = 1; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiated([](auto&, auto& request) { request.size = 8; }) == XR_ERROR_INITIALIZATION_FAILED);
+    CHECK(negotiate(nullptr, nullptr) == XR_ERROR_INITIALIZATION_FAILED);
+    RuntimeRequest request;
+    const LoaderInfo info;
+    CHECK(negotiate(&info, &request) == XR_SUCCESS);
+    CHECK(request.interface == 1);
+    CHECK(XR_VERSION_MAJOR(request.api) == 1);
+    CHECK((request.get_instance_proc_addr != nullptr));
+    dlclose(handle);
+}
+
+TEST_CASE("openxr_runtime_list finds it") {
+    if (!isInstalled("openxr_runtime_list")) {
+        MESSAGE("skipped: openxr_runtime_list is not installed (libopenxr-utils)");
+        return;
+    }
+    const Headset headset(kLeaving);
+    const Run listed = run(headset, "openxr_runtime_list");
+    CHECK(listed.exit_code == 0);
+    CHECK(contains(listed.output, "Simulated headset"));
+    CHECK(contains(listed.output, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME));
+}
+
+TEST_CASE("hello_xr runs on it from start to end, and neither validation layer has anything to say") {
+    if (!isInstalled("hello_xr")) {
+        MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)");
+        return;
+    }
+    const Headset headset(kLeaving);
+    std::string environment = kValidation;
+    SUBCASE("XR_KHR_vulkan_enable2") {
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment);
+        CHECK(hello.exit_code == 0);
+        CHECK(contains(hello.output, "XR_SESSION_STATE_VISIBLE->XR_SESSION_STATE_FOCUSED"));
+        CHECK(contains(hello.output, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
+        CHECK(std::filesystem::exists(headset.written / "frame_000010.png"));
+        CHECK(std::filesystem::exists(headset.written / "frame_000030.png"));
+        checkSilent(hello.output);
+    }
+    SUBCASE("XR_KHR_vulkan_enable") {
+        const Run hello = run(headset, "hello_xr -g Vulkan", environment);
+        CHECK(hello.exit_code == 0);
+        CHECK(contains(hello.output, "XR_SESSION_STATE_VISIBLE->XR_SESSION_STATE_FOCUSED"));
+        checkSilent(hello.output);
+    }
+    SUBCASE("under OpenXR's own validation layer") {
+        environment +=
+            " XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text XR_CORE_VALIDATION_FILE_NAME=" +
+            (headset.folder / "validation").string();
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment);
+        CHECK(hello.exit_code == 0);
+        checkSilent(hello.output);
+        std::ifstream validation(headset.folder / "validation");
+        checkSilent({std::istreambuf_iterator<char>(validation), {}});
+    }
+    SUBCASE("paced by a real clock") {
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " BINOSPLAT_SIMULATED_CLOCK=real");
+        CHECK(hello.exit_code == 0);
+        CHECK(contains(hello.output, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
+    }
+    SUBCASE("with other controllers") {
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " BINOSPLAT_SIMULATED_PROFILE=valve/index_controller");
+        CHECK(hello.exit_code == 0);
+        CHECK(contains(hello.output, "Left hand Index controller Squeeze"));
+    }
+}
