@@ -243,8 +243,13 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus") {
     XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION, XR_FREQUENCY_UNSPECIFIED, 0.5f};
     const auto* const feedback = reinterpret_cast<const XrHapticBaseHeader*>(&vibration);
     XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
+    CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SUCCESS);
+    begin();
+    frame();
     CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SESSION_NOT_FOCUSED);
-    focus();
+    CHECK(xrStopHapticFeedback(session, &info) == XR_SESSION_NOT_FOCUSED);
+    frame();
+    frame();
     CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SUCCESS);
     CHECK(xrStopHapticFeedback(session, &info) == XR_SUCCESS);
     info.subactionPath = path("/user/head");

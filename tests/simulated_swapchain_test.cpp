@@ -117,6 +117,18 @@ TEST_CASE_FIXTURE(SessionFixture, "every format and use makes images that Vulkan
     CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
 }
 
+TEST_CASE_FIXTURE(SessionFixture, "a swapchain of the largest view that is offered can be made") {
+    XrViewConfigurationView views[2] = {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}};
+    std::uint32_t count = 0;
+    const auto stereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+    REQUIRE(xrEnumerateViewConfigurationViews(instance, system, stereo, 2, &count, views) == XR_SUCCESS);
+    XrSwapchainCreateInfo info = swapchainInfo();
+    info.width = views[0].maxImageRectWidth;
+    info.height = views[0].maxImageRectHeight;
+    XrSwapchain swapchain = XR_NULL_HANDLE;
+    CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
+}
+
 TEST_CASE_FIXTURE(SessionFixture, "images are enumerated in structures of their type, always the same") {
     const XrSwapchain swapchain = makeSwapchain();
     const std::vector<VkImage> images = imagesOf(swapchain);

@@ -150,7 +150,13 @@ void Device::checkImage(const ImageInfo& info) const {
             XR_ERROR_VALIDATION_FAILURE, "an image beyond the device's limits");
 }
 
-std::unique_ptr<DeviceImage> Device::createImage(const ImageInfo& info) { return std::make_unique<DeviceImage>(info, *implementation); }
+std::unique_ptr<DeviceImage> Device::createImage(const ImageInfo& info) {
+    try {
+        return std::make_unique<DeviceImage>(info, *implementation);
+    } catch (const vk::OutOfDeviceMemoryError&) {
+        throw Refusal{XR_ERROR_OUT_OF_MEMORY, "the device has no memory left for an image"};
+    } catch (const vk::OutOfHostMemoryError&) { throw Refusal{XR_ERROR_OUT_OF_MEMORY, "there is no memory left for an image"}; }
+}
 
 DeviceImage::DeviceImage(const ImageInfo& image_info, Device::Implementation& device)
     : info(image_info), implementation(std::make_unique<Implementation>()) {

@@ -50,6 +50,7 @@ public:
     [[nodiscard]] const std::vector<SwapchainFormat>& formats() const;
     // XR_ERROR_FEATURE_UNSUPPORTED, XR_ERROR_VALIDATION_FAILURE beyond the device's limits.
     void checkImage(const ImageInfo& info) const;
+    // XR_ERROR_OUT_OF_MEMORY.
     [[nodiscard]] std::unique_ptr<DeviceImage> createImage(const ImageInfo& info);
     // A new image is brought into the layout that the application finds it in.
     void prepare(const DeviceImage& image);

@@ -47,6 +47,11 @@ void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_
     }
 }
 
+// A session that does not run has nothing to say about focus; what it sends is dropped all the same.
+XrResult successOfHaptic(const Session& session) {
+    return session.is_running && session.state != XR_SESSION_STATE_FOCUSED ? XR_SESSION_NOT_FOCUSED : XR_SUCCESS;
+}
+
 }  // namespace
 
 XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPath, XrInteractionProfileState* interactionProfile) {
@@ -114,8 +119,7 @@ XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapt
         const bool is_in_range = vibration.amplitude >= 0 && vibration.amplitude <= 1 && vibration.frequency >= 0;
         require(is_in_range, XR_ERROR_VALIDATION_FAILURE, "an amplitude outside 0 to 1, or a negative frequency");
         logHaptic(owner, action, hapticActionInfo->subactionPath, "on " + std::to_string(vibration.duration));
-        if (owner.state == XR_SESSION_STATE_FOCUSED) return successOf(owner);
-        return successOf(owner, XR_SESSION_NOT_FOCUSED);
+        return successOf(owner, successOfHaptic(owner));
     });
 }
 
@@ -124,7 +128,7 @@ XrResult xrStopHapticFeedback(XrSession session, const XrHapticActionInfo* hapti
         Session& owner = getSession(session);
         const AttachedAction& action = checkedHaptic(owner, hapticActionInfo);
         logHaptic(owner, action, hapticActionInfo->subactionPath, "off");
-        return successOf(owner, owner.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED);
+        return successOf(owner, successOfHaptic(owner));
     });
 }
 

@@ -1,15 +1,21 @@
 // Chapters 5 and 8: the headset as a system, its views and blend modes.
+#include <algorithm>
+
 #include "xr/simulated/api.h"
 #include "xr/simulated/instance.h"
 #include "xr/simulated/structures.h"
 
 namespace simulated {
+namespace {
+
+// Three images of this size fit on small devices; a script may recommend larger ones.
+constexpr std::uint32_t kMostViewPixels = 4096;
+
+}  // namespace
 
 void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
 
 void checkViewConfiguration(XrViewConfigurationType type) {
-    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO,
-            XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
     require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
 }
 
@@ -76,8 +82,8 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             views[eye].recommendedImageRectWidth = size_px.x;
             views[eye].recommendedImageRectHeight = size_px.y;
-            views[eye].maxImageRectWidth = kMostSwapchainPixels;
-            views[eye].maxImageRectHeight = kMostSwapchainPixels;
+            views[eye].maxImageRectWidth = std::max(kMostViewPixels, size_px.x);
+            views[eye].maxImageRectHeight = std::max(kMostViewPixels, size_px.y);
             views[eye].recommendedSwapchainSampleCount = 1;
             views[eye].maxSwapchainSampleCount = 1;
         }
