@@ -21,11 +21,19 @@ enum class ExitCode : int {
 // `what()` is one line: file, place, what is wrong, what was expected.
 class Error : public std::runtime_error {
 public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    Error(ExitCode code, std::string message) : std::runtime_error(oneLine(std::move(message))), code_(code) {}
     explicit Error(const std::string& message) : Error(ExitCode::kBadInput, message) {}
     [[nodiscard]] ExitCode code() const { return code_; }
 
 private:
+    // Names and values in a message come from outside and may hold anything.
+    static std::string oneLine(std::string message) {
+        for (char& letter : message) {
+            if (static_cast<unsigned char>(letter) < ' ') { letter = ' '; }
+        }
+        return message;
+    }
+
     ExitCode code_;
 };
 

@@ -34,6 +34,7 @@ public:
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
     [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
+        std::filesystem::remove(file(name));  // some file systems wait for the disk where a file is cut to nothing and written again
         std::ofstream(file(name), std::ios::binary) << bytes;
         return file(name);
     }

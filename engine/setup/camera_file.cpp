@@ -96,8 +96,14 @@ std::vector<FileCamera> readCameraFile(const std::filesystem::path& path) {
           std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
     Json root;
     try {
-        root = Json::parse(stream);
-    } catch (const Json::parse_error& error) { fail("{}: byte {}: not valid JSON, must be an array of cameras", file, error.byte); }
+        // Cameras are four levels deep; what is much deeper cannot even be quoted in a message.
+        root = Json::parse(stream, [&](int depth, Json::parse_event_t, const Json&) {
+            check(depth < 64, "{}: nested {} levels deep, must be an array of cameras", file, depth);
+            return true;
+        });
+    } catch (const Json::parse_error& error) {
+        fail("{}: byte {}: not valid JSON, must be an array of cameras", file, error.byte);
+    } catch (const Json::exception& error) { fail("{}: {}, must be an array of cameras", file, error.what()); }
     check(root.is_array() && !root.empty(), "{}: holds no cameras, must be a JSON array of at least one camera", file);
     std::vector<FileCamera> cameras;
     for (std::size_t i = 0; i < root.size(); ++i) { cameras.push_back(readCamera({file, i}, root[i])); }

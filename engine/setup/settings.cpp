@@ -75,6 +75,19 @@ SettingsTable tableFrom(const std::string& file, const std::string& name, const 
     return result;
 }
 
+// The library makes a table within a table for each dot of a key, however many there are, and frees them by recursion.
+void refuseDeepKeys(const std::string& file, std::string_view text) {
+    int dots = 0, line = 1;
+    bool comment = false;
+    for (const char letter : text) {
+        line += letter == '\n';
+        comment = letter != '\n' && (comment || letter == '#');
+        const bool between = std::string_view("=,[]{}/:;()\n").find(letter) != std::string_view::npos;
+        dots = comment || between ? 0 : dots + (letter == '.');
+        check(dots <= 64, "{}:{}: a key of more than 64 parts, must be a [table] and a key", file, line);
+    }
+}
+
 }  // namespace
 
 std::string Setting::text() const {
@@ -90,6 +103,7 @@ std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
           std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
     std::stringstream content;
     content << stream.rdbuf();
+    refuseDeepKeys(file, content.str());
 
     toml::table root;
     try {

@@ -1,0 +1,142 @@
+// Broken inputs by the thousand: how they are made and what is asked of whoever reads them.
+#pragma once
+
+#include "engine/error.h"
+
+#include <doctest/doctest.h>
+
+#include <sys/resource.h>
+
+#include <array>
+#include <cctype>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace binosplat::test {
+
+// What reading gave: nothing is thrown but Error, whose message is one line, and no small file is short of memory.
+struct Tally {
+    std::size_t inputs = 0, read = 0, refused = 0;
+
+    void attempt(const std::string& what, const std::function<void()>& read_it) {
+        ++inputs;
+        try {
+            read_it();
+            ++read;
+        } catch (const Error& error) {
+            ++refused;
+            const std::string message = error.what();
+            const bool one_line = message.find_first_of("\n\r") == std::string::npos;
+            const bool enough_memory = message.find("memory") == std::string::npos;
+            if (message.size() < 8 || !one_line || !enough_memory) { FAIL_CHECK(what << ": the message is '" << message << "'"); }
+        } catch (const std::exception& error) { FAIL_CHECK(what << ": not an Error but '" << error.what() << "'"); }
+    }
+};
+
+// The most memory this process ever held, in MiB; 0 where a sanitizer holds most of it.
+inline long peakMebibytes() {
+#if defined(__SANITIZE_ADDRESS__)
+    return 0;
+#else
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+#endif
+}
+
+using Attempt = std::function<void(const std::string& what, const std::string& bytes)>;
+
+// `good` cut off at every length.
+inline void truncate(const std::string& good, const Attempt& attempt) {
+    for (std::size_t length = 0; length < good.size(); ++length) {
+        attempt(fmt::format("the first {} bytes", length), good.substr(0, length));
+    }
+}
+
+// `count` times one to eight changed bits, the same ones in every run.
+inline void flipBits(const std::string& good, int count, const Attempt& attempt) {
+    std::mt19937 random(5);
+    for (int i = 0; i < count; ++i) {
+        std::string bytes = good;
+        for (auto flips = 1 + random() % 8; flips > 0; --flips) {
+            char& byte = bytes[random() % bytes.size()];
+            byte = static_cast<char>(static_cast<unsigned char>(byte) ^ 1u << random() % 8);
+        }
+        attempt(fmt::format("flip {}", i), bytes);
+    }
+}
+
+// `count` times a few bytes overwritten by the ends of the integers' and floats' ranges, cut out, or doubled.
+inline void spliceBytes(const std::string& good, int count, const Attempt& attempt) {
+    static const std::array<std::string, 10> kExtremes{std::string(8, '\xff'),
+                                                       std::string(8, '\0'),
+                                                       std::string("\xff\xff\xff\x7f", 4),
+                                                       std::string("\0\0\0\x80", 4),
+                                                       std::string("\xff\xff\xff\xff\xff\xff\xff\x7f", 8),
+                                                       std::string("\0\0\0\0\0\0\0\x80", 8),
+                                                       std::string("\0\0\xc0\x7f", 4),  // NaN
+                                                       std::string("\0\0\x80\x7f", 4),  // infinity
+                                                       std::string("\0\0\x80\xff", 4),  // minus infinity
+                                                       std::string("\1\0\0\0", 4)};     // a denormal
+    std::mt19937 random(7);
+    for (int i = 0; i < count; ++i) {
+        std::string bytes = good;
+        const std::size_t at = random() % bytes.size(), length = 1 + random() % 16;
+        const auto kind = static_cast<std::size_t>(random() % 12);
+        if (kind < kExtremes.size()) {
+            bytes.replace(at, std::min(kExtremes[kind].size(), bytes.size() - at), kExtremes[kind].substr(0, bytes.size() - at));
+        } else if (kind == 10) {
+            bytes.erase(at, length);
+        } else {
+            bytes.insert(at, bytes.substr(at, length));
+        }
+        attempt(fmt::format("splice {}", i), bytes);
+    }
+}
+
+// Every number in the first `reach` bytes of a text, replaced by each of these.
+inline void replaceNumbers(const std::string& good, std::size_t reach, const Attempt& attempt) {
+    constexpr const char* kAbsurd[] = {"-1",
+                                       "0",
+                                       "4294967296",
+                                       "9223372036854775807",
+                                       "9223372036854775808",
+                                       "18446744073709551615",
+                                       "-9223372036854775808",
+                                       "nan",
+                                       "-inf",
+                                       "1e308",
+                                       "1e999",
+                                       "1e-320",
+                                       "0x10",
+                                       "\"7\"",
+                                       "",
+                                       "99999999999999999999999"};
+    const auto isNumber = [](char letter) {
+        return std::isdigit(static_cast<unsigned char>(letter)) != 0 || letter == '.' || letter == '-';
+    };
+    for (std::size_t at = 0; at < std::min(reach, good.size()); ++at) {
+        if (!isNumber(good[at]) || (at > 0 && isNumber(good[at - 1]))) { continue; }
+        std::size_t end = at;
+        while (end < good.size() && isNumber(good[end])) { ++end; }
+        for (const char* absurd : kAbsurd) {
+            attempt(fmt::format("byte {}: {}", at, absurd), good.substr(0, at) + absurd + good.substr(end));
+        }
+    }
+}
+
+// Every line in the first `reach` bytes left out, doubled, and moved to the front.
+inline void shuffleLines(const std::string& good, std::size_t reach, const Attempt& attempt) {
+    for (std::size_t at = 0; at < std::min(reach, good.size());) {
+        const std::size_t end = std::min(good.find('\n', at), good.size() - 1) + 1;
+        const std::string line = good.substr(at, end - at);
+        attempt(fmt::format("without line at {}", at), good.substr(0, at) + good.substr(end));
+        attempt(fmt::format("twice line at {}", at), good.substr(0, end) + line + good.substr(end));
+        attempt(fmt::format("first line at {}", at), line + good.substr(0, at) + good.substr(end));
+        at = end;
+    }
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,102 @@
+// Broken scene files of every format but SOG: each loads into a whole scene or is refused in one line.
+#include "tests/hostile.h"
+#include "tests/hostile_scenes.h"
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// Loads from one file, overwritten for each input.
+class SceneAttempts {
+public:
+    explicit SceneAttempts(std::string name) : name_(std::move(name)) {}
+    ~SceneAttempts() {
+        MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", name_, tally_.inputs, tally_.read, tally_.refused));
+        CHECK(tally_.refused > tally_.inputs / 4);
+        CHECK(peakMebibytes() < 512);
+    }
+    SceneAttempts(const SceneAttempts&) = delete;
+    SceneAttempts& operator=(const SceneAttempts&) = delete;
+
+    Attempt attempt() {
+        return [this](const std::string& what, const std::string& bytes) {
+            const std::string path = folder_.write("broken", bytes);
+            tally_.attempt(name_ + ", " + what, [&] { checkWhole(loadScene(path)); });
+        };
+    }
+
+private:
+    static void checkWhole(const Scene& scene) {
+        const std::size_t splats = scene.size();
+        bool whole = scene.rotations.size() == splats && scene.scales.size() == splats && scene.opacities.size() == splats &&
+                     scene.sh.size() == splats * 3 * static_cast<std::size_t>(shCoefficientCount(scene.sh_degree));
+        for (std::size_t i = 0; whole && i < splats; ++i) {
+            const glm::vec3& p = scene.positions[i];
+            whole = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(scene.scales[i].x) &&
+                    std::isfinite(scene.scales[i].y) && scene.scales[i].x >= 0.0f && scene.scales[i].y >= 0.0f &&
+                    std::abs(glm::length(scene.rotations[i]) - 1.0f) < 1e-4f && scene.opacities[i] >= 0.0f && scene.opacities[i] <= 1.0f;
+        }
+        for (const float value : scene.sh) { whole = whole && std::isfinite(value); }
+        if (!whole) { FAIL_CHECK("a scene with values that are not to be"); }
+    }
+
+    std::string name_;
+    Folder folder_;
+    Tally tally_;
+};
+
+}  // namespace
+
+TEST_CASE("broken PLY files") {
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makePly(9, encoding == Encoding::kLittle);
+        ply.encoding = encoding;
+        ply.header_before = "element strip 1\nproperty list uchar short index\n";
+        appendTyped(ply.data_before, "uchar", 2.0, encoding);
+        appendTyped(ply.data_before, "short", 1.0, encoding);
+        appendTyped(ply.data_before, "short", 2.0, encoding);
+        if (encoding == Encoding::kAscii) { ply.data_before += "\n"; }
+        const std::string good = ply.bytes();
+        SceneAttempts attempts(fmt::format("PLY {}", static_cast<int>(encoding)));
+        truncate(good, attempts.attempt());
+        flipBits(good, 1000, attempts.attempt());
+        spliceBytes(good, 1000, attempts.attempt());
+        replaceNumbers(good, good.find("end_header") + 200, attempts.attempt());
+        shuffleLines(good, good.find("end_header") + 12, attempts.attempt());
+    }
+}
+
+TEST_CASE("broken compressed PLY files") {
+    const std::string good = makeCompressedPly();
+    SceneAttempts attempts("compressed PLY");
+    truncate(good, attempts.attempt());
+    flipBits(good, 1500, attempts.attempt());
+    spliceBytes(good, 1500, attempts.attempt());
+    replaceNumbers(good, good.find("end_header"), attempts.attempt());
+    shuffleLines(good, good.find("end_header") + 12, attempts.attempt());
+}
+
+TEST_CASE("broken .splat files") {
+    const std::string good = makeSplatFile();
+    SceneAttempts attempts(".splat");
+    truncate(good, attempts.attempt());
+    flipBits(good, 1000, attempts.attempt());
+    spliceBytes(good, 1000, attempts.attempt());
+}
+
+TEST_CASE("broken SPZ files") {
+    for (const std::uint32_t version : {2u, 3u}) {
+        const std::string plain = makeSpz(version).bytes(), good = gzip(plain);
+        SceneAttempts attempts(fmt::format("SPZ {}", version));
+        const Attempt attempt = attempts.attempt();
+        truncate(good, attempt);
+        flipBits(good, 500, attempt);
+        spliceBytes(good, 500, attempt);
+        // Broken within a stream that is whole.
+        const Attempt within = [&](const std::string& what, const std::string& bytes) { attempt("within gzip, " + what, gzip(bytes)); };
+        truncate(plain, within);
+        flipBits(plain, 1000, within);
+        spliceBytes(plain, 1000, within);
+    }
+}
