@@ -1,5 +1,6 @@
 // Facts about a runtime that misbehaves as real ones do, seen by a program that was not written for it: hello_xr.
 #include "tests/hello_xr.h"
+#include "tests/shared_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,34 @@ TEST_CASE("submittedPosesAreTheHeadsOfTheirDisplayTime") {
         const double left_x = logged["layers"].at(0)["views"].at(0)["pose"]["position"].at(0);
         CHECK(left_x == doctest::Approx(time_s - 0.0315).epsilon(1e-5));
     }
+}
+
+TEST_CASE("aRecordedWalkReachesTheProgramAsItWasWalked") {
+    const auto data = sharedData();
+    if (!data || !haveHelloXr()) { return; }
+    const HelloXr run(kQuiet + "head-motion \"" + std::filesystem::absolute(*data / "headmotion" / "User3.csv").string() +
+                      "\" axes unity skip 5\nat 1 exit\n");
+    CHECK_MESSAGE(run.exit_status == 0, run.output);
+    double way_m = 0.0, largest_error_m = 0.0;
+    for (std::size_t i = 10; i < 100; ++i) {
+        const Json& frame = run.frames.at(i);
+        const Json& layer = frame["layers"].at(0);
+        // LOCAL is level and faces where the head faced at time 0; its heading is in the log.
+        const Json& q = layer["stage_from_space"]["orientation"];
+        const glm::dquat stage_from_local(q[3].get<double>(), q[0].get<double>(), q[1].get<double>(), q[2].get<double>());
+        const auto vectorOf = [](const Json& json) {
+            return glm::dvec3(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+        };
+        for (const std::size_t eye : {0u, 1u}) {
+            const glm::dvec3 submitted =
+                vectorOf(layer["stage_from_space"]["position"]) + stage_from_local * vectorOf(layer["views"].at(eye)["pose"]["position"]);
+            largest_error_m = std::max(largest_error_m, glm::length(submitted - vectorOf(frame["eyes"].at(eye)["pose"]["position"])));
+        }
+        way_m += glm::length(vectorOf(frame["head"]["position"]) - vectorOf(run.frames.at(i - 1)["head"]["position"]));
+    }
+    CHECK(largest_error_m < 1e-6);
+    CHECK(way_m > 0.1);
+    CHECK(way_m < 2.0);
 }
 
 TEST_CASE("theMenuButtonReachesTheProgramsQuitAction") {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 
 using namespace simulated;
 
@@ -234,4 +235,21 @@ TEST_CASE("aScriptWithAnyByteChangedIsAScriptOrAnError") {
         }
     }
     CHECK(refused > 1000);
+}
+
+TEST_CASE("headsetsAndRecordingsCutOffAnywhereAreReadOrRefused") {
+    const Folder folder;
+    const std::string motion = "time_ms,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n16.5,1e-1,-2,3,0.70710678,0,0.70710678,0\n";
+    for (const auto& [command, whole] : {std::pair("headset", kHeadset), std::pair("head-motion", motion)}) {
+        std::size_t refused = 0;
+        for (std::size_t length = 0; length <= whole.size(); ++length) {
+            folder.write("cut", whole.substr(0, length));
+            const std::string message = messageOf(std::string(command) + " cut", (folder.path / "a.script").string());
+            if (message == "accepted") { continue; }
+            ++refused;
+            if (message.find("/cut") == std::string::npos) { FAIL_CHECK(message); }
+        }
+        CHECK(refused > 40);
+        CHECK(messageOf(std::string(command) + " cut", (folder.path / "a.script").string()) == "accepted");
+    }
 }

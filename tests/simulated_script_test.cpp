@@ -5,9 +5,11 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -331,4 +333,30 @@ TEST_CASE("theSameTimeGivesTheSameState") {
     CHECK(once.stage_from_head.position == again.stage_from_head.position);
     CHECK(once.controllers[kRight].stage_from_aim.orientation == again.controllers[kRight].stage_from_aim.orientation);
     CHECK(script.eventsIn(-kForever, kForever).back().kind == ScriptEvent::Kind::kExit);
+}
+
+TEST_CASE("theDocumentedExampleIsTheFile") {
+    const std::string root = BINOSPLAT_SOURCE_DIR;
+    const auto readAll = [](const std::string& path) {
+        std::ifstream stream(path);
+        return std::string{std::istreambuf_iterator<char>(stream), {}};
+    };
+    const std::string page = readAll(root + "/docs/simulated_script.md"), example = readAll(root + "/configs/simulated/walk.script");
+    REQUIRE(example.size() > 100);
+    CHECK(page.find("```\n" + example + "```\n") != std::string::npos);
+    // The list of commands comes from the message about one that does not exist.
+    std::string known;
+    try {
+        (void)parse("?");
+    } catch (const ScriptError& error) { known = error.what(); }
+    known = known.substr(known.rfind(": ") + 2);
+    std::size_t commands = 0;
+    for (std::size_t begin = 0; begin < known.size(); ++commands) {
+        const std::size_t end = std::min(known.find(", ", begin), known.size());
+        const std::string command = known.substr(begin, end - begin);
+        INFO(command);
+        CHECK(page.find("`" + command + " ") != std::string::npos);
+        begin = end + 2;
+    }
+    CHECK(commands == 16);
 }

@@ -67,7 +67,7 @@ struct ScriptEvent {
 };
 [[nodiscard]] const char* nameOf(ScriptEvent::Kind kind);  // the script's word for it
 
-// Which frames' composed pictures are written; frames count from 0 at the session's first xrEndFrame.
+// Which frames' composed pictures are written; frames count from 0 at the first xrEndFrame.
 struct FrameChoice {
     std::uint64_t first = 0;
     std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
@@ -86,7 +86,7 @@ public:
     static Script parse(std::string_view text, const std::string& name);
     static Script load(const std::filesystem::path& path);
 
-    // Times are seconds of display time since the session was created; any finite time is allowed, also before 0.
+    // Times are seconds of display time since the first frame; any finite time is allowed, also before 0.
     [[nodiscard]] State at(double time_s) const;
     // Events with from_s < time <= to_s, in order; pass -infinity as `from_s` for the first frame.
     [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
