@@ -18,6 +18,10 @@ struct WalkingFixture : SessionFixture {
               "head 0 position 1 1.5 2 turn 0 0\nhead 2 position 1 1.5 0 turn 90 0\n") {}
 };
 
+struct NarrowingFixture : SessionFixture {
+    NarrowingFixture() : SessionFixture("size 64 64\nframes none\nrate 10\nvisibility-mask on\nat 0.55 eye right angles -30 30 30 -30\n") {}
+};
+
 }  // namespace
 
 TEST_CASE_FIXTURE(SessionFixture, "reference spaces are VIEW, LOCAL and STAGE") {
@@ -155,4 +159,16 @@ TEST_CASE_FIXTURE(SessionFixture, "a headset without mask gives an empty one") {
     CHECK(function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR")(session, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, 1,
                                                                          XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR, &mask) == XR_SUCCESS);
     CHECK(mask.vertexCountOutput == 0);
+}
+
+TEST_CASE_FIXTURE(NarrowingFixture, "a mask that changes with the eye's angles is announced once, for that eye") {
+    focus();
+    for (int i = 3; i < 6; ++i) frame();
+    XrEventDataBuffer event;
+    CHECK(poll(event) == XR_TYPE_UNKNOWN);
+    frame();
+    REQUIRE(poll(event) == XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR);
+    CHECK(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex == 1);
+    frame();
+    CHECK(poll(event) == XR_TYPE_UNKNOWN);
 }

@@ -84,3 +84,30 @@ TEST_CASE_FIXTURE(VulkanFixture, "a device is made on the graphics device alone"
     info.systemId = 4;
     CHECK(create(instance, &info, &made, &result) == XR_ERROR_SYSTEM_INVALID);
 }
+
+TEST_CASE("the elder extension has functions of its own, and needs no extensions of Vulkan") {
+    const Headset headset(kQuietScript);
+    const std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE_EXTENSION_NAME};
+    const XrInstanceCreateInfo info = instanceInfo(extensions);
+    XrInstance instance = XR_NULL_HANDLE;
+    REQUIRE(xrCreateInstance(&info, &instance) == XR_SUCCESS);
+    const auto find = [&](const char* name) {
+        PFN_xrVoidFunction found = nullptr;
+        xrGetInstanceProcAddr(instance, name, &found);
+        return found;
+    };
+    CHECK((find("xrCreateVulkanInstanceKHR") == nullptr));
+    CHECK((find("xrGetVulkanGraphicsDeviceKHR") != nullptr));
+    for (const char* name : {"xrGetVulkanInstanceExtensionsKHR", "xrGetVulkanDeviceExtensionsKHR"}) {
+        const auto getExtensions = reinterpret_cast<PFN_xrGetVulkanInstanceExtensionsKHR>(find(name));
+        REQUIRE((getExtensions != nullptr));
+        std::uint32_t count = 0;
+        char text[4] = "no";
+        CHECK(getExtensions(instance, 1, 0, &count, nullptr) == XR_SUCCESS);
+        CHECK(count == 1);
+        CHECK(getExtensions(instance, 1, 4, &count, text) == XR_SUCCESS);
+        CHECK(std::string(text).empty());
+        CHECK(getExtensions(instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
+    }
+    CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
+}

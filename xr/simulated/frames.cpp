@@ -75,10 +75,12 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         Session& owner = runningSession(session);
         Simulation& simulation = *owner.instance.simulation;
         frame = simulation.clock.nextFrame();
+        const State state = simulation.at(frame.display_time);
         owner.meetEvents(frame.display_time);
+        owner.announceMasks(state);
         const bool is_visible = owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
         owner.frames.waited = frame.display_time;
-        owner.frames.should_render = is_visible && simulation.at(frame.display_time).should_render;
+        owner.frames.should_render = is_visible && state.should_render;
         output.predictedDisplayTime = frame.display_time;
         output.predictedDisplayPeriod = simulation.clock.period();
         output.shouldRender = owner.frames.should_render;

@@ -102,6 +102,17 @@ void Session::meetEvents(XrTime display_time) {
     simulation.events_until_s = time_s;
 }
 
+void Session::announceMasks(const State& now) {
+    if (!instance.simulation->script.visibility_mask || !instance.extensions.contains(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
+    for (const Side side : kSides) {
+        if (!masked || (*masked)[side] == now.eyes[side].fov) continue;
+        instance.events.push(XrEventDataVisibilityMaskChangedKHR{XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, handleOf(*this),
+                                                                 XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
+                                                                 static_cast<std::uint32_t>(side)});
+    }
+    masked = {now.eyes[kLeft].fov, now.eyes[kRight].fov};
+}
+
 Session& getSession(XrSession session) {
     Session& found = get<Session>(session);
     checkNotLost(found);

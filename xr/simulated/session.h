@@ -2,6 +2,7 @@
 // state towards the one that the script wants.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,6 +34,8 @@ struct Session : Object {
     std::optional<Attachment> attachment;
     std::optional<XrTime> loss_announced, lost_from;
     std::uint32_t slow_images = 0;
+    // The eyes' angles as of the frame before: a mask changes with them.
+    std::optional<std::array<Fov, kEyes>> masked;
     std::vector<std::string> log_events;
 
     Session(Instance& owner, const GraphicsBinding& binding);
@@ -43,6 +46,8 @@ struct Session : Object {
     void step(const State& wanted);
     // What the script lets happen once, up to this display time.
     void meetEvents(XrTime display_time);
+    // Tells of visibility masks that are others than in the frame before.
+    void announceMasks(const State& now);
 };
 
 // XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST, XR_ERROR_SESSION_LOST.
