@@ -189,6 +189,19 @@ TEST_CASE_FIXTURE(SessionFixture, "xrWaitFrame waits until the frame before has 
     CHECK(result == XR_SUCCESS);
 }
 
+TEST_CASE_FIXTURE(SessionFixture, "an xrWaitFrame that waits returns when its session ends") {
+    begin();
+    waitFrame();
+    std::atomic<XrResult> result = XR_SUCCESS;
+    std::thread second([&] {
+        XrFrameState state{XR_TYPE_FRAME_STATE};
+        result = xrWaitFrame(session, nullptr, &state);
+    });
+    CHECK(xrDestroySession(session) == XR_SUCCESS);
+    second.join();
+    CHECK(result == XR_ERROR_HANDLE_INVALID);
+}
+
 TEST_CASE_FIXTURE(SessionFixture, "an application leaves through STOPPING, and its session ends EXITING") {
     focus();
     CHECK(xrEndSession(session) == XR_ERROR_SESSION_NOT_STOPPING);

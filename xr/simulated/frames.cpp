@@ -36,6 +36,8 @@ void checkBlendMode(XrEnvironmentBlendMode mode) {
 
 }  // namespace
 
+void wakeFrameWaiters() { frameBegun().notify_all(); }
+
 XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
                        uint32_t* viewCountOutput, XrView* views) {
     return answer(__func__, [&] {
@@ -99,7 +101,7 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
         require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
-        frameBegun().notify_all();
+        wakeFrameWaiters();
         return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
     });
 }

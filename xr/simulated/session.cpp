@@ -47,6 +47,7 @@ GraphicsBinding graphicsOf(const Instance& instance, const XrGraphicsBindingVulk
 Session::Session(Instance& owner, const GraphicsBinding& binding) : instance(owner), device(binding) { instance.session = this; }
 
 Session::~Session() {
+    wakeFrameWaiters();
     instance.session = nullptr;
     instance.events.forget(handleOf(*this));
 }
@@ -171,6 +172,7 @@ XrResult xrEndSession(XrSession session) {
         const bool may_end = ended.state == XR_SESSION_STATE_STOPPING || ended.loss_announced;
         require(may_end, XR_ERROR_SESSION_NOT_STOPPING, "the session is not STOPPING");
         ended.is_running = false;
+        wakeFrameWaiters();
         if (ended.loss_announced) return XR_SESSION_LOSS_PENDING;
         ended.enter(XR_SESSION_STATE_IDLE);
         ended.enter(XR_SESSION_STATE_EXITING);

@@ -58,6 +58,9 @@ void checkNotLost(const Session& session);
 // While a loss is pending, whatever succeeds says so.
 XrResult successOf(const Session& session, XrResult success = XR_SUCCESS);
 
+// For an xrWaitFrame on another thread that waits for a frame which will not come any more.
+void wakeFrameWaiters();
+
 constexpr int kFramesOfGrace = 3;
 
 }  // namespace simulated

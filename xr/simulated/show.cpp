@@ -41,7 +41,10 @@ void writePicture(const Session& session, const XrFrameEndInfo& info, const Stat
 
 void showFrame(Session& session, const XrFrameEndInfo& info, const State& state) {
     Simulation& simulation = *session.instance.simulation;
-    if (!simulation.output) return;
+    if (!simulation.output) {
+        session.log_events.clear();
+        return;
+    }
     const bool wants_picture = simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown);
     if (wants_picture && info.layerCount > 0) writePicture(session, info, state, simulation.output->folder);
     simulation.output->log.write(recordOf(session, info, state));
