@@ -282,6 +282,16 @@ TEST_CASE("recordedMotionStartsWhereTheHeadLineSaysAndKeepsItsTilt") {
     CHECK(isNear(forwardOf(script.at(3.0).stage_from_head), {0.0, std::sqrt(0.75), -0.5}, 1e-9));
 }
 
+TEST_CASE("aRecordingThatBeginsTiltedStaysTiltedAsItWas") {
+    const Folder folder;
+    // Looks up by 60 degrees at first and moves a metre up: up in STAGE, too, and not along the tilted head's axes.
+    folder.write("m.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
+    const Script script = folder.script("head 0 position 0 1.6 0\nhead-motion m.csv");
+    CHECK(isNear(forwardOf(script.at(0.0).stage_from_head), {0.0, std::sqrt(0.75), -0.5}, 1e-9));
+    CHECK(isNear(script.at(1.0).stage_from_head.position, {0.0, 2.6, 0.0}, 1e-9));
+    CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {0.0, 0.0, -1.0}, 1e-9));
+}
+
 TEST_CASE("unityRecordingsAreMirrored") {
     const Folder folder;
     // Left-handed with z ahead: a positive turn about y looks right, and +z is ahead.
