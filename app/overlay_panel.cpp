@@ -11,7 +11,7 @@ namespace {
 constexpr double kPressed = 0.5;
 constexpr double kRayWidthMetres = 0.004;
 // In front of the eyes: 35 degrees to the left, a little below, within arm's reach.
-const glm::dvec3 kPlaceMetres(-0.55, 0.08, 0.8);
+const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
 
 }  // namespace

@@ -1,0 +1,174 @@
+// Facts about the wearer's place in the scene, and about keeping it.
+#include "app/placement.h"
+#include "app/overlay_panel.h"
+#include "app/view_eyes.h"
+#include "app/view_settings.h"
+#include "engine/error.h"
+#include "xr/convert.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace binosplat;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+void checkNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-9) {
+    CAPTURE(a.x);
+    CAPTURE(a.y);
+    CAPTURE(a.z);
+    CHECK(glm::length(a - b) <= tolerance);
+}
+
+const Similarity kSome{glm::normalize(glm::dquat(0.9, 0.1, -0.3, 0.2)), {1.0, -2.0, 3.0}, 2.5};
+
+Scene emptyScene() {
+    Scene scene;
+    scene.name = "empty";
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("OpenXR's axes become ours: up is -y, ahead is z, and back again without loss") {
+    checkNear(xr::fromXr(XrVector3f{1.0f, 2.0f, 3.0f}), {1.0, -2.0, -3.0});
+    // A quarter turn to the left about OpenXR's y: what was ahead is now -x.
+    const auto half = static_cast<float>(std::sqrt(0.5));
+    const Pose left = xr::fromXr(XrPosef{{0.0f, half, 0.0f, half}, {0.0f, 0.0f, 0.0f}});
+    checkNear(left.orientation * glm::dvec3(0, 0, 1), {-1, 0, 0}, 1e-6);
+    // A quarter turn upwards about x: ahead is up.
+    const Pose up = xr::fromXr(XrPosef{{half, 0.0f, 0.0f, half}, {0.0f, 0.0f, 0.0f}});
+    checkNear(up.orientation * glm::dvec3(0, 0, 1), {0, -1, 0}, 1e-6);
+    const XrPosef there = xr::toXr(left);
+    CHECK(there.orientation.y == doctest::Approx(half));
+    CHECK(there.orientation.w == doctest::Approx(half));
+}
+
+TEST_CASE("similarities compose") {
+    const Similarity other{glm::normalize(glm::dquat(0.5, -0.5, 0.1, 0.3)), {-1.0, 0.5, 0.25}, 0.4};
+    const glm::dvec3 point(0.3, -0.7, 1.1);
+    checkNear(transform(compose(kSome, other), point), transform(kSome, transform(other, point)));
+}
+
+TEST_CASE("a wearer starts where the options put the eye, upright, metres as long as they say") {
+    RunOptions options;
+    options.camera.eye = glm::dvec3(1, 2, 3);
+    options.camera.look = glm::dvec3(1, 3, 5);  // down and ahead, for y points down
+    options.metres_per_unit = 0.5;
+    const Similarity start = startPlacement(options, emptyScene());
+    checkNear(transform(start, glm::dvec3(0.0)), {1, 2, 3});
+    checkNear(transform(start, {0, 0, 1}), {1, 2, 5});   // ahead is level
+    checkNear(transform(start, {0, -1, 0}), {1, 0, 3});  // up is up
+    // Looking straight down there is no level ahead; it is upright still.
+    options.camera.look = glm::dvec3(1, 2, 3) + glm::dvec3(0, 0.001, 5);
+    options.camera.up = glm::dvec3(0, 0, -1);
+    checkNear(startPlacement(options, emptyScene()).orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
+}
+
+TEST_CASE("walking moves, turning keeps the head in its place") {
+    checkNear(transform(movedBy(kSome, {0.1, 0.2, 0.3}), glm::dvec3(0.0)), transform(kSome, {0.1, 0.2, 0.3}));
+    const glm::dvec3 head(0.2, -1.0, 0.4);
+    const Similarity turned = turnedBy(kSome, 0.5 * kPi, head);
+    checkNear(transform(turned, head), transform(kSome, head));
+    // What was to the right is ahead.
+    checkNear(transform(turned, head + glm::dvec3(0, 0, 1)), transform(kSome, head + glm::dvec3(1, 0, 0)));
+}
+
+TEST_CASE("both hands hold what they took: points of the scene stay in them") {
+    const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
+    for (const auto& to : {std::array{glm::dvec3(-0.1, 0.1, 0.5), glm::dvec3(0.4, 0.1, 0.9)},
+                           std::array{glm::dvec3(0.3, 0.4, 0.3), glm::dvec3(-0.1, 0.4, 0.1)}, from}) {
+        const Similarity held = heldBy(kSome, from, to);
+        for (std::size_t h = 0; h < 2; ++h) { checkNear(transform(held, to[h]), transform(kSome, from[h])); }
+        // The vertical stays the vertical.
+        checkNear(held.orientation * glm::dvec3(0, 1, 0), kSome.orientation * glm::dvec3(0, 1, 0));
+    }
+    // Twice as far apart: the scene is twice as large, so a metre is half as many units.
+    const Similarity grown = heldBy(kSome, from, {glm::dvec3(-0.4, 0.4, 0.3), glm::dvec3(0.4, 0.4, 0.3)});
+    CHECK(grown.scale == doctest::Approx(0.5 * kSome.scale));
+    // Hands at one point say nothing about size and direction.
+    const Similarity same = heldBy(kSome, {from[0], from[0]}, from);
+    CHECK(same.scale == doctest::Approx(kSome.scale));
+}
+
+TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
+    const XrQuaternionf q{0.1f, 0.2f, -0.3f, 0.92736185f};
+    std::array<xr::EyeView, 2> views{};
+    const glm::dquat turn = xr::fromXr(XrPosef{q, {}}).orientation;
+    const glm::dvec3 right = glm::dvec3(5.0, -1.0, 2.0) + turn * glm::dvec3(0.063, 0, 0);
+    views[0].pose = {q, xr::toXr(glm::dvec3(5.0, -1.0, 2.0))};
+    views[1].pose = {q, xr::toXr(right)};
+    const auto eyes = roomFromEyes(views);
+    const glm::dvec3 shift = glm::conjugate(eyes[0].orientation) * (eyes[1].position - eyes[0].position);
+    CHECK(shift.x == doctest::Approx(0.063).epsilon(1e-4));
+    CHECK(std::abs(shift.y) < 1e-15);
+    CHECK(std::abs(shift.z) < 1e-15);
+    views[1].pose.orientation = {0.1f, 0.2001f, -0.3f, 0.92734f};
+    CHECK(roomFromEyes(views)[1].orientation != eyes[0].orientation);
+    views[1].pose = {q, xr::toXr(right + glm::dvec3(0, 0.001, 0))};
+    checkNear(roomFromEyes(views)[1].position, right + glm::dvec3(0, 0.001, 0), 1e-6);
+}
+
+TEST_CASE("what the panel is set to survives its file") {
+    ViewSettings settings;
+    settings.stereo.mode = "paper";
+    settings.stereo.dominant = kRight;
+    settings.stereo.center_roi = true;
+    settings.stereo.margin_px = 48;
+    settings.stereo.budget = 0.25;
+    settings.stereo.depth = "mean";
+    settings.resolution_scale = 0.7;
+    settings.tint = true;
+    settings.panel = false;
+    settings.scene_from_room = kSome;
+    const auto file = std::filesystem::temp_directory_path() / "binosplat_placement_test.toml";
+    std::ofstream(file) << viewSettingsToml(settings);
+    std::vector<SettingsTable> view;
+    Settings stereo;
+    for (const SettingsTable& table : readSettingsFile(file)) {
+        if (table.name == "view") { view.push_back(table); }
+        if (table.name == "stereo") { stereo = table.settings; }
+    }
+    std::filesystem::remove(file);
+    ViewSettings read = readViewSettings(view, {});
+    read.stereo = runOptions(stereo).stereo;
+    CHECK(describeChange(settings, read) == "");
+    REQUIRE(read.scene_from_room.has_value());
+    checkNear(read.scene_from_room->position, kSome.position);
+    CHECK(read.scene_from_room->scale == kSome.scale);
+    CHECK(glm::length(read.scene_from_room->orientation - kSome.orientation) < 1e-12);
+    read.stereo.margin_px = 16;
+    CHECK(describeChange(settings, read) == "margin = 16");
+}
+
+TEST_CASE("a config that places the scene in part is refused with its line") {
+    const SettingsTable table{"view", "a.toml:3", {{"scene-position", {"a.toml:4: scene-position", {"1", "2", "3"}}}}};
+    CHECK_THROWS_WITH_AS(readViewSettings({table}, {}), doctest::Contains("a.toml:3"), Error);
+    const SettingsTable unknown{"view", "a.toml:3", {{"colour", {"a.toml:4: colour", {"red"}}}}};
+    CHECK_THROWS_WITH_AS(readViewSettings({unknown}, {}), doctest::Contains("a.toml:4: colour"), Error);
+}
+
+TEST_CASE("a ray meets the panel where it points, from the front alone") {
+    OverlayPanel panel({800, 400}, 0.8);
+    const Pose& hung = panel.roomFromPanel();
+    std::array<xr::Hand, 2> hands;
+    // A quarter to the right and downwards of the panel's middle.
+    hands[kRight].aim = compose(hung, {glm::dquat(1, 0, 0, 0), {0.2, 0.1, -0.5}});
+    panel.update(hands);
+    REQUIRE(panel.pointer().place_px.has_value());
+    CHECK(panel.pointer().place_px->x == doctest::Approx(600));
+    CHECK(panel.pointer().place_px->y == doctest::Approx(300));
+    CHECK_FALSE(panel.pointer().pressed);
+    const auto ray = panel.ray({});
+    REQUIRE(ray.has_value());
+    CHECK(ray->size_m.y == doctest::Approx(0.5));
+    checkNear(ray->room_from_strip.position, transform(hung, {0.2, 0.1, -0.25}));
+    hands[kRight].aim = compose(hung, {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
+    panel.update(hands);
+    CHECK_FALSE(panel.pointer().place_px.has_value());
+    CHECK_FALSE(panel.ray({}).has_value());
+}

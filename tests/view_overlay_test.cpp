@@ -1,0 +1,192 @@
+// Facts about the viewer's panel and controls: a ray points, the trigger clicks, sticks and grips move, as a script's hands do it.
+#include "engine/geometry.h"
+#include "engine/picture/metrics.h"
+#include "tests/view_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// The left hand points at the floor.
+const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+const std::string kScene = "builtin:fence --load-first";
+
+// Widgets by their place on the panel, in shares of its width and height.
+const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kRightEye(0.34, 0.203),
+    kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477);
+
+// Where the panel hangs, as the runtime was told, in STAGE and OpenXR's axes.
+struct Panel {
+    glm::dvec3 middle;
+    glm::dquat orientation;
+    glm::dvec2 size_m;
+};
+
+Panel panelOf(const ViewRun& run, std::size_t frame) {
+    const nlohmann::json quad = run.layers(frame, "quad").at(0);
+    const auto p = quad.at("pose").at("position").get<std::array<double, 3>>();
+    const auto q = quad.at("pose").at("orientation").get<std::array<double, 4>>();
+    const auto size = quad.at("size").get<std::array<double, 2>>();
+    return {{p[0], p[1] + 1.6, p[2]}, {q[3], q[0], q[1], q[2]}, {size[0], size[1]}};
+}
+
+// A line that puts the right hand 30 cm before a place of the panel, pointing straight at it.
+std::string pointAt(const Panel& panel, const glm::dvec2& share, double time_s) {
+    const glm::dvec3 on_panel((share.x - 0.5) * panel.size_m.x, (0.5 - share.y) * panel.size_m.y, 0.3);
+    const glm::dvec3 at = panel.middle + panel.orientation * on_panel;
+    const glm::dquat& q = panel.orientation;
+    return fmt::format("controller right {:.6f} position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}\n", time_s, at.x, at.y,
+                       at.z, q.x, q.y, q.z, q.w);
+}
+
+// Points at one place after the other, a fifth of a second each, and clicks there.
+std::string clickOn(const Panel& panel, const std::vector<glm::dvec2>& places) {
+    std::string script;
+    double time_s = 0.2;
+    for (const glm::dvec2& place : places) {
+        script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15);
+        script += fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
+        time_s += 0.2;
+    }
+    return script + fmt::format("at {} exit\n", time_s);
+}
+
+// Where the panel hangs at the start.
+const Panel& startPanel(const Workplace& work) {
+    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", kScene), 8);
+    return panel;
+}
+
+bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
+
+// The share of the picture that is greener than the picture beside it: what the centre ROI's tint does.
+double shareTinted(const Image& before, const Image& after) {
+    std::size_t tinted = 0;
+    for (std::size_t i = 0; i < before.pixelCount(); ++i) {
+        const float* a = before.values.data() + i * static_cast<std::size_t>(before.channels);
+        const float* b = after.values.data() + i * static_cast<std::size_t>(after.channels);
+        tinted += b[1] - a[1] > 0.06f && a[0] - b[0] > 0.03f ? 1 : 0;
+    }
+    return static_cast<double>(tinted) / static_cast<double>(before.pixelCount());
+}
+
+}  // namespace
+
+TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture shows it") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const std::string arguments = kScene + " --mode paper --margin 0";
+    const ViewRun run = runView(work, "click", kSmall + clickOn(panel, {kTint, kCentreRoi, {0.9, 0.95}}), arguments);
+    checkClean(run);
+    CHECK(says(run, "tint = true"));
+    CHECK(says(run, "center-roi = true"));
+    // The panel fell out of the left eye's tint: only the affiliated, right eye is tinted. At 0.38 s with, at 0.56 s also with centre ROIs.
+    const Image without = run.eye(36, kRight), with = run.eye(52, kRight);
+    CHECK(shareTinted(without, with) > 0.02);
+    CHECK(shareTinted(run.eye(36, kLeft), run.eye(52, kLeft)) < 0.005);
+}
+
+TEST_CASE("method and dominant eye are switched, and the wearer may quit from the panel") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const std::string script = kSmall + clickOn(panel, {kReproject, kRightEye, kQuit, {0.9, 0.95}});
+    const ViewRun run = runView(work, "click", script, kScene);
+    checkClean(run);
+    CHECK(says(run, "mode = \"reproject\""));
+    CHECK(says(run, "dominant = \"right\""));
+    // It quit before the script's end at 1 s.
+    CHECK(run.frames.size() < 80);
+}
+
+TEST_CASE("pointing beside the panel clicks nothing and shows no ray") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const ViewRun run = runView(work, "beside", kSmall + clickOn(panel, {{1.2, 0.3}, {-0.2, 0.3}}), kScene);
+    checkClean(run);
+    CHECK_FALSE(says(run, " = "));
+    CHECK(run.layers(40, "quad").size() == 1);
+    const ViewRun on = runView(work, "on", kSmall + clickOn(panel, {{0.9, 0.95}}), kScene);
+    CHECK(on.layers(30, "quad").size() == 2);
+}
+
+TEST_CASE("settings and placement are saved as a config, and come back") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const ViewRun saved = runView(work, "save", kSmall + clickOn(panel, {kReproject, kSave, kPredicted, kLoad, {0.9, 0.95}}), kScene);
+    checkClean(saved);
+    CHECK(says(saved, "saved as fence.view.toml"));
+    CHECK(says(saved, "loaded fence.view.toml"));
+    const std::string& output = saved.outcome.output;
+    CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
+    // The viewer and `render` take the file.
+    const ViewRun again = runView(work, "again", kSmall + "at 0.1 exit\n", kScene + " --config fence.view.toml");
+    checkClean(again);
+    CHECK(work.run("render builtin:fence --out rendered --size 32x32 --config fence.view.toml").exit_code == 0);
+    std::ifstream report(work.path / "rendered" / "report.json");
+    CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
+}
+
+TEST_CASE("the menu button hides the panel and brings it before the eyes") {
+    const Workplace work;
+    const std::string script =
+        kSmall +
+        "head 0 position 0 1.6 0\nhead 0.15 position 0 1.6 0\nhead 0.2 position 1 1.6 0 turn 90 0\npress left y 0.1 0.12\n"
+        "press right b 0.3 0.32\npress left menu 0.1 0.12\npress right menu 0.3 0.32\nat 0.4 exit\n";
+    const ViewRun run = runView(work, "menu", script, kScene);
+    checkClean(run);
+    CHECK(run.layers(8, "quad").size() == 1);
+    CHECK(run.layers(20, "quad").empty());
+    CHECK(run.layers(32, "quad").size() >= 1);
+    // The head looks along -x, from (1, 1.6, 0).
+    const Panel moved = panelOf(run, 33);
+    CHECK(moved.middle.x < 0.5);
+    CHECK(moved.middle.x > -0.5);
+    CHECK(std::abs(moved.middle.z) > 0.2);
+}
+
+TEST_CASE("a squeezed hand that points carries the panel") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    Panel lifted = panel;
+    lifted.middle.y += 0.2;
+    const std::string script = kSmall + pointAt(panel, {0.5, 0.5}, 0.1) + pointAt(panel, {0.5, 0.5}, 0.2) +
+                               pointAt(lifted, {0.5, 0.5}, 0.3) + "press right squeeze 0.15 0.35\nat 0.4 exit\n";
+    const ViewRun run = runView(work, "carry", script, kScene);
+    checkClean(run);
+    const Panel after = panelOf(run, run.frames.size() - 3);
+    CHECK(after.middle.y - panel.middle.y == doctest::Approx(0.2).epsilon(0.01));
+    CHECK(after.middle.x == doctest::Approx(panel.middle.x).epsilon(0.01));
+}
+
+TEST_CASE("sticks move and turn the wearer, both grips move the scene") {
+    const Workplace work;
+    const std::string hidden = kScene + " --hide-panel --mode mono";
+    const ViewRun rest = runView(work, "rest", kSmall + "at 0.5 exit\n", hidden);
+    const std::size_t last = 40;
+    const auto moved = [&](const std::string& name, const std::string& lines) {
+        const ViewRun run = runView(work, name, kSmall + lines + "at 0.5 exit\n", hidden);
+        checkClean(run);
+        CHECK(compare(run.eye(4, kLeft), rest.eye(4, kLeft)).psnrDb() > 60.0);
+        return run.eye(last, kLeft);
+    };
+    const Image still = rest.eye(last, kLeft);
+    CHECK(compare(moved("walk", "axis left thumbstick 0.1 0 0\naxis left thumbstick 0.11 0 1\n"), still).psnrDb() < 35.0);
+    CHECK(compare(moved("rise", "axis right thumbstick 0.1 0 0\naxis right thumbstick 0.11 0 1\n"), still).psnrDb() < 35.0);
+    const Image right = moved("right", "axis right thumbstick 0.1 0 0\naxis right thumbstick 0.11 1 0\n");
+    CHECK(compare(right, still).psnrDb() < 35.0);
+    // Pushed once and again, to the left: back where it was.
+    const Image back = moved("back",
+                             "axis right thumbstick 0.1 0 0\naxis right thumbstick 0.11 1 0\naxis right thumbstick 0.2 1 0\n"
+                             "axis right thumbstick 0.22 0 0\naxis right thumbstick 0.24 -1 0\n");
+    CHECK(compare(back, still).psnrDb() > 40.0);
+    const Image held = moved("held",
+                             "press left squeeze 0.1 0.4\npress right squeeze 0.1 0.4\n"
+                             "controller left 0.15 position -0.2 1.2 -0.35\ncontroller left 0.3 position -0.3 1.3 -0.3\n"
+                             "controller right 0.15 position 0.2 1.2 -0.35\ncontroller right 0.3 position 0.4 1.3 -0.5\n");
+    CHECK(compare(held, still).psnrDb() < 35.0);
+}
