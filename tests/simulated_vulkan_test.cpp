@@ -1,6 +1,8 @@
 // XR_KHR_vulkan_enable2 on the simulated runtime.
 #include "tests/simulated_fixture.h"
 
+#include <cstdlib>
+
 using namespace binosplat::test;
 
 TEST_CASE_FIXTURE(InstanceFixture, "requirements are a range of Vulkan versions, and asked for before a session") {
@@ -65,6 +67,11 @@ TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of the instance's, 
     CHECK(get(instance, &info, &found) == XR_ERROR_VALIDATION_FAILURE);
     info.vulkanInstance = vulkan;
     CHECK(get(instance, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    for (const char* index : {"99", "first", "0x"}) {
+        setenv("BINOSPLAT_SIMULATED_GPU", index, 1);
+        CHECK_MESSAGE(get(instance, &info, &found) == XR_ERROR_RUNTIME_FAILURE, index);
+    }
+    unsetenv("BINOSPLAT_SIMULATED_GPU");
 }
 
 TEST_CASE_FIXTURE(VulkanFixture, "a device is made on the graphics device alone") {

@@ -13,12 +13,13 @@ std::mutex& runtimeLock() {
 }
 
 void explain(const char* function, const Refusal& refusal) {
-    // The loader asks for everything that it has heard of; that is no mistake of the application's.
-    if (std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") == nullptr || refusal.result == XR_ERROR_FUNCTION_UNSUPPORTED) return;
+    // A failure of the runtime itself is always said: no application can know what to do about it. The loader asks for every function
+    // that it has heard of; that is no mistake of the application's.
+    const bool is_wanted = std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") != nullptr && refusal.result != XR_ERROR_FUNCTION_UNSUPPORTED;
+    if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) return;
     std::fprintf(stderr, "simulated runtime: %s: %s: %s\n", function, nameOf(refusal.result), refusal.reason);
 }
 
-// A failure of the runtime itself is always said: no application can know what to do about it.
 void explainFailure(const char* function, const char* what) { std::fprintf(stderr, "simulated runtime: %s: %s\n", function, what); }
 
 }  // namespace simulated

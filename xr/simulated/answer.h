@@ -21,7 +21,7 @@ inline void require(bool holds, XrResult otherwise, const char* reason) {
 // One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
 std::mutex& runtimeLock();
 
-// With BINOSPLAT_SIMULATED_EXPLAIN set, says on standard error which call was refused and why.
+// With BINOSPLAT_SIMULATED_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
 void explain(const char* function, const Refusal& refusal);
 void explainFailure(const char* function, const char* what);
 

@@ -1,6 +1,8 @@
 // XR_KHR_vulkan_enable2 and its elder: the application's Vulkan instance and device are made through the runtime, which needs nothing
 // of them beyond what the application asks for.
+#include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include "xr/simulated/api.h"
@@ -37,6 +39,15 @@ bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDe
 }
 
 // BINOSPLAT_SIMULATED_GPU counts the devices that can draw, from 0.
+std::size_t wantedDevice() {
+    const char* const text = std::getenv("BINOSPLAT_SIMULATED_GPU");
+    if (text == nullptr || *text == '\0') return 0;
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text, text + std::strlen(text), index);
+    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, "BINOSPLAT_SIMULATED_GPU must be a whole number from 0 on");
+    return index;
+}
+
 VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance instance) {
     const auto enumerate = resolve<PFN_vkEnumeratePhysicalDevices>(loader, instance, "vkEnumeratePhysicalDevices");
     std::uint32_t count = 0;
@@ -44,9 +55,9 @@ VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance insta
     std::vector<VkPhysicalDevice> devices(count);
     require(enumerate(instance, &count, devices.data()) == VK_SUCCESS, XR_ERROR_RUNTIME_FAILURE, "Vulkan's devices cannot be listed");
     std::erase_if(devices, [&](VkPhysicalDevice device) { return !canDraw(loader, instance, device); });
-    const char* const wanted = std::getenv("BINOSPLAT_SIMULATED_GPU");
-    const std::size_t index = wanted == nullptr ? 0 : std::strtoul(wanted, nullptr, 10);
-    require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE, "no Vulkan device can draw, or BINOSPLAT_SIMULATED_GPU is too high");
+    const std::size_t index = wantedDevice();
+    require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE,
+            devices.empty() ? "no Vulkan device can draw" : "BINOSPLAT_SIMULATED_GPU is more than there are devices that can draw");
     return devices[index];
 }
 
