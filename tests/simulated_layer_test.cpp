@@ -179,3 +179,14 @@ TEST_CASE_FIXTURE(WritingFixture, "frames are logged, and pictures written for t
     CHECK(line.find("\"LOCAL\"") != std::string::npos);
     CHECK(!std::getline(log, line));
 }
+
+TEST_CASE_FIXTURE(WritingFixture, "what is on show stays on show while the application holds every image") {
+    REQUIRE(shown(&projection) == XR_SUCCESS);
+    turn(colour);
+    for (int i = 0; i < 3; ++i) {
+        std::uint32_t index = 0;
+        REQUIRE(xrAcquireSwapchainImage(colour, nullptr, &index) == XR_SUCCESS);
+    }
+    CHECK(shown(&projection) == XR_SUCCESS);
+    CHECK(std::filesystem::exists(written / "frame_000004.png"));
+}
