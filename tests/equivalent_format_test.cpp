@@ -1,5 +1,8 @@
 // The same scene as SOG and as PLY: what each format keeps of it.
+#include "engine/reference/reference.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/spz.h"
+#include "tests/ply_files.h"
 #include "tests/shared_data.h"
 
 #include <fmt/format.h>
@@ -55,6 +58,28 @@ Differences compare(const Scene& a, const Scene& b) {
     return differences;
 }
 
+// Of the float64 twin's pictures, against a peak of 1.
+double psnrDb(const Scene& a, const Scene& b, const glm::dvec3& eye_at, const glm::dvec3& look) {
+    Eye eye;
+    eye.size_px = {320, 320};
+    eye.intrinsics = intrinsicsFromFovX(glm::radians(60.0), eye.size_px);
+    eye.world_from_camera = lookAt(eye_at, look, {0, -1, 0});
+    const reference::Picture first = reference::render(a, eye, {}), second = reference::render(b, eye, {});
+    double squares = 0.0;
+    for (std::size_t i = 0; i < first.rgba.size(); ++i) {
+        const glm::dvec3 difference(first.rgba[i] - second.rgba[i]);
+        squares += glm::dot(difference, difference);
+    }
+    return -10.0 * std::log10(squares / (3.0 * static_cast<double>(first.rgba.size())));
+}
+
+// What SPZ makes of a scene.
+Scene throughSpz(const Scene& scene) {
+    const Folder folder;
+    writeSpz(scene, folder.file("scene.spz"));
+    return loadScene(folder.file("scene.spz"));
+}
+
 }  // namespace
 
 TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY") {
@@ -70,6 +95,11 @@ TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY") {
     CHECK(differences.sh < 1e-6);
     CHECK(differences.disc < 1e-4);
     CHECK(differences.other_axis_dropped < sog.size() / 200);
+    const double as_sog = psnrDb(ply, sog, {0, -0.6, -1.6}, {0, -0.4, 0}),
+                 as_spz = psnrDb(ply, throughSpz(ply), {0, -0.6, -1.6}, {0, -0.4, 0});
+    MESSAGE(fmt::format("rendered, against the PLY: SOG {:.1f} dB, SPZ {:.1f} dB", as_sog, as_spz));
+    CHECK(as_sog > 55.0);
+    CHECK(as_spz > 42.0);
 }
 
 TEST_CASE("angel is the same scene as a SOG bundle and as PLY") {
@@ -85,4 +115,8 @@ TEST_CASE("angel is the same scene as a SOG bundle and as PLY") {
     CHECK(differences.sh < 1e-6);
     CHECK(differences.disc < 1e-4);
     CHECK(differences.other_axis_dropped < sog.size() / 100);
+    const double as_sog = psnrDb(ply, sog, {0, -2, -5}, {0, -2, 0}), as_spz = psnrDb(ply, throughSpz(ply), {0, -2, -5}, {0, -2, 0});
+    MESSAGE(fmt::format("rendered, against the PLY: SOG {:.1f} dB, SPZ {:.1f} dB", as_sog, as_spz));
+    CHECK(as_sog > 55.0);
+    CHECK(as_spz > 42.0);
 }

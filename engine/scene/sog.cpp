@@ -42,7 +42,7 @@ struct Pictures {
 };
 
 // The SH degree that version 1 tells by the width of its palette.
-int paletteDegree(const SogMeta::Palette& palette, const Packed& centroids) {
+int paletteDegree(const SogPalette& palette, const Packed& centroids) {
     for (int degree = 1; degree <= kMaxShDegree; ++degree) {
         const std::size_t width = kPaletteColumns * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
         if (centroids.size_px.x == width && (palette.sh_degree == 0 || palette.sh_degree == degree)) { return degree; }

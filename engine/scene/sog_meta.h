@@ -14,6 +14,14 @@ namespace binosplat {
 // A float for each of the 256 values of a byte; NaN where the file has none, so that a splat that uses it is skipped.
 using ByteTable = std::array<float, 256>;
 
+// SH beyond the constant band: each splat has a label, each label a row of coefficients.
+struct SogPalette {
+    int sh_degree = 0;                                                // 0: version 1 does not say, the picture's width tells
+    std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // likewise
+    ByteTable values{};
+    std::string centroids_file, labels_file;
+};
+
 struct SogMeta {
     std::uint64_t count = 0;
     std::array<float, 3> mins{}, maxs{};     // of the positions after x -> sign(x) ln(1 + |x|)
@@ -22,14 +30,7 @@ struct SogMeta {
     std::string scales_file, quats_file;
     std::array<ByteTable, 4> sh0{};  // f_dc of red, green, blue; logit of the opacity
     std::string sh0_file;
-
-    struct Palette {
-        int sh_degree = 0;                                                // 0: version 1 does not say, the picture's width tells
-        std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // likewise
-        ByteTable values{};
-        std::string centroids_file, labels_file;
-    };
-    std::optional<Palette> palette;
+    std::optional<SogPalette> palette;
 };
 
 // `place` is the file's name for messages. Throws Error naming the key and what was expected.

@@ -78,12 +78,10 @@ SettingsTable tableFrom(const std::string& file, const std::string& name, const 
 // The library makes a table within a table for each dot of a key, however many there are, and frees them by recursion.
 void refuseDeepKeys(const std::string& file, std::string_view text) {
     int dots = 0, line = 1;
-    bool comment = false;
     for (const char letter : text) {
         line += letter == '\n';
-        comment = letter != '\n' && (comment || letter == '#');
         const bool between = std::string_view("=,[]{}/:;()\n").find(letter) != std::string_view::npos;
-        dots = comment || between ? 0 : dots + (letter == '.');
+        dots = between ? 0 : dots + (letter == '.');
         check(dots <= 64, "{}:{}: a key of more than 64 parts, must be a [table] and a key", file, line);
     }
 }

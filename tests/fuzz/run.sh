@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Fuzzes every parser for SECONDS each (60), one after the other, with address and undefined-behaviour sanitizers; needs clang.
+# usage: tests/fuzz/run.sh [SECONDS] [TARGET...]
+# New inputs lie in build/fuzz/corpus/TARGET, findings in build/fuzz/findings; what libFuzzer prints, in build/fuzz/TARGET.log.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+seconds=${1:-60}
+shift || true
+targets=("$@")
+((${#targets[@]} > 0)) || targets=(scene ply spz sog_meta sog_bundle settings headset cameras motion)
+
+[[ -e build/fuzz/build.ninja ]] ||
+    cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON -DBINOSPLAT_OPENXR=OFF
+cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" --parallel 2
+
+mkdir -p build/fuzz/findings
+failed=0
+for target in "${targets[@]}"; do
+    mkdir -p "build/fuzz/corpus/$target"
+    if ! ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz_"$target" -max_total_time="$seconds" -rss_limit_mb=2048 -malloc_limit_mb=1024 \
+        -timeout=10 -max_len=8192 -print_final_stats=1 -artifact_prefix=build/fuzz/findings/"$target"- \
+        "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" 2>"build/fuzz/$target.log"; then
+        echo "$target: a finding, see build/fuzz/$target.log"
+        failed=1
+        continue
+    fi
+    echo "$target: $(grep -E '^#[0-9]+.*(DONE|cov:)' "build/fuzz/$target.log" | tail -1)"
+done
+exit "$failed"

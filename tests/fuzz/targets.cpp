@@ -1,0 +1,119 @@
+// Readers take files: the inputs are given to them in memory, under a name in /proc.
+#include "tests/fuzz/targets.h"
+
+#include "engine/error.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/sog_meta.h"
+#include "engine/setup/camera_file.h"
+#include "engine/setup/head_motion.h"
+#include "engine/setup/headset.h"
+#include "engine/setup/settings.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <vector>
+
+namespace binosplat::fuzz {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+// A file without a place on any disk.
+class MemoryFile {
+public:
+    explicit MemoryFile(Bytes bytes) : descriptor_(memfd_create("input", 0)) {
+        for (std::size_t done = 0; descriptor_ >= 0 && done < bytes.size();) {
+            const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+            if (written <= 0) { break; }
+            done += static_cast<std::size_t>(written);
+        }
+    }
+    ~MemoryFile() { ::close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+private:
+    int descriptor_;
+};
+
+void readScene(Bytes input) { (void)loadScene(MemoryFile(input).path()); }
+
+// With the first line that every PLY has, so that no time goes by finding it.
+void readPly(Bytes input) {
+    std::vector<std::uint8_t> file{'p', 'l', 'y', '\n'};
+    file.insert(file.end(), input.begin(), input.end());
+    readScene(file);
+}
+
+// The stream before compression: a fuzzer does not find its way through gzip.
+void readSpz(Bytes input) {
+    std::vector<std::uint8_t> packed(compressBound(input.size() + 4) + 64);
+    z_stream stream{};
+    if (deflateInit2(&stream, 1, Z_DEFLATED, MAX_WBITS + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) { return; }
+    std::vector<std::uint8_t> plain{'N', 'G', 'S', 'P'};
+    plain.insert(plain.end(), input.begin(), input.end());
+    stream.next_in = plain.data();
+    stream.avail_in = static_cast<uInt>(plain.size());
+    stream.next_out = packed.data();
+    stream.avail_out = static_cast<uInt>(packed.size());
+    deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    readScene(packed);
+}
+
+void readSogMeta(Bytes input) { (void)parseSogMeta(std::as_bytes(input), "meta.json"); }
+void readSettings(Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }
+void readHeadsetText(Bytes input) { (void)readHeadset(MemoryFile(input).path()); }
+void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path()); }
+void readMotion(Bytes input) {
+    const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
+    (void)parseHeadMotion(text, "motion.csv", MotionAxes::kUnity);
+}
+
+// "scene" takes any file: .splat, gzip, and what tells the formats apart.
+constexpr auto kTargets = std::to_array<Target>({
+    {"scene", readScene},
+    {"ply", readPly},
+    {"spz", readSpz},
+    {"sog_meta", readSogMeta},
+#ifdef BINOSPLAT_OPENIMAGEIO
+    {"sog_bundle", readScene},
+#endif
+    {"settings", readSettings},
+    {"headset", readHeadsetText},
+    {"cameras", readCameras},
+    {"motion", readMotion},
+});
+
+}  // namespace
+
+std::span<const Target> targets() { return kTargets; }
+
+void runTarget(const std::string& name, Bytes input) {
+    for (const Target& target : kTargets) {
+        if (target.name != name) { continue; }
+        try {
+            target.read(input);
+        } catch (const Error& error) {
+            const std::string_view message = error.what();
+            if (message.empty() || message.find('\n') != std::string_view::npos || message.find("memory") != std::string_view::npos) {
+                std::fprintf(stderr, "not a message as it should be: %s\n", error.what());
+                std::abort();
+            }
+        }
+        return;
+    }
+    std::fprintf(stderr, "no target %s\n", name.c_str());
+    std::abort();
+}
+
+}  // namespace binosplat::fuzz

@@ -1,0 +1,84 @@
+// The inputs that fuzzing kept, replayed; and where its first ones come from.
+#include "tests/fuzz/targets.h"
+#include "tests/hostile_scenes.h"
+#ifdef BINOSPLAT_OPENIMAGEIO
+#include "tests/sog_scenes.h"
+#endif
+
+#include <iterator>
+#include <map>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+const std::filesystem::path kCorpus = BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus";
+
+std::string settingsText(const std::string& name) { return textOf(BINOSPLAT_SOURCE_DIR "/configs/" + name); }
+
+// By target: whole inputs from the writers of these tests.
+std::multimap<std::string, std::string> makeSeeds() {
+    std::multimap<std::string, std::string> seeds;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply = makePly(9, encoding == Encoding::kLittle);
+        ply.encoding = encoding;
+        seeds.emplace("ply", ply.bytes().substr(4));
+    }
+    seeds.emplace("ply", makeCompressedPly().substr(4));
+    seeds.emplace("scene", makeSplatFile());
+    for (const std::uint32_t version : {2u, 3u}) {
+        seeds.emplace("spz", makeSpz(version).bytes().substr(4));
+        seeds.emplace("scene", gzip(makeSpz(version).bytes()));
+    }
+#ifdef BINOSPLAT_OPENIMAGEIO
+    for (const int version : {1, 2}) {
+        SogText files = makeSog(version, version == 1);
+        seeds.emplace("sog_meta", files["meta.json"]);
+        seeds.emplace("sog_bundle", makeZip(files, true));
+    }
+#endif
+    seeds.emplace("settings", settingsText("default.toml"));
+    seeds.emplace("settings", settingsText("bench/pareto.toml"));
+    seeds.emplace("headset", settingsText("headsets/quest3.toml"));
+    seeds.emplace("cameras", R"([{"img_name":"a","width":640,"height":480,"position":[1,2,-3.5],"rotation":[[1,0,0],[0,1,0],[0,0,1]],)"
+                             R"("fx":500,"fy":501.5,"cx":320,"cy":240}])");
+    seeds.emplace("motion", "time_ms,x,y,z,qw,qx,qy,qz\n0,0.1,1.5,-0.25,1,0,0,0\n# a remark\n16.5,0.11,1.5,-0.25,1,0,0,0\n");
+    return seeds;
+}
+
+}  // namespace
+
+TEST_CASE("every kept input is read or refused in one line") {
+    std::size_t inputs = 0, bytes = 0;
+    for (const fuzz::Target& target : fuzz::targets()) {
+        std::size_t of_target = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(kCorpus / target.name)) {
+            const std::string input = textOf(entry.path().string());
+            CAPTURE(entry.path().string());
+            fuzz::runTarget(target.name, {reinterpret_cast<const std::uint8_t*>(input.data()), input.size()});
+            ++of_target;
+            bytes += input.size();
+        }
+        CHECK_MESSAGE(of_target > 0, "no inputs for ", target.name);
+        inputs += of_target;
+    }
+    MESSAGE(fmt::format("{} inputs of {} bytes", inputs, bytes));
+    CHECK(bytes < 400'000);
+}
+
+TEST_CASE("the writers' files are whole") {
+    for (const auto& [target, bytes] : makeSeeds()) {
+        CAPTURE(target);
+        fuzz::runTarget(target, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    }
+}
+
+// Not a test: `fuzz_corpus_test --no-skip --test-case="seeds are written"` begins the corpus anew.
+TEST_CASE("seeds are written" * doctest::skip()) {
+    int number = 0;
+    for (const auto& [target, bytes] : makeSeeds()) {
+        std::filesystem::create_directories(kCorpus / target);
+        std::ofstream(kCorpus / target / fmt::format("seed_{}", number++), std::ios::binary) << bytes;
+    }
+}
