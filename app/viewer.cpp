@@ -20,6 +20,8 @@ constexpr glm::vec4 kRayColour(1.0f, 0.7f, 0.1f, 1.0f);
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr std::size_t kPlottedFrames = 120;
+// By keys of the window.
+constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
 // How often to look whether the session has begun to run.
 constexpr std::chrono::milliseconds kIdle(5);
 
@@ -38,7 +40,7 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, xr::Session& session)
+Viewer::Viewer(const ViewOptions& options, xr::Session& session, bool mirrored)
     : options_(options),
       session_(session),
       context_(session.context()),
@@ -53,6 +55,7 @@ Viewer::Viewer(const ViewOptions& options, xr::Session& session)
       settings_(startSettings(options)),
       loader_(context_, options.scene, options.run) {
     status_.scene = options.scene;
+    if (mirrored) { window_ = std::make_unique<MirrorWindow>(context_, canvas_); }
     fitResolution();
     fillRay();
     if (options.load_first) { takeScene(); }
@@ -97,18 +100,21 @@ void Viewer::drawFrame() {
     const Pose room_from_head = roomFromHead(room_from_eyes);
     const ViewSettings before = settings_;
     controls_.update(input_.read(), room_from_head, session_.stepSeconds(), panel_, settings_.panel, scene_from_room_);
+    obeyWindow(room_from_head);
     fitResolution();
 
     xr::Layers layers(session_);
     drawEyes(*views, room_from_eyes);
-    if (settings_.panel) { drawPanel(); }
+    if (settings_.panel || window_) { drawPanel(); }
     commands_.submitAndWait();
+    if (window_) { window_->show(); }
     images_->release();
     addEyes(layers, *views);
-    if (settings_.panel) {
+    if (panel_taken_) {
         panel_images_.release();
         addPanel(layers, room_from_head);
     }
+    panel_taken_ = false;
     session_.endFrame(layers.list());
 
     const std::string change = describeChange(before, settings_);
@@ -151,11 +157,14 @@ void Viewer::drawEyes(const std::array<xr::EyeView, 2>& views, const std::array<
     commands_.begin();
     if (showsOneEye()) {
         images_->present(commands_, dominant, scene_->frame.image(0), nullptr, frame.near);
+        if (window_) { window_->keepEye(commands_, presenter_.pixels(), images_->sizePx(), format_); }
         return;
     }
     for (const int e : {kLeft, kRight}) {
         const bool tinted = settings_.tint && reprojects(frame.mode) && e != dominant;
         images_->present(commands_, e, scene_->frame.image(e), tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
+        // The window shows the dominant eye, or what is made of it where that is the point.
+        if (window_ && (e == dominant) != settings_.tint) { window_->keepEye(commands_, presenter_.pixels(), images_->sizePx(), format_); }
     }
 }
 
@@ -172,11 +181,31 @@ void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views
 void Viewer::drawPanel() {
     status_.loading = scene_ ? std::nullopt : std::optional(loader_.progress());
     status_.frame = scene_ ? &last_ : nullptr;
-    canvas_.begin(panel_.pointer(), session_.stepSeconds());
+    const bool shown = settings_.panel;
+    canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), session_.stepSeconds());
     const OverlayActions actions = drawOverlay(kCanvasPx, settings_, status_);
     canvas_.record(commands_);
-    commands_.copyImage(canvas_.image(), panel_images_.acquire(), kCanvasPx);
+    if (shown) {
+        commands_.copyImage(canvas_.image(), panel_images_.acquire(), kCanvasPx);
+        panel_taken_ = true;
+    }
+    if (window_) { window_->record(commands_); }
     obey(actions);
+}
+
+void Viewer::obeyWindow(const Pose& room_from_head) {
+    if (!window_) { return; }
+    window_input_ = window_->poll();
+    if (window_input_.quit) { session_.requestExit(); }
+    if (window_input_.toggle_panel) {
+        settings_.panel = !settings_.panel;
+        panel_.hangBefore(room_from_head);
+    }
+    const double turn_rad = window_input_.turn_rad + session_.stepSeconds() * window_input_.turn_rate * kTurnRadiansPerSecond;
+    if (turn_rad != 0.0) { scene_from_room_ = turnedBy(scene_from_room_, turn_rad, room_from_head.position); }
+    const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0)), down(0.0, 1.0, 0.0);
+    const glm::dvec3 walk = window_input_.walk.x * glm::cross(down, forward) + window_input_.walk.y * down + window_input_.walk.z * forward;
+    if (walk != glm::dvec3(0.0)) { scene_from_room_ = movedBy(scene_from_room_, session_.stepSeconds() * kWalkMetresPerSecond * walk); }
 }
 
 void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {

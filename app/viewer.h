@@ -3,6 +3,7 @@
 
 #include "app/canvas.h"
 #include "app/eye_images.h"
+#include "app/mirror_window.h"
 #include "app/overlay.h"
 #include "app/overlay_panel.h"
 #include "app/scene_loader.h"
@@ -18,8 +19,8 @@ namespace binosplat {
 
 class Viewer {
 public:
-    // `session` outlives the viewer. Begins to load the scene.
-    Viewer(const ViewOptions& options, xr::Session& session);
+    // `session` outlives the viewer. Begins to load the scene. With a window beside the headset where `mirrored`.
+    Viewer(const ViewOptions& options, xr::Session& session, bool mirrored);
 
     // Until the runtime, the wearer, Ctrl-C or --frames ends it. Says on stdout what was changed in which frame, and why it ended.
     // Throws what went wrong with the scene or the device; a lost session is no error.
@@ -33,6 +34,7 @@ private:
     void drawEyes(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes);
     void addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const;
     void drawPanel();
+    void obeyWindow(const Pose& room_from_head);
     void addPanel(xr::Layers& layers, const Pose& room_from_head) const;
     void obey(const OverlayActions& actions);
     void fillRay();
@@ -46,7 +48,10 @@ private:
     Presenter presenter_;
     std::unique_ptr<EyeImages> images_;
     Canvas canvas_;
+    std::unique_ptr<MirrorWindow> window_;
+    WindowInput window_input_;
     xr::Swapchain panel_images_, ray_image_;
+    bool panel_taken_ = false;  // its image, in this frame
     OverlayPanel panel_;
     WearerControls controls_;
     Commands commands_;

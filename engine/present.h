@@ -23,6 +23,8 @@ public:
 
     // Records pass 10. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
+    // The bytes of the eye that was recorded last, rows top to bottom, for whoever shows them elsewhere.
+    [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 
 private:
     const Context& context_;
