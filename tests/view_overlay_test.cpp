@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <fstream>
 
 using namespace binosplat;
@@ -17,8 +18,8 @@ const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\ncontroller le
 const std::string kScene = "builtin:fence --load-first";
 
 // Widgets by their place on the panel, in shares of its width and height.
-const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kRightEye(0.34, 0.203),
-    kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477);
+const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
+    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477);
 
 // Where the panel hangs, as the runtime was told, in STAGE and OpenXR's axes.
 struct Panel {
@@ -102,6 +103,46 @@ TEST_CASE("method and dominant eye are switched, and the wearer may quit from th
     CHECK(says(run, "dominant = \"right\""));
     // It quit before the script's end at 1 s.
     CHECK(run.frames.size() < 80);
+}
+
+TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the wearer leaves") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    std::ofstream motion(work.path / "walk.csv");
+    motion << "time_s,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i <= 230; ++i) {
+        const double t = i / 90.0, turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
+        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", t, 0.15 * std::sin(t), 1.6 + 0.02 * std::sin(9.0 * t),
+                              -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
+    }
+    motion.close();
+    std::string script = kSmall + "head-motion walk.csv\n";
+    double time_s = 0.5;
+    for (const glm::dvec2& place : {kPaper, kCentreRoi, kPredicted, kRightEye, glm::dvec2(0.9, 0.95)}) {
+        script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.2);
+        script += fmt::format("press right trigger {} {}\n", time_s + 0.1, time_s + 0.15);
+        time_s += 0.3;
+    }
+    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kScene);
+    checkClean(run);
+    CHECK(run.frames.size() >= 200);
+    const std::string& output = run.outcome.output;
+    std::size_t from = 0;
+    for (const char* change : {"mode = \"paper\"", "center-roi = true", "mode = \"predicted\"", "dominant = \"right\""}) {
+        const std::size_t found = output.find(change, from);
+        INFO(change << " in " << output);
+        REQUIRE(found != std::string::npos);
+        from = found;
+    }
+    // The head walked, and every frame was shown as the eyes were.
+    for (const std::size_t frame : {60, 120, 180}) {
+        const nlohmann::json scene = run.layers(frame, "projection").at(0);
+        for (const std::size_t e : {0, 1}) {
+            const auto shown = scene.at("views").at(e).at("pose").at("position").get<std::array<double, 3>>();
+            const auto was = run.frames.at(frame).at("eyes").at(e).at("pose").at("position").get<std::array<double, 3>>();
+            for (const std::size_t axis : {0, 2}) { CHECK(shown[axis] == doctest::Approx(was[axis]).epsilon(1e-4)); }
+        }
+    }
 }
 
 TEST_CASE("pointing beside the panel clicks nothing and shows no ray") {
