@@ -15,7 +15,12 @@ namespace fs = std::filesystem;
 // A headset that rests has been seen after a second.
 constexpr std::uint64_t kFramesAtRest = 90;
 
-bool hasDisplay() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
+bool isSet(const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0';
+}
+
+bool hasDisplay() { return isSet("DISPLAY") || isSet("WAYLAND_DISPLAY"); }
 
 }  // namespace
 

@@ -15,9 +15,10 @@
 
 namespace binosplat::test {
 
-// Everything a run says twice over: Vulkan's and OpenXR's validation layers are on, and both must stay silent.
+// Vulkan's and OpenXR's validation layers are on, and both must stay silent; no window opens, where a mouse might pass.
 inline const std::string kValidated =
-    "BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation XR_CORE_VALIDATION_EXPORT_TYPE=text";
+    "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
+    "XR_CORE_VALIDATION_EXPORT_TYPE=text";
 
 struct ViewRun {
     Outcome outcome;
