@@ -31,6 +31,9 @@ std::multimap<std::string, std::string> makeSeeds() {
         seeds.emplace("spz", makeSpz(version).bytes().substr(4));
         seeds.emplace("scene", gzip(makeSpz(version).bytes()));
     }
+    SpzText container = makeSpz(3);
+    container.version = 4;
+    seeds.emplace("scene", makeSpzContainer(container));
 #ifdef BINOSPLAT_OPENIMAGEIO
     for (const int version : {1, 2}) {
         SogText files = makeSog(version, version == 1);

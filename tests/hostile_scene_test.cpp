@@ -85,6 +85,16 @@ TEST_CASE("broken .splat files") {
     spliceBytes(good, 1000, attempts.attempt());
 }
 
+TEST_CASE("broken SPZ containers") {
+    SpzText spz = makeSpz(3);
+    spz.version = 4;
+    const std::string good = makeSpzContainer(spz);
+    SceneAttempts attempts("SPZ 4");
+    truncate(good, attempts.attempt());
+    flipBits(good, 1000, attempts.attempt());
+    spliceBytes(good, 1000, attempts.attempt());
+}
+
 TEST_CASE("broken SPZ files") {
     for (const std::uint32_t version : {2u, 3u}) {
         const std::string plain = makeSpz(version).bytes(), good = gzip(plain);

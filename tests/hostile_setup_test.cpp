@@ -105,8 +105,31 @@ TEST_CASE("broken settings") {
         for (int i = 0; i < 300'000; ++i) { dotted += ".a"; }
         attempts.attempt("deep keys", fmt::format(fmt::runtime(around), dotted));
     }
+    for (const char* letter : {"\u00a1", "\u03e2", "\u0499", "\u2000", "\u3000", "\ufeff", "\xff", "\xc3"}) {
+        for (const char* around :
+             {"a = {}\n", "{} = 1\n", "a = 1 {}\n", "a = [1, {}]\n", "a = \"{}\"\n", "# {}\n", "{}a = 1\n", "a = '{}'{}\n"}) {
+            attempts.attempt("not ASCII", fmt::format(fmt::runtime(around), letter, letter));
+        }
+    }
+    attempts.attempt("several lines", "a = \"\"\"\nb\n\"\"\"\n");
     attempts.attempt("a line break in a key", "\"a\\nb\" = 1\n[c]\n[c.d]\n");
     attempts.attempt("a line break in a table's name", "[\"a\\nb\"]\nc = {d = 1}\n");
+}
+
+TEST_CASE("letters outside of ASCII are read in quotes and comments and refused elsewhere, with their line") {
+    TextAttempts attempts("letters", [](const std::string& path) { (void)readSettingsFile(path); });
+    const auto messageOf = [&](const std::string& text) {
+        const std::string path = (attempts.folder / "letters.toml").string();
+        std::ofstream(path, std::ios::binary) << text;
+        try {
+            (void)readSettingsFile(path);
+        } catch (const Error& error) { return std::string(error.what()); }
+        return std::string();
+    };
+    CHECK(messageOf("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n").empty());
+    CHECK(messageOf("a = 1\nb = \u00e9\n").find("letters.toml:2: a letter that is neither ASCII") != std::string::npos);
+    CHECK(messageOf("a = 1\n\nb = '''x'''\n").find("letters.toml:3: a text over several lines") != std::string::npos);
+    attempts.attempt("not TOML", "=");
 }
 
 TEST_CASE("broken headsets") {

@@ -4,6 +4,7 @@
 #include "tests/ply_files.h"
 
 #include <zlib.h>
+#include <zstd.h>
 
 namespace binosplat::test {
 
@@ -73,6 +74,31 @@ inline SpzText makeSpz(std::uint32_t version) {
     }
     for (int i = 0; i < 18; ++i) { spz.sh.push_back(128 + 4 * i); }
     return spz;
+}
+
+// The same as a container of version 4, with `extension` between header and table.
+inline std::string makeSpzContainer(const SpzText& spz, const std::string& extension = "") {
+    const std::string plain = spz.bytes();
+    std::string file = plain.substr(0, 15), table, data;
+    const std::size_t sizes[] = {9u * spz.splats, spz.splats, 3u * spz.splats, 3u * spz.splats, 4u * spz.splats, spz.sh.size()};
+    char streams = 0;
+    const auto put = [](std::string& text, std::uint64_t value, int bytes) {
+        for (int i = 0; i < bytes; ++i) { text.push_back(static_cast<char>(value >> 8 * i & 0xff)); }
+    };
+    std::size_t at = 16;
+    for (const std::size_t size : sizes) {
+        if (size == 0) { continue; }
+        std::string packed(ZSTD_compressBound(size), '\0');
+        packed.resize(ZSTD_compress(packed.data(), packed.size(), plain.data() + at, size, 3));
+        put(table, packed.size(), 8);
+        put(table, size, 8);
+        data += packed;
+        at += size;
+        ++streams;
+    }
+    file.push_back(streams);
+    put(file, 32 + extension.size(), 4);
+    return file + std::string(12, '\0') + extension + table + data;
 }
 
 }  // namespace binosplat::test

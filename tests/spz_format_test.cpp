@@ -67,6 +67,40 @@ TEST_CASE("both versions give what their bytes mean, in axes right, down, forwar
     }
 }
 
+TEST_CASE("the container of version 4 gives what version 3 gives, extensions or not") {
+    const Folder folder;
+    SpzText spz = makeSpz(3);
+    const Scene scene = loadBytes(folder, gzip(spz.bytes()));
+    spz.version = 4;
+    checkSameScene(scene, loadBytes(folder, makeSpzContainer(spz)));
+    spz.flags = 2;
+    checkSameScene(scene, loadBytes(folder, makeSpzContainer(spz, "records of an extension")));
+    spz.sh_degree = 0, spz.sh.clear();
+    CHECK(loadBytes(folder, makeSpzContainer(spz)).positions == scene.positions);
+}
+
+TEST_CASE("a container that does not fit is named") {
+    const Folder folder;
+    SpzText spz = makeSpz(3);
+    spz.version = 4;
+    const std::string good = makeSpzContainer(spz);
+    const auto errorWith = [&](std::size_t at, const std::string& bytes) {
+        std::string broken = good;
+        return loadError(folder, broken.replace(at, bytes.size(), bytes));
+    };
+    CHECK(contains(errorWith(15, "\5"), "5 streams, expected 6"));
+    CHECK(contains(errorWith(15, "\xff"), "255 streams"));
+    CHECK(contains(errorWith(16, "\x1f"), "the table of streams is at byte 31"));
+    CHECK(contains(errorWith(16, "\xff\xff\xff\xff"), "the table of streams is at byte 4294967295"));
+    CHECK(contains(errorWith(8, "\3"), "stream 0: 18 bytes, expected 27"));
+    CHECK(contains(errorWith(8, "\xff\xff\xff\xff"), "expected fewer than 256 per byte"));
+    CHECK(contains(errorWith(32, std::string(7, '\xff') + "\x7f"), "bytes are left of 9223372036854775807"));
+    CHECK(contains(errorWith(32 + 96, "xxxx"), "stream 0: broken"));
+    for (std::size_t length = 0; length < good.size(); ++length) {
+        CHECK(contains(loadError(folder, good.substr(0, length)), "broken.ply: "));
+    }
+}
+
 TEST_CASE("SH turned with the axes give the same colours") {
     const Scene scene = makeScene(3, 20);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.5, 0.8)), turned(direction.x, -direction.y, -direction.z);
@@ -160,10 +194,11 @@ TEST_CASE("an SPZ that does not fit is named") {
     };
     SpzText spz = makeSpz(3);
     spz.version = 1;
-    CHECK(contains(errorOf(spz), "SPZ version 1, expected 2 or 3"));
+    CHECK(contains(errorOf(spz), "SPZ version 1 within gzip"));
     spz.version = 4;
-    CHECK(contains(errorOf(spz), "SPZ version 4"));
-    CHECK(contains(loadError(folder, spz.bytes()), "not in gzip (version 4, Zstandard)"));
+    CHECK(contains(errorOf(spz), "SPZ version 4 within gzip"));
+    spz.version = 3;
+    CHECK(contains(loadError(folder, makeSpzContainer(spz)), "SPZ version 3 without gzip"));
     spz = makeSpz(3), spz.sh_degree = 5;
     CHECK(contains(errorOf(spz), "SH degree 5"));
     spz = makeSpz(3), spz.fractional_bits = 24;

@@ -1,4 +1,5 @@
-// SPZ: 24-bit positions and bytes, one attribute after the other, in a gzip stream. Versions 2 and 3 are read, 3 is written.
+// SPZ: 24-bit positions and bytes, one attribute after the other: in a gzip stream (versions 2 and 3), or each in a Zstandard stream of
+// its own behind a table (version 4). All three are read, 3 is written.
 //
 // SPZ's axes are right, up, back; those of trained PLY scenes are right, down, forward. Reading and writing turn between them, as the
 // format's own converters to and from PLY do: y, z and what depends on their signs change sign.
@@ -15,7 +16,7 @@ namespace binosplat {
 // Whether the file holds, within gzip or bare, the mark NGSP.
 bool isSpz(InputFile& file);
 
-// Throws Error for the bare container of version 4, whose streams are compressed with Zstandard. Of SH of degree 4, degree 3 is kept.
+// Of SH of degree 4, degree 3 is kept. Records of extensions are passed over.
 Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 // Positions get as many fractional bits, 16 at most, as the scene's extent leaves; SH keep eight bits in every band; the third scale is the

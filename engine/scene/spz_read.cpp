@@ -5,7 +5,10 @@
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/spz.h"
 
+#include <zstd.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace binosplat {
@@ -25,11 +28,13 @@ struct Header {
     [[nodiscard]] std::uint64_t bytesPerSplat() const { return 16 + rotation_bytes + sh_bytes; }
 };
 
-Header parseHeader(const std::string& file, std::span<const std::byte> bytes) {
+Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bool container) {
     check(bytes.size() == spz::kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file, bytes.size(), spz::kHeaderBytes);
     Header header;
     header.version = loadLittle<std::uint32_t>(bytes, 4);
-    check(header.version == 2 || header.version == 3, "{}: header: SPZ version {}, expected 2 or 3", file, header.version);
+    const bool known = container ? header.version == 4 : header.version == 2 || header.version == 3;
+    check(known, "{}: header: SPZ version {} {}, expected 2 or 3 within gzip or 4 without", file, header.version,
+          container ? "without gzip" : "within gzip");
     header.splats = loadLittle<std::uint32_t>(bytes, 8);
     const int degree = std::to_integer<int>(bytes[12]);
     check(degree <= 4, "{}: header: SH degree {}, expected 0 to 4", file, degree);
@@ -47,14 +52,27 @@ struct Attributes {
     const std::byte *positions, *alphas, *colours, *scales, *rotations, *sh;
 };
 
-Attributes readAttributes(InputFile& file, GzipReader& stream, const Header& header) {
+// Room for all attributes, if the file can hold as many.
+Attributes reserveAttributes(const InputFile& file, const Header& header) {
     const std::uint64_t total = header.splats * header.bytesPerSplat();
     check(total <= kMaxExpansion * file.sizeBytes() + 65536,
           "{}: header: {} splats of {} bytes in a file of {}, expected fewer than {} per byte", file.name(), header.splats,
           header.bytesPerSplat(), file.sizeBytes(), kMaxExpansion);
     Attributes attributes{};
     attributes.bytes.resize(total);
-    const std::size_t got = stream.read(attributes.bytes);
+    attributes.positions = attributes.bytes.data();
+    attributes.alphas = attributes.positions + 9 * header.splats;
+    attributes.colours = attributes.alphas + header.splats;
+    attributes.scales = attributes.colours + 3 * header.splats;
+    attributes.rotations = attributes.scales + 3 * header.splats;
+    attributes.sh = attributes.rotations + header.rotation_bytes * header.splats;
+    return attributes;
+}
+
+// Versions 2 and 3: one stream.
+Attributes readStream(InputFile& file, GzipReader& stream, const Header& header) {
+    Attributes attributes = reserveAttributes(file, header);
+    const std::size_t total = attributes.bytes.size(), got = stream.read(attributes.bytes);
     check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
     // The checksum is compared where the stream ends; records of extensions may lie before that.
     std::array<std::byte, 4096> behind;
@@ -63,12 +81,42 @@ Attributes readAttributes(InputFile& file, GzipReader& stream, const Header& hea
         extra += more;
         check(extra <= kMaxExpansion * file.sizeBytes() + 65536, "{}: data: {} bytes and more behind the last splat", file.name(), extra);
     }
-    attributes.positions = attributes.bytes.data();
-    attributes.alphas = attributes.positions + 9 * header.splats;
-    attributes.colours = attributes.alphas + header.splats;
-    attributes.scales = attributes.colours + 3 * header.splats;
-    attributes.rotations = attributes.scales + 3 * header.splats;
-    attributes.sh = attributes.rotations + header.rotation_bytes * header.splats;
+    return attributes;
+}
+
+// Version 4: behind the header the number of streams, where their table is (two 64-bit sizes each: packed, plain), and a stream per
+// attribute, each compressed by itself. Records of extensions lie between header and table.
+Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at) {
+    const std::array<std::uint64_t, 6> per_splat{9, 1, 3, 3, header.rotation_bytes, header.sh_bytes};
+    const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // what is empty may be left out
+    check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams, least);
+    check(table_at >= file.positionBytes() && table_at <= file.sizeBytes(),
+          "{}: header: the table of streams is at byte {}, expected it from {} to {}", file.name(), table_at, file.positionBytes(),
+          file.sizeBytes());
+    file.skip(table_at - file.positionBytes());
+    const std::span<const std::byte> table_bytes = file.readBlock(16 * streams);
+    check(table_bytes.size() == 16 * streams, "{}: ends within the table of streams, at byte {}", file.name(), file.positionBytes());
+    const std::vector<std::byte> table(table_bytes.begin(), table_bytes.end());
+
+    Attributes attributes = reserveAttributes(file, header);
+    std::byte* target = attributes.bytes.data();
+    for (std::size_t i = 0; i < streams; ++i) {
+        const auto packed = loadLittle<std::uint64_t>(table, 16 * i), plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
+        const std::uint64_t expected = per_splat[i] * header.splats;
+        check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain, expected, header.splats);
+        check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i, file.bytesLeft(), packed);
+        std::vector<std::byte> bytes;
+        bytes.reserve(packed);
+        while (bytes.size() < packed) {
+            const std::span<const std::byte> block = file.readBlock(std::min<std::uint64_t>(packed - bytes.size(), std::uint64_t{1} << 20));
+            check(!block.empty(), "{}: stream {}: ends after {} of {} bytes", file.name(), i, bytes.size(), packed);
+            bytes.insert(bytes.end(), block.begin(), block.end());
+        }
+        const std::size_t got = ZSTD_decompress(target, plain, bytes.data(), bytes.size());
+        check(ZSTD_isError(got) == 0, "{}: stream {}: broken ({})", file.name(), i, ZSTD_getErrorName(got));
+        check(got == plain, "{}: stream {}: ends after {} bytes, expected {}", file.name(), i, got, plain);
+        target += plain;
+    }
     return attributes;
 }
 
@@ -135,14 +183,23 @@ bool isSpz(InputFile& file) {
 }
 
 Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
-    check(file.peek(4) != "NGSP", "{}: header: an SPZ container that is not in gzip (version 4, Zstandard), expected version 2 or 3",
-          file.name());
     if (progress) { progress(0.0); }
-    GzipReader stream(file);
-    std::array<std::byte, spz::kHeaderBytes> header_bytes{};
-    const std::size_t header_size = stream.read(header_bytes);
-    const Header header = parseHeader(file.name(), std::span(header_bytes).first(header_size));
-    const Attributes attributes = readAttributes(file, stream, header);
+    Header header;
+    Attributes attributes{};
+    if (file.peek(4) == "NGSP") {
+        std::array<std::byte, 32> bytes{};
+        const std::span<const std::byte> block = file.readBlock(bytes.size());
+        check(block.size() == bytes.size(), "{}: header: ends after {} bytes, expected {}", file.name(), block.size(), bytes.size());
+        std::copy(block.begin(), block.end(), bytes.begin());
+        header = parseHeader(file.name(), std::span(bytes).first(spz::kHeaderBytes), true);
+        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(bytes, 16));
+    } else {
+        GzipReader stream(file);
+        std::array<std::byte, spz::kHeaderBytes> bytes{};
+        const std::size_t size = stream.read(bytes);
+        header = parseHeader(file.name(), std::span(bytes).first(size), false);
+        attributes = readStream(file, stream, header);
+    }
 
     SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
     StoredBlock block;

@@ -2,6 +2,7 @@
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
+#include "engine/setup/settings_guard.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -75,17 +76,6 @@ SettingsTable tableFrom(const std::string& file, const std::string& name, const 
     return result;
 }
 
-// The library makes a table within a table for each dot of a key, however many there are, and frees them by recursion.
-void refuseDeepKeys(const std::string& file, std::string_view text) {
-    int dots = 0, line = 1;
-    for (const char letter : text) {
-        line += letter == '\n';
-        const bool between = std::string_view("=,[]{}/:;()\n").find(letter) != std::string_view::npos;
-        dots = between ? 0 : dots + (letter == '.');
-        check(dots <= 64, "{}:{}: a key of more than 64 parts, must be a [table] and a key", file, line);
-    }
-}
-
 }  // namespace
 
 std::string Setting::text() const {
@@ -101,7 +91,7 @@ std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
           std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
     std::stringstream content;
     content << stream.rdbuf();
-    refuseDeepKeys(file, content.str());
+    refuseUnreadableSettings(file, content.str());
 
     toml::table root;
     try {

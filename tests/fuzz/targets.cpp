@@ -105,8 +105,7 @@ void runTarget(const std::string& name, Bytes input) {
             target.read(input);
         } catch (const Error& error) {
             const std::string_view message = error.what();
-            if (message.empty() || message.find('\n') != std::string_view::npos ||
-                message.find("than this machine gives") != std::string_view::npos) {
+            if (message.empty() || message.find('\n') != std::string_view::npos) {
                 std::fprintf(stderr, "not a message as it should be: %s\n", error.what());
                 std::abort();
             }
