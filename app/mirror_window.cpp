@@ -57,6 +57,7 @@ std::vector<const char*> WindowSystem::instanceExtensions() {
 }
 
 MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : context_(context), canvas_(canvas) {
+    check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
     const int panel_width = kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);

@@ -55,7 +55,7 @@ Viewer::Viewer(const ViewOptions& options, xr::Session& session, bool mirrored)
       settings_(startSettings(options)),
       loader_(context_, options.scene, options.run) {
     status_.scene = options.scene;
-    if (mirrored) { window_ = std::make_unique<MirrorWindow>(context_, canvas_); }
+    if (mirrored) { openWindow(); }
     fitResolution();
     fillRay();
     if (options.load_first) { takeScene(); }
@@ -129,6 +129,14 @@ void Viewer::takeScene() {
     scene_ = loader_.take();
     scene_from_room_ = settings_.scene_from_room.value_or(scene_->start);
     for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
+}
+
+void Viewer::openWindow() {
+    try {
+        window_ = std::make_unique<MirrorWindow>(context_, canvas_);
+    } catch (const Error& error) { fmt::print("no window: {}\n", error.what()); } catch (const vk::SystemError& error) {
+        fmt::print("no window: {}\n", error.what());
+    }
 }
 
 void Viewer::fitResolution() {

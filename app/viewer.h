@@ -29,6 +29,8 @@ public:
 private:
     void drawFrame();
     void takeScene();
+    // The headset does not need it: where it does not open, a line says why.
+    void openWindow();
     void fitResolution();
     // What goes behind the panel; the scene if it is there.
     void drawEyes(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes);

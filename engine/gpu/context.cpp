@@ -186,7 +186,15 @@ void Context::createDevice(const ContextOptions& options) {
     const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     features.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
     dynamic_broadcast_ = features.subgroupBroadcastDynamicId == VK_TRUE;
-    const vk::DeviceCreateInfo info({}, queue_info, {}, options.device_extensions, nullptr, &features);
+    std::vector<const char*> extensions;
+    for (const vk::ExtensionProperties& offered : physical_device_.enumerateDeviceExtensionProperties()) {
+        for (const char* wanted : options.device_extensions) {
+            if (std::strcmp(offered.extensionName, wanted) != 0) { continue; }
+            extensions.push_back(wanted);
+            device_extensions_.insert(wanted);
+        }
+    }
+    const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, &features);
     const DeviceMaker& maker = options.maker;
     device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
                                                                                            *physical_device_, info))

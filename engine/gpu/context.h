@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -21,9 +22,10 @@ struct DeviceMaker {
 struct ContextOptions {
     std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
     bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
-    std::uint64_t max_allocation_bytes = 0;                                     // not more in one allocation; 0: what the device allows
-    DeviceMaker maker = {};                                                     // instead of Vulkan itself; `device` is then without effect
-    std::vector<const char*> instance_extensions = {}, device_extensions = {};  // beside those that the passes need; literals
+    std::uint64_t max_allocation_bytes = 0;             // not more in one allocation; 0: what the device allows
+    DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
+    std::vector<const char*> instance_extensions = {};  // beside those that the passes need; literals
+    std::vector<const char*> device_extensions = {};    // likewise, where the device has them
 };
 
 // Bytes of device memory in use and the most there ever were.
@@ -66,6 +68,9 @@ public:
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                            vk::MemoryPropertyFlags preferred) const;
 
+    // Whether a device extension was asked for and is there.
+    [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }
+
     // Gives a Vulkan object its name in validation messages and captures.
     template <typename Handle>
     void name(const Handle& handle, const std::string& object_name) const {
@@ -98,6 +103,7 @@ private:
     mutable std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
+    std::set<std::string> device_extensions_;
     std::uint64_t max_allocation_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;
     std::uint64_t timestamp_mask_ = 0;
