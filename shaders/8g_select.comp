@@ -1,20 +1,36 @@
-// 8g: the tiles that are rendered again. Where errors are predicted: the worst of them, up to the budget, found by radix
-// selection. In one workgroup, which also lists them and sums the list up. 
+// 8g: the tiles that are rendered again. Where errors are predicted: all that lie outside the dominant eye's view, and the worst of
+// the others up to the budget, found by radix selection. In one workgroup, which also lists them and sums the list up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
+#include "lib/stereo.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
-layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
+layout(constant_id = 1) const bool kPredicted = false;  // otherwise tile_kinds says which
 
 shared uint digit_counts[256];
 shared uint chosen_digit, left_to_choose;
 
 // Where sums stop growing (8f), the order of threads decides by how much they went beyond.
-uint errorOf(uint tile) { return min(pass.tile_errors.at[tile], 0x7fffffffu); }
+uint errorOf(uint tile) { return pass.tile_kinds.at[tile] == kTileEdge ? 0 : min(pass.tile_errors.at[tile], 0x7fffffffu); }
+
+// Whether a corner of the tile lies outside the dominant picture by more than a gap even if all is infinitely far: so much of a
+// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill, and it would eat up the budget.
+bool isUnseen(StereoView stereo, uint tile) {
+    const uvec2 first = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x) * kTileSize;
+    const uvec2 last = min(first + kTileSize, stereo.size_px) - 1;
+    const vec2 low = vec2(-float(stereo.gap_px)), high = vec2(stereo.size_px) - low;
+    bool unseen = false;
+    for (uint corner = 0; corner < 4; ++corner) {
+        const vec2 at = vec2((corner & 1) == 0 ? first.x : last.x, corner < 2 ? first.y : last.y) + 0.5;
+        const vec3 moved = movePixel(stereo.dominant_from_affiliated, at, 0);
+        unseen = unseen || !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
+    }
+    return unseen;
+}
 
 // The error that the `wanted`-th worst tile has (1 counts from the worst), and how many tiles of just that error are wanted.
 uint findThreshold(uint tiles, uint wanted, out uint of_threshold) {
@@ -52,11 +68,18 @@ void main() {
     const StereoView stereo = pass.stereo.at[0];
     const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
     const uint wanted = min(stereo.budget_tiles, tiles);
+    if (kPredicted) {
+        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kGroupSize) {
+            pass.tile_kinds.at[tile] = isUnseen(stereo, tile) ? kTileEdge : 0;
+        }
+        memoryBarrierBuffer();
+        barrier();
+    }
     uint of_threshold = 0;
     const uint threshold = kPredicted && wanted > 0 ? findThreshold(tiles, wanted, of_threshold) : 0;
 
     const uint thread = threadIndex();
-    uint listed = 0, at_threshold = 0;
+    uint listed = 0, at_threshold = 0, unseen = 0;
     for (uint begin = 0; begin < tiles; begin += kGroupSize) {
         const uint tile = begin + thread;
         bool selected = false;
@@ -67,7 +90,12 @@ void main() {
             const uint equal_before = at_threshold + scanGroup(equal ? 1 : 0, equal_here);
             at_threshold += equal_here;
             selected = wanted > 0 && error > 0 && (error > threshold || (equal && equal_before < of_threshold));
-            if (tile < tiles) { pass.tile_kinds.at[tile] = selected ? kTilePredicted : 0; }
+            if (selected) { pass.tile_kinds.at[tile] = kTilePredicted; }
+            const bool edge = tile < tiles && pass.tile_kinds.at[tile] == kTileEdge;
+            uint unseen_here;
+            scanGroup(edge ? 1 : 0, unseen_here);
+            unseen += unseen_here;
+            selected = selected || edge;
         } else {
             selected = tile < tiles && pass.tile_kinds.at[tile] != 0;
         }
@@ -82,6 +110,9 @@ void main() {
         pass.masked_tiles.at[0] = makeList(listed, tiles);
         const uint visible = listed > 0 ? pass.visible.at[0].count : 0;
         pass.masked_visible.at[0] = makeList(visible, visible);
-        if (kPredicted) { pass.counters.at[0].predicted_tiles = listed; }
+        if (kPredicted) {
+            pass.counters.at[0].predicted_tiles = listed - unseen;
+            pass.counters.at[0].edge_tiles = unseen;
+        }
     }
 }

@@ -66,7 +66,9 @@ void checkSelection(Gpu& gpu, const std::vector<gpu::uint>& errors, std::size_t 
 
     std::vector<double> twin_errors;
     for (std::size_t t = 0; t < errors.size(); ++t) { twin_errors.push_back(limited(t)); }
-    CHECK(test::kindsOf(reference::select(twin_errors, budget_tiles)) == expected);
+    std::vector<TileKind> twin_kinds(errors.size(), TileKind::kNone);
+    reference::select(twin_kinds, twin_errors, budget_tiles);
+    CHECK(test::kindsOf(twin_kinds) == expected);
 }
 
 }  // namespace
@@ -112,6 +114,45 @@ TEST_CASE_FIXTURE(Gpu, "8g_select lists the tiles that others have marked, and f
             const auto selected = device.select(false, kVisible);
             CHECK(device.readTileKinds() == kinds);
             checkLists(selected, kinds);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "8g_select renders what the dominant eye cannot see whatever the budget, and spends the budget on the rest") {
+    // Eyes of a headset: 10 degrees wider outwards than inwards, or canted by 8.
+    const glm::uvec2 size_px(160, 96);
+    const double inwards = std::tan(0.6), outwards = std::tan(0.6 + 10.0 * glm::pi<double>() / 180.0);
+    const double focal_px = size_px.x / (inwards + outwards);
+    const auto eyeOf = [&](double principal_px, double cant_rad, double x) {
+        return Eye{{glm::angleAxis(cant_rad, glm::dvec3(0.0, 1.0, 0.0)), {x, 0.0, 0.0}}, {focal_px, focal_px, principal_px, 48.0}, size_px};
+    };
+    const double left_px = focal_px * outwards, right_px = focal_px * inwards;
+    const reference::EyePair pairs[] = {{eyeOf(left_px, 0.0, 0.0), eyeOf(right_px, 0.0, 0.064)},
+                                        {eyeOf(80.0, -0.07, 0.0), eyeOf(80.0, 0.07, 0.064)},
+                                        {eyeOf(80.0, 0.0, 0.0), eyeOf(80.0, 0.0, 0.064)}};
+    const std::size_t least_unseen[] = {6, 6, 0};
+    std::mt19937 random(11);
+    for (std::size_t p = 0; p < 3; ++p) {
+        CAPTURE(p);
+        std::vector<gpu::uint> errors(60);
+        for (gpu::uint& error : errors) { error = 1 + static_cast<gpu::uint>(random() % 100000); }
+        for (const std::size_t budget : {std::size_t{0}, std::size_t{9}, std::size_t{60}}) {
+            StereoSettings settings;
+            settings.budget = static_cast<double>(budget) / 60.0 + 1e-9;
+            StereoOnDevice device(*this, stereoViewOf(pairs[p].source, pairs[p].target, settings), {}, {}, {});
+            device.writeTileErrors(errors);
+            const auto selected = device.select(true, kVisible);
+            const std::vector<gpu::uint> kinds = device.readTileKinds();
+            std::vector<TileKind> expected = reference::markUnseen(pairs[p], static_cast<int>(settings.gap_px));
+            const auto unseen = static_cast<std::size_t>(std::count(expected.begin(), expected.end(), TileKind::kEdge));
+            reference::select(expected, std::vector<double>(errors.begin(), errors.end()), budget);
+            CHECK(kinds == test::kindsOf(expected));
+            checkLists(selected, kinds);
+            // The affiliated eye's outer columns, and not all of its tiles.
+            CHECK(unseen >= least_unseen[p]);
+            CHECK(unseen <= (p == 2 ? 0u : 30u));
+            CHECK(device.readCounters().edge_tiles == unseen);
+            CHECK(device.readCounters().predicted_tiles == std::min(budget, 60 - unseen));
         }
     }
 }

@@ -85,7 +85,7 @@ public:
     Selected select(bool predicted, std::size_t visible_count) {
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
         const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
-        dispatch("8g_select", {predicted ? 1u : 0u},
+        dispatch("8g_select", {alongRows(), predicted ? 1u : 0u},
                  gpu::SelectPass{view(), buffers_.tileErrors(), buffers_.tileKinds(), buffers_.tileList(), buffers_.tilesBefore(), list(0),
                                  list(1), list(2), counters()},
                  {1, 1});

@@ -124,7 +124,7 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     }
     if (paper || predict) {
         commands.beginPass("affiliated 8g_select");
-        commands.dispatch(kernels_.get("8g_select", sizeof(gpu::SelectPass), {predict}),
+        commands.dispatch(kernels_.get("8g_select", sizeof(gpu::SelectPass), {along_rows, predict}),
                           gpu::SelectPass{view, stereo.tileErrors(), stereo.tileKinds(), stereo.tileList(), stereo.tilesBefore(), visible,
                                           buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
                                           buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters},

@@ -57,7 +57,8 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         std::vector<double> errors = expectErrors(pictures.resolved, pictures.dominant, eyes, stereo);
         const EyeSplats target(scene, order, eyes.target, settings);
         addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.resolved, size_px, stereo.newcomer_error);
-        pictures.tile_kinds = select(errors, static_cast<std::size_t>(stereo.budget * static_cast<double>(errors.size())));
+        pictures.tile_kinds = markUnseen(eyes, stereo.gap_px);
+        select(pictures.tile_kinds, errors, static_cast<std::size_t>(stereo.budget * static_cast<double>(errors.size())));
     }
     pictures.affiliated = resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes);
     patch(pictures, scene, compact(scene, visible, eyes.target, settings), eyes.target, settings);

@@ -81,8 +81,10 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
                          std::span<const TilePair> source_pairs, std::span<const Resolved> resolved, glm::uvec2 size_px,
                          double newcomer_error);
 
-// 8g: the tiles of the greatest errors, at most `budget_tiles` and none without an error; the first of equals.
-std::vector<TileKind> select(std::span<const double> errors, std::size_t budget_tiles);
+// 8g: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge); and of the others
+// those of the greatest errors, at most `budget_tiles` and none without an error, the first of equals.
+std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
+void select(std::vector<TileKind>& kinds, std::span<const double> errors, std::size_t budget_tiles);
 
 // 9: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
