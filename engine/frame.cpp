@@ -141,10 +141,16 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 }
 
 void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
-    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo,
-                          isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo)), dominant_, images_[dominant_],
+    const bool rectified = isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo));
+    stereo_buffers_.borrow(buffers_.pairs.pairs().keys);
+    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo, rectified, dominant_, images_[dominant_],
                           images_[target.eye]);
-    if (stereo.patching == Patching::kNone) { return; }
+    if (stereo.patching != Patching::kNone) { recordPatches(eyes, stereo, target); }
+    // Last, since the classes of pixels take the pairs' place.
+    stereo_passes_.recordResample(commands_, buffers_, stereo_buffers_, rectified, images_[dominant_], images_[target.eye]);
+}
+
+void StereoFrame::recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
     target.shifted = isShifted(stereoViewOf(eyes[dominant_], eyes[target.eye], stereo));
     if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, target.eye, 0, "affiliated "); }
     passes_.recordTiles(commands_, scene_, buffers_, target, {stereo_buffers_.tilesBefore(), stereo_buffers_.tileList()}, "affiliated ");
@@ -177,6 +183,8 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         stereo_buffers_ = {};
         if (stereo_px.x > 0) { stereo_buffers_ = StereoBuffers(context_, stereo_px, boxes); }
     }
+    const auto borrowed_pairs = static_cast<std::uint32_t>(stereo_buffers_.borrowedBytes() / PairBuffers::kBytesPerPair + 1);
+    if (borrowed_pairs > buffers_.pairs.capacity()) { growFrameBuffers(context_, buffers_, {buffers_.visible.capacity(), borrowed_pairs}); }
 }
 
 bool StereoFrame::growIfNeeded() {
@@ -263,11 +271,12 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
 }
 
 template <typename T>
-std::vector<T> StereoFrame::readBuffer(const Buffer& buffer) {
-    if (buffer.bytes() == 0) { return {}; }
-    const Buffer readback(context_, "read-back", buffer.bytes(), MemoryKind::kReadback);
+std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first_bytes) {
+    const std::uint64_t bytes = std::min(buffer.bytes(), first_bytes);
+    if (bytes == 0) { return {}; }
+    const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
     commands_.begin();
-    commands_.copy(buffer, readback, buffer.bytes());
+    commands_.copy(buffer, readback, bytes);
     commands_.submitAndWait();
     const auto values = readback.mapped<T>();
     return {values.begin(), values.end()};
@@ -294,7 +303,7 @@ std::vector<std::uint32_t> StereoFrame::readTileKinds() {
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
     if (!reprojects(mode_)) { return {}; }
-    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(stereo_buffers_.pixelClasses());
+    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(buffers_.pairs.buffer(), stereo_buffers_.pixelClassBytes());
     const glm::uvec2 size = sizes_px_[0];
     const std::size_t row_words = tilesOf(size).x;
     std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);

@@ -77,12 +77,13 @@ private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
+    void recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
     [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
     void explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const;
     template <typename T>
-    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer);
+    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);
 
     const Context& context_;
     const GpuScene& scene_;

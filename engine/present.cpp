@@ -35,7 +35,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.depths = eye.image->depths.address<float>();
     if (tinted) {
         pass.tile_kinds = eye.tinted_by->tileKinds();
-        pass.pixel_classes = eye.tinted_by->pixelClasses().address<gpu::uint>();
+        pass.pixel_classes = eye.tinted_by->pixelClasses();
     }
     pass.pixels = pixels_.address<gpu::uint>();
     pass.device_depths = depths_.address<float>();

@@ -45,16 +45,15 @@ void main() {
     const bool inside = all(lessThan(at, stereo.size_px));
     if (gl_LocalInvocationIndex < 16) { row_classes[gl_LocalInvocationIndex] = 0; }
     barrier();
-    if (inside) {
+    // Tiles that were rendered again hold colours already.
+    if (inside && pass.tile_kinds.at[gl_WorkGroupID.y * stereo.size_tiles.x + gl_WorkGroupID.x] == 0) {
         const uint i = at.y * stereo.size_px.x + at.x;
         const uint nearest = pass.pixels.at[i].nearest;
         atomicOr(row_classes[gl_LocalInvocationID.y], pixelClass(nearest) << (2 * gl_LocalInvocationID.x));
-        if (pass.tile_kinds.at[gl_WorkGroupID.y * stereo.size_tiles.x + gl_WorkGroupID.x] == 0) {
-            const float column = float(isUncovered(nearest) ? anchorColumn(nearest) : at.x);
-            const vec2 pixel_px = vec2(column, float(at.y)) + 0.5;
-            const vec2 source_px = movePixel(stereo.dominant_from_affiliated, pixel_px, pass.pixels.at[i].resolved_inverse_depth).xy;
-            pass.affiliated.at[i] = kRectified ? sampleCubicInRow(source_px.x, int(at.y), int(stereo.size_px.x)) : sampleCubic(source_px, ivec2(stereo.size_px));
-        }
+        const float column = float(isUncovered(nearest) ? anchorColumn(nearest) : at.x);
+        const vec2 pixel_px = vec2(column, float(at.y)) + 0.5;
+        const vec2 source_px = movePixel(stereo.dominant_from_affiliated, pixel_px, pass.pixels.at[i].resolved_inverse_depth).xy;
+        pass.affiliated.at[i] = kRectified ? sampleCubicInRow(source_px.x, int(at.y), int(stereo.size_px.x)) : sampleCubic(source_px, ivec2(stereo.size_px));
     }
     barrier();
     if (gl_LocalInvocationID.x == 0 && inside) { pass.pixel_classes.at[at.y * stereo.size_tiles.x + gl_WorkGroupID.x] = row_classes[gl_LocalInvocationID.y]; }

@@ -26,10 +26,12 @@ public:
           depths_(gpu.upload("dominant depths", depths)),
           pixels_(gpu.upload("stereo pixels", pixels)),
           buffers_(gpu.context(), view.size_px, boxes),
+          borrowed_(gpu.context(), "boxes and pixel classes", buffers_.borrowedBytes()),
           gpu_(gpu) {
+        buffers_.borrow(borrowed_.address<gpu::uint>());
         gpu.run([&](Commands& commands) {
             commands.fillZero(buffers_.tiles());
-            commands.fillZero(buffers_.pixelClasses());
+            commands.fillZero(borrowed_);
         });
     }
 
@@ -95,7 +97,7 @@ public:
     void resample() {
         dispatch("9_resample", {alongRows()},
                  gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), buffers_.tileKinds(),
-                                   buffers_.pixelClasses().address<gpu::uint>()},
+                                   buffers_.pixelClasses()},
                  view_.size_tiles);
     }
 
@@ -107,7 +109,7 @@ public:
     [[nodiscard]] std::vector<gpu::uint> readDepthBins() { return readTiles(buffers_.depthBins(), gpu::kDepthBins); }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
         const std::size_t row_words = view_.size_tiles.x;
-        const auto words = gpu_.readBack<gpu::uint>(buffers_.pixelClasses(), row_words * view_.size_px.y);
+        const auto words = gpu_.readBack<gpu::uint>(borrowed_, row_words * view_.size_px.y);
         std::vector<std::uint8_t> classes;
         for (std::size_t y = 0; y < view_.size_px.y; ++y) {
             for (std::size_t x = 0; x < view_.size_px.x; ++x) {
@@ -154,6 +156,7 @@ private:
     gpu::StereoView view_;
     Buffer view_buffer_, counters_, colours_, depths_, pixels_;
     StereoBuffers buffers_;
+    Buffer borrowed_;
     Gpu& gpu_;
 };
 

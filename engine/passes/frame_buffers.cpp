@@ -9,15 +9,13 @@ VisibleBuffers::VisibleBuffers(const Context& context, std::uint32_t capacity)
     : capacity_(capacity), buffer_(context, "visible splats", kBytesPerSplat * capacity) {}
 
 PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity)
-    : capacity_(capacity), buffer_(context, "tile pairs", 4 * sizeof(gpu::uint) * std::uint64_t{capacity}) {}
+    : capacity_(capacity), buffer_(context, "tile pairs", kBytesPerPair * capacity) {}
 
 glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
 
 StereoBuffers::StereoBuffers(const Context& context, glm::uvec2 size_px, std::uint32_t boxes)
     : size_px_(size_px), tile_count_(std::uint64_t{tilesOf(size_px).x} * tilesOf(size_px).y), box_capacity_(boxes) {
     tiles_ = Buffer(context, "stereo tiles", (4 * tile_count_ + 1 + gpu::kDepthBins) * sizeof(gpu::uint));
-    boxes_ = Buffer(context, "hole boxes", boxes * sizeof(gpu::PixelBox));
-    pixel_classes_ = Buffer(context, "pixel classes", std::uint64_t{tilesOf(size_px).x} * size_px.y * sizeof(gpu::uint));
 }
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count) {

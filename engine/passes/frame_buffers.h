@@ -6,6 +6,7 @@
 #include "engine/passes/sort.h"
 #include "shaders/shared/types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +24,8 @@ struct FrameState {
     gpu::ListState masked_tiles;    // those of the affiliated eye that are rendered again
     gpu::ListState masked_visible;  // visible[0], or empty if there is no such tile
 };
+
+glm::uvec2 tilesOf(glm::uvec2 size_px);
 
 struct FrameCapacity {
     std::uint32_t visible = 0;
@@ -65,6 +68,8 @@ private:
 // Likewise over the (tile, splat) pairs, twice for sorting.
 class PairBuffers {
 public:
+    static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
+
     PairBuffers() = default;
     PairBuffers(const Context& context, std::uint32_t capacity);
 
@@ -72,6 +77,7 @@ public:
     [[nodiscard]] KeyValues pairs() const { return {at(0), at(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at(8), at(12)}; }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
+    [[nodiscard]] const Buffer& buffer() const { return buffer_; }
 
 private:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> at(std::uint64_t bytes_before_per_pair) const {
@@ -104,7 +110,8 @@ struct FrameBuffers {
     static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
 };
 
-// What reprojection and the choice of tiles work on. Arrays over the tiles lie in one buffer, one after the other.
+// What reprojection and the choice of tiles work on. Arrays over the tiles lie in one buffer, one after the other. Boxes of holes and,
+// at the frame's end, the classes of pixels lie where the pairs are while these are not in use.
 class StereoBuffers {
 public:
     StereoBuffers() = default;
@@ -116,24 +123,29 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> depthBins() const { return tileErrors().at(2 * tile_count_); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return depthBins().at(gpu::kDepthBins); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesBefore() const { return tileList().at(tile_count_); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return {borrowed_.value}; }
     [[nodiscard]] std::uint32_t boxCapacity() const { return box_capacity_; }
     // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
-    [[nodiscard]] const Buffer& pixelClasses() const { return pixel_classes_; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return borrowed_; }
+    [[nodiscard]] std::uint64_t pixelClassBytes() const { return std::uint64_t{tilesOf(size_px_).x} * size_px_.y * sizeof(gpu::uint); }
+    // Where there are that many bytes for boxes and classes.
+    [[nodiscard]] std::uint64_t borrowedBytes() const {
+        return std::max<std::uint64_t>(pixelClassBytes(), box_capacity_ * sizeof(gpu::PixelBox));
+    }
+    void borrow(gpu::DeviceAddress<gpu::uint> address) { borrowed_ = address; }
     [[nodiscard]] const Buffer& tiles() const { return tiles_; }
     [[nodiscard]] std::uint64_t tileKindsOffset() const { return tile_count_ * sizeof(gpu::uint); }
     [[nodiscard]] std::uint64_t tileCount() const { return tile_count_; }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes() + boxes_.bytes() + pixel_classes_.bytes(); }
+    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes(); }
 
 private:
     glm::uvec2 size_px_{0, 0};
     std::uint64_t tile_count_ = 0;
     std::uint32_t box_capacity_ = 0;
-    Buffer tiles_, boxes_, pixel_classes_;
+    Buffer tiles_;
+    gpu::DeviceAddress<gpu::uint> borrowed_;
 };
-
-glm::uvec2 tilesOf(glm::uvec2 size_px);
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);
 // Makes room; what was in the lists before is lost, and no more than the new is held at any time.

@@ -130,10 +130,16 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
                                           buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters},
                           1);
     }
+}
+
+void StereoPasses::recordResample(Commands& commands, const FrameBuffers& buffers, const StereoBuffers& stereo, bool rectified,
+                                  const EyeImage& dominant, const EyeImage& affiliated) {
+    const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
+    const glm::uvec2 tiles = tilesOf(stereo.sizePx());
     commands.beginPass("affiliated 9_resample");
-    commands.dispatch(kernels_.get("9_resample", sizeof(gpu::ResamplePass), {along_rows}),
-                      gpu::ResamplePass{view, colours, pixels, affiliated.colours.address<gpu::vec4>(), stereo.tileKinds(),
-                                        stereo.pixelClasses().address<gpu::uint>()},
+    commands.dispatch(kernels_.get("9_resample", sizeof(gpu::ResamplePass), {rectified ? 1u : 0u}),
+                      gpu::ResamplePass{view, dominant.colours.address<gpu::vec4>(), affiliated.colours.address<gpu::StereoPixel>(),
+                                        affiliated.colours.address<gpu::vec4>(), stereo.tileKinds(), stereo.pixelClasses()},
                       tiles.x, tiles.y);
 }
 

@@ -49,10 +49,12 @@ class StereoPasses {
 public:
     explicit StereoPasses(const Context& context) : kernels_(context) {}
 
-    // Passes 8 and 9. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo
-    // pixels, which the affiliated eye's colours replace but for the tiles that are masked.
+    // Passes 8. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo pixels.
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
                 const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
+    // Pass 9: the affiliated eye's colours take the place of its stereo pixels but in the tiles that are masked.
+    void recordResample(Commands& commands, const FrameBuffers& buffers, const StereoBuffers& stereo, bool rectified,
+                        const EyeImage& dominant, const EyeImage& affiliated);
 
 private:
     KernelCache kernels_;
