@@ -34,7 +34,7 @@ inline constexpr OptionRow kStereoRows[] = {
     {"gap-px", "stereo", "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes (default 2)"},
     {"edge-samples", "stereo", "N", "paper mode: samples along each edge of the picture (default 64)"},
     {"edge-bounds", "stereo", "KIND", "paper mode: paper, or tight: at the edges also what near content uncovers (default paper)"},
-    {"hole-error", "stereo", "E", "predicted mode: error that a pixel of a hole counts for (default 0.7)"},
+    {"hole-error", "stereo", "E", "predicted mode: weight of the difference expected of a hole's pixel (default 1)"},
     {"newcomer-error", "stereo", "E",
      "predicted mode: error of a pixel that splats cover which the dominant eye does not see (default 0.3)"},
 };

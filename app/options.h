@@ -36,7 +36,7 @@ struct StereoOptions {
     std::uint32_t gap_px = 2;
     std::uint32_t edge_samples = 64;
     std::string edge_bounds = "paper";
-    double hole_error = 0.7;
+    double hole_error = 1.0;
     double newcomer_error = 0.3;
 };
 

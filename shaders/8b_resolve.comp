@@ -1,7 +1,7 @@
 // 8b: every pixel of the affiliated eye gets a place in the dominant picture, a workgroup a row. Covered pixels keep the depth that
 // reached them. Runs of uncovered pixels lie between two covered ones: short runs across a slanted surface interpolate its depth,
 // all others repeat the farther neighbour, since what was hidden lies behind. Where errors are predicted, a tile's sum counts
-// holes, and for mixed pixels the spread of their disparity times the picture's gradient.
+// what the picture changes by beside a hole, and for mixed pixels the spread of their disparity times the picture's gradient.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -42,6 +42,15 @@ float mixedDepthError(StereoView stereo, vec2 pixel_px, float inverse_depth) {
                    direction.y * (0.5 * (dominantColour(source + ivec2(0, 1), last) - dominantColour(source - ivec2(0, 1), last)));
     }
     return spread_px * spread_px * dot(gradient, gradient) / 3;
+}
+
+// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` beside it: what is hidden differs from that as
+// much as what is seen equally far on the other side.
+float holeError(StereoView stereo, vec2 anchor_px, float inverse_depth, int repeated_px) {
+    const ivec2 source = ivec2(floor(movePixel(stereo.dominant_from_affiliated, anchor_px, inverse_depth).xy));
+    const ivec2 last = ivec2(stereo.size_px) - 1;
+    const vec3 difference = stereo.hole_error * (dominantColour(source + ivec2(repeated_px, 0), last) - dominantColour(source, last));
+    return dot(difference, difference) + kLeastHoleError;
 }
 
 void main() {
@@ -107,7 +116,7 @@ void main() {
             atomicAdd(row_counts[pixel_class], 1);
             if (kPredictErrors) {
                 // Mixed pixels are many and alike: every other row stands for two.
-                const float error = pixel_class == kHole ? stereo.hole_error * stereo.hole_error
+                const float error = pixel_class == kHole ? holeError(stereo, vec2(anchor, y) + 0.5, inverse_depth, int(anchor) - int(x))
                                     : (y & 1) == 0       ? 2 * mixedDepthError(stereo, vec2(x, y) + 0.5, inverse_depth)
                                                          : 0;
                 const uint steps_of_error = uint(min(error, kMaxPixelError) * kErrorSteps);

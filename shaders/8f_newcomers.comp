@@ -13,6 +13,8 @@
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
+// What one splat adds to a tile at most.
+const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
 const uint kMaxTiles = 1024;
 
@@ -48,7 +50,7 @@ void main() {
     const float area_px = 3.14159265 * (1 / kLowPass + p.inverse_depth * p.inverse_depth / (p.plane_from_pixel.x * abs(p.plane_from_pixel.z)));
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
     const float error = stereo.newcomer_error * splat.opacity;
-    const uint steps = uint(min(error * error * pixels, kMaxPixelError) * kErrorSteps);
+    const uint steps = uint(min(error * error * pixels, kMaxTileError) * kErrorSteps);
     uint added = 0;
     for (int row = box.y; row < box.w && added < kMaxTiles; ++row) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);

@@ -34,7 +34,7 @@ struct StereoSettings {
     bool tight_edges = false;
     bool center_rois = false;
     double budget = 0.15;  // share of the tiles
-    double hole_error = 0.7;
+    double hole_error = 1.0;
     double newcomer_error = 0.3;
 };
 

@@ -8,7 +8,7 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kMaxSpreadPx = 4.0;
-constexpr double kMaxPixelError = 64.0;
+constexpr double kMaxPixelError = 4.0, kLeastHoleError = 1e-4;
 
 // A pixel that nothing reached, between the pixels `left` and `right` of its row that something did; -1: there is none.
 Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int right, double disparity_px, int gap_px) {
@@ -27,13 +27,21 @@ Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int rig
     return {pixel_class, static_cast<std::uint32_t>(farther), depthAt(farther)};
 }
 
+glm::dvec3 colourAt(const Picture& picture, const glm::ivec2& pixel) {
+    const glm::ivec2 last = glm::ivec2(picture.size_px) - 1, at = glm::clamp(pixel, glm::ivec2(0), last);
+    return glm::dvec3(picture.rgba[static_cast<std::size_t>(at.y * (last.x + 1) + at.x)]);
+}
+
+// How much the picture changes from `source` to `distance_px` beside it, squared: as much as what a hole hides may differ from what it
+// repeats.
+double holeError(const Picture& dominant, const glm::ivec2& source, int distance_px, double weight) {
+    const glm::dvec3 change = weight * (colourAt(dominant, source + glm::ivec2(distance_px, 0)) - colourAt(dominant, source));
+    return glm::dot(change, change) + kLeastHoleError;
+}
+
 // Squared disparity spread of a pixel of the source times the squared change of the picture along the disparity, a mean over the channels.
 double mixedDepthError(const Picture& dominant, const EyeChange& target_from_source, const glm::ivec2& source) {
     const glm::ivec2 last = glm::ivec2(dominant.size_px) - 1;
-    const auto colourAt = [&](const glm::ivec2& pixel) {
-        const glm::ivec2 at = glm::clamp(pixel, glm::ivec2(0), last);
-        return glm::dvec3(dominant.rgba[static_cast<std::size_t>(at.y * (last.x + 1) + at.x)]);
-    };
     const auto i = static_cast<std::size_t>(source.y * (last.x + 1) + source.x);
     const double weight = dominant.rgba[i].w;
     const glm::dvec2 disparity = target_from_source.disparity(glm::dvec2(source) + 0.5);
@@ -42,8 +50,8 @@ double mixedDepthError(const Picture& dominant, const EyeChange& target_from_sou
     const double mean = dominant.inverse_depth[i] / weight;
     const double variance = std::max(dominant.inverse_depth_squared[i] / weight - mean * mean, 0.0);
     const double spread_px = std::min(length * std::sqrt(variance), kMaxSpreadPx);
-    const glm::dvec3 across = (colourAt(source + glm::ivec2(1, 0)) - colourAt(source - glm::ivec2(1, 0))) / 2.0;
-    const glm::dvec3 down = (colourAt(source + glm::ivec2(0, 1)) - colourAt(source - glm::ivec2(0, 1))) / 2.0;
+    const glm::dvec3 across = (colourAt(dominant, source + glm::ivec2(1, 0)) - colourAt(dominant, source - glm::ivec2(1, 0))) / 2.0;
+    const glm::dvec3 down = (colourAt(dominant, source + glm::ivec2(0, 1)) - colourAt(dominant, source - glm::ivec2(0, 1))) / 2.0;
     const glm::dvec3 change = (disparity.x * across + disparity.y * down) / length;
     return spread_px * spread_px * glm::dot(change, change) / 3.0;
 }
@@ -84,14 +92,14 @@ std::vector<double> expectErrors(std::span<const Resolved> resolved, const Pictu
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             const Resolved& pixel = resolved[static_cast<std::size_t>(y * size.x + x)];
-            double error = settings.hole_error * settings.hole_error;
-            if (pixel.pixel_class != PixelClass::kHole) {
-                // Rows are sampled in pairs.
-                if (y % 2 != 0) { continue; }
-                const glm::dvec2 place = source_from_target.move({x + 0.5, y + 0.5}, pixel.inverse_depth).place_px;
-                error = 2.0 * mixedDepthError(dominant, target_from_source,
-                                              glm::ivec2(glm::clamp(glm::floor(place), glm::dvec2(0.0), glm::dvec2(size - 1))));
-            }
+            const bool hole = pixel.pixel_class == PixelClass::kHole;
+            if (!hole && y % 2 != 0) { continue; }  // rows are sampled in pairs
+            const int column = static_cast<int>(pixel.column);
+            const glm::dvec2 place = source_from_target.move({(hole ? column : x) + 0.5, y + 0.5}, pixel.inverse_depth).place_px;
+            const glm::dvec2 in_reach = glm::clamp(glm::floor(place), glm::dvec2(-1e6), glm::dvec2(1e6));
+            const double error =
+                hole ? holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
+                     : 2.0 * mixedDepthError(dominant, target_from_source, glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1));
             errors[static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize)] +=
                 std::min(error, kMaxPixelError);
         }

@@ -23,7 +23,7 @@ struct StereoSettings {
     bool tight_edges = false;
     bool center_rois = false;
     double budget = 0.15;  // share of the tiles
-    double hole_error = 0.7, newcomer_error = 0.3;
+    double hole_error = 1.0, newcomer_error = 0.3;
 };
 
 // Two eyes of one size: the picture is the source's and goes to the target.

@@ -68,10 +68,13 @@ BINOSPLAT_CONSTANT uint kTileEdge = 1;
 BINOSPLAT_CONSTANT uint kTileCenter = 2;
 BINOSPLAT_CONSTANT uint kTilePredicted = 3;
 
-// Expected squared errors are summed in fixed point, so that the sum does not depend on the order: steps of 2^-16; a pixel's
-// is at most kMaxPixelError, so that a tile's sum stays under 2^31.
-BINOSPLAT_CONSTANT float kErrorSteps = 65536.0f;
-BINOSPLAT_CONSTANT float kMaxPixelError = 64.0f;
+// Expected squared errors are summed in fixed point, so that the sum does not depend on the order: steps of 2^-20; a pixel's
+// is at most kMaxPixelError (more than black and white differ in three channels), so that a tile's sum stays under 2^31.
+BINOSPLAT_CONSTANT float kErrorSteps = 1048576.0f;
+BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
+// What a hole's pixel counts for at least, since what it hides need not look like what stands beside it: (1/100)^2, so little
+// that it decides only between tiles that nothing else tells apart.
+BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
 // A spread of disparity beyond this many pixels is not a blur any more: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 

@@ -104,7 +104,7 @@ struct StereoView {
     uint tight_edges;    // 1: bounds of what near content uncovers as well
     uint center_rois;    // paper: 1: also holes inside the picture
     uint budget_tiles;   // predicted: at most so many tiles are rendered again
-    float hole_error;    // predicted: what a hole's pixel counts for
+    float hole_error;    // predicted: what a hole's expected difference counts for
     float newcomer_error;  // predicted: what full coverage by splats that the dominant eye does not see counts for
 };
 BINOSPLAT_ARRAY_OF(StereoView, StereoViews);
