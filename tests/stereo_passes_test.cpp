@@ -78,9 +78,9 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c) {
     newcomers.found = device.readCounters().newcomers;
     const auto errors = device.readTileErrors();
     for (std::size_t t = 0; t < errors.size(); ++t) {
-        newcomers.error += errors[t] / 65536.0;
+        newcomers.error += errors[t] / static_cast<double>(gpu::kErrorSteps);
         newcomers.expected_error += expected[t];
-        newcomers.difference += std::abs(errors[t] / 65536.0 - expected[t]);
+        newcomers.difference += std::abs(errors[t] / static_cast<double>(gpu::kErrorSteps) - expected[t]);
     }
     return newcomers;
 }
@@ -199,8 +199,11 @@ TEST_CASE_FIXTURE(Gpu, "8b_resolve gives each pixel the twin's class, column and
             const auto expected_errors = reference::expectErrors(expected, c.dominant, c.eyes, c.settings);
             // Each pixel's is rounded down to 2^-16; a flip to the next source pixel may change one.
             for (std::size_t t = 0; t < errors.size(); ++t) {
-                other_tiles += isNear(errors[t] / 65536.0, expected_errors[t], 0.002, 256.0 / 65536.0) ? 0 : 1;
-                CHECK(isNear(errors[t] / 65536.0, expected_errors[t], 0.2, 0.02));
+                other_tiles += isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 0.002,
+                                      256.0 / static_cast<double>(gpu::kErrorSteps))
+                                   ? 0
+                                   : 1;
+                CHECK(isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 0.2, 0.02));
             }
             pixels += expected.size();
             other += differ;
