@@ -93,6 +93,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     writeText(files.staging() / "bench.json", benchJson(run));
     writeText(files.staging() / "bench.csv", benchCsv(run));
     writeText(files.staging() / "bench.svg", benchPlot(run));
+    context.requireNoValidationMessages();
     files.publish();
     fmt::print("{}", benchTable(run));
 }

@@ -136,6 +136,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     writeText(files.staging() / "motion.csv", motionCsv(run));
     writeText(files.staging() / "motion.json", motionJson(run));
     writeText(files.staging() / "motion.svg", motionPlot(run));
+    context.requireNoValidationMessages();
     files.publish();
     fmt::print("{}", motionTable(run));
 }

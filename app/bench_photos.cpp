@@ -154,6 +154,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     const std::vector<Means> means = meansOf(rows);
     writeText(files.staging() / "photos.csv", photosCsv(context.deviceName(), rows));
     writeText(files.staging() / "photos.json", photosJson(context.deviceName(), means));
+    context.requireNoValidationMessages();
     files.publish();
     fmt::print("{}", photosTable(context.deviceName(), means));
 }

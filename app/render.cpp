@@ -16,12 +16,6 @@ namespace {
 
 constexpr double kLongFrameMs = 2000.0;
 
-// The validation layers are for finding our mistakes: what they say is an error, not a remark.
-void requireNoValidationMessages(const Context& context) {
-    const std::vector<std::string> messages = context.validationMessages();
-    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
-}
-
 void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings) {
     const auto write = [&](const char* name, const Image& image) {
         writePicture(files.staging() / name, PictureKind::kFloat, image);
@@ -71,7 +65,7 @@ void runRender(const RenderOptions& options) {
                        result.peak_gpu_bytes, result.left_out};
     writePictures(files, frame, settings);
     writeText(files.staging() / "report.json", reportJson(report));
-    requireNoValidationMessages(context);
+    context.requireNoValidationMessages();
     files.publish();
 
     fmt::print("{}", reportTable(report));

@@ -7,16 +7,6 @@
 
 namespace binosplat {
 
-namespace {
-
-// The validation layers are for finding our mistakes: what they say is an error, not a remark.
-void requireNoValidationMessages(const Context& context) {
-    const std::vector<std::string> messages = context.validationMessages();
-    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
-}
-
-}  // namespace
-
 void runView(const ViewOptions& given) {
     ViewOptions options = given;
     if (options.simulate) { simulateHeadset(options); }
@@ -36,7 +26,7 @@ void runView(const ViewOptions& given) {
         Viewer(options, session, windows != nullptr).run();
     }
     if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
-    requireNoValidationMessages(context);
+    context.requireNoValidationMessages();
 }
 
 }  // namespace binosplat

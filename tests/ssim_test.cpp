@@ -159,7 +159,7 @@ TEST_CASE("meansByClassAreOverThatClassAlone") {
 
 TEST_CASE("filtersHandleEverySizeAndBorder") {
     // A kernel that is not symmetric tells a correlation from a convolution, and left from right.
-    const Kernel kernel{0.5f, 0.0f, 0.25f, 0.0f, 0.25f}, one{1.0f};
+    const Weights kernel{0.5f, 0.0f, 0.25f, 0.0f, 0.25f}, one{1.0f};
     const Plane plane{{4, 1}, {1.0f, 2.0f, 4.0f, 8.0f}};
     CHECK(filterPlane(plane, kernel, one, Border::kZero, 1).values == std::vector<float>{1.25f, 2.5f, 1.5f, 3.0f});
     CHECK(filterPlane(plane, kernel, one, Border::kClamp, 1).values == std::vector<float>{1.75f, 3.0f, 3.5f, 5.0f});
@@ -175,7 +175,7 @@ TEST_CASE("filtersHandleEverySizeAndBorder") {
             for (const float value : out.values) { CHECK((border == Border::kZero ? value < 1.0f : std::abs(value - 1.0f) < 1e-5f)); }
         }
     }
-    const Kernel bell = gaussianKernel(1.5, 5);
+    const Weights bell = gaussianKernel(1.5, 5);
     CHECK(bell.size() == 11);
     CHECK(std::accumulate(bell.begin(), bell.end(), 0.0f) == doctest::Approx(1.0));
     CHECK(bell[5] / bell[6] == doctest::Approx(std::exp(1.0 / 4.5)));

@@ -221,6 +221,11 @@ void Context::createDevice(const ContextOptions& options) {
     if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }
 }
 
+void Context::requireNoValidationMessages() const {
+    const std::vector<std::string> messages = validationMessages();
+    check(messages.empty(), "Vulkan validation: {} messages, the first: {}", messages.size(), messages.empty() ? "" : messages.front());
+}
+
 std::vector<std::string> Context::validationMessages() const {
     const std::lock_guard lock(messages_.mutex);
     return messages_.lines;

@@ -61,7 +61,9 @@ public:
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
     [[nodiscard]] bool hasDynamicBroadcast() const { return dynamic_broadcast_; }
     [[nodiscard]] bool validates() const { return validates_; }
-    // What the validation layers said so far; empty is good.
+    // Throws Error if the validation layers said anything so far.
+    void requireNoValidationMessages() const;
+    // What they said; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }

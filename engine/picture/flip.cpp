@@ -44,17 +44,17 @@ double weightOf(const SensitivityTerm& term, double pixels_per_degree) {
 }
 
 // Scales the positive weights to the sum 1 and the negative ones to -1.
-Kernel balance(const std::vector<double>& weights) {
+Weights balance(const std::vector<double>& weights) {
     double above = 0.0, below = 0.0;
     for (const double weight : weights) { (weight > 0.0 ? above : below) += std::abs(weight); }
-    Kernel kernel;
+    Weights kernel;
     for (const double weight : weights) { kernel.push_back(static_cast<float>(weight / (weight > 0.0 ? above : below))); }
     return kernel;
 }
 
 // Gaussian, and its first and second derivative, along one axis.
 struct FeatureKernels {
-    Kernel smooth, edge, point;
+    Weights smooth, edge, point;
 };
 
 FeatureKernels makeFeatureKernels(double pixels_per_degree) {
@@ -131,7 +131,7 @@ struct Seen {
     Plane edges, points;
 };
 
-Plane magnitudeOf(const Plane& grey, const Kernel& derivative, const Kernel& smooth, int threads) {
+Plane magnitudeOf(const Plane& grey, const Weights& derivative, const Weights& smooth, int threads) {
     Plane along_x = filterPlane(grey, derivative, smooth, Border::kClamp, threads);
     const Plane along_y = filterPlane(grey, smooth, derivative, Border::kClamp, threads);
     for (std::size_t i = 0; i < along_x.values.size(); ++i) {
@@ -156,7 +156,7 @@ Seen see(const Image& image, double pixels_per_degree, int threads) {
     seen.points = magnitudeOf(grey, kernels.point, kernels.smooth, threads);
 
     const auto blur = [&](const Plane& plane, const SensitivityTerm& term) {
-        const Kernel kernel = gaussianKernel(sigmaOf(term, pixels_per_degree), sensitivityRadius(pixels_per_degree));
+        const Weights kernel = gaussianKernel(sigmaOf(term, pixels_per_degree), sensitivityRadius(pixels_per_degree));
         return filterPlane(plane, kernel, kernel, Border::kClamp, threads);
     };
     const double wide = weightOf(kBlueYellow, pixels_per_degree), narrow = weightOf(kBlueYellowNarrow, pixels_per_degree);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kBandRows = 64;
 
 // For each position along a side, what the weights inside the picture must be multiplied by.
-std::vector<float> cutWindowScales(const Kernel& kernel, std::size_t side) {
+std::vector<float> cutWindowScales(const Weights& kernel, std::size_t side) {
     const auto radius = static_cast<std::ptrdiff_t>(kernel.size() / 2), count = static_cast<std::ptrdiff_t>(side);
     std::vector<float> scales(side);
     for (std::ptrdiff_t at = 0; at < count; ++at) {
@@ -35,7 +35,7 @@ void addScaled(float* out, const float* in, float weight, std::size_t count) {
 }
 
 // One row of `width` values; `padded` is room for width + kernel size values.
-void filterRow(const float* in, float* out, std::size_t width, const Kernel& kernel, Border border, std::vector<float>& padded) {
+void filterRow(const float* in, float* out, std::size_t width, const Weights& kernel, Border border, std::vector<float>& padded) {
     const std::size_t radius = kernel.size() / 2;
     const bool clamps = border == Border::kClamp;
     std::fill_n(padded.begin(), radius, clamps ? in[0] : 0.0f);
@@ -47,16 +47,16 @@ void filterRow(const float* in, float* out, std::size_t width, const Kernel& ker
 
 }  // namespace
 
-Kernel gaussianKernel(double sigma, int radius) {
+Weights gaussianKernel(double sigma, int radius) {
     std::vector<double> weights;
     double sum = 0.0;
     for (int x = -radius; x <= radius; ++x) { sum += weights.emplace_back(std::exp(-x * x / (2.0 * sigma * sigma))); }
-    Kernel kernel;
+    Weights kernel;
     for (const double weight : weights) { kernel.push_back(static_cast<float>(weight / sum)); }
     return kernel;
 }
 
-Plane filterPlane(const Plane& in, const Kernel& across, const Kernel& down, Border border, int threads) {
+Plane filterPlane(const Plane& in, const Weights& across, const Weights& down, Border border, int threads) {
     const std::size_t width = in.size_px.x, height = in.size_px.y, radius = down.size() / 2;
     Plane out{in.size_px, std::vector<float>(width * height, 0.0f)};
     if (width == 0) { return out; }

@@ -24,13 +24,13 @@ enum class Border {
 };
 
 // Odd-sized weights, centre in the middle; the filter is a correlation: out(x) = sum over i of kernel[i] * in(x + i - radius).
-using Kernel = std::vector<float>;
+using Weights = std::vector<float>;
 
 // Weights exp(-x^2 / (2 sigma^2)) at whole x from -radius to radius, scaled to the sum 1.
-Kernel gaussianKernel(double sigma, int radius);
+Weights gaussianKernel(double sigma, int radius);
 
 // `across` along rows, then `down` along columns. Same size as `in`; the result does not depend on the number of threads.
-Plane filterPlane(const Plane& in, const Kernel& across, const Kernel& down, Border border, int threads);
+Plane filterPlane(const Plane& in, const Weights& across, const Weights& down, Border border, int threads);
 
 // One score per pixel, rows top to bottom.
 struct PixelScores {

@@ -40,7 +40,7 @@ PixelScores ssim(const Image& a, const Image& b, Border border, int threads) {
     assert(border != Border::kClamp);
     requireComparable(a, b);
     PixelScores scores{a.size_px, std::vector<float>(a.pixelCount(), 0.0f)};
-    const Kernel kernel = gaussianKernel(kSigma_px, kRadius_px);
+    const Weights kernel = gaussianKernel(kSigma_px, kRadius_px);
     const auto blur = [&](const Plane& plane) { return filterPlane(plane, kernel, kernel, border, threads); };
     for (int channel = 0; channel < 3; ++channel) {
         const Plane of_a = channelOf(a, channel), of_b = channelOf(b, channel);
