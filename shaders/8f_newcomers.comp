@@ -18,10 +18,10 @@ const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
 const uint kMaxTiles = 1024;
 
-// Whether the splat's centre, held to the picture, is nearer than what reached that pixel.
+// Whether the splat's centre, held to the picture, is clearly nearer than what reached that pixel.
 bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
     const uvec2 at = uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1)));
-    return inverse_depth > pass.pixels.at[at.y * stereo.size_px.x + at.x].resolved_inverse_depth;
+    return inverse_depth > kInFrontRatio * pass.pixels.at[at.y * stereo.size_px.x + at.x].resolved_inverse_depth;
 }
 
 void main() {

@@ -280,7 +280,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's
                 CAPTURE(c.name);
                 CAPTURE(whole);
                 const Newcomers newcomers = findNewcomers(*this, c);
-                CHECK(newcomers.expected > 3);
+                CHECK(newcomers.expected > 2);
                 // None is lost. The device's outlines are wider by a hair and it does not ask pixel by pixel: splats that just miss
                 // the picture or fall between its pixels count, and boxes of discs that meet the near plane are rough (measured: 5 %;
                 // with such discs 1.3 times the twin's error in the room, 30 times in the cloud).

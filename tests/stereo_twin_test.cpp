@@ -103,10 +103,15 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 settings.stereo = test::settingsOf(twin_settings);
                 const AffiliatedFrame made = test::makeAffiliated(frame, seen.eyes, settings);
                 const glm::uvec2 size_px = seen.view.eye.size_px;
-                // Errors are rounded down pixel by pixel on the device, so that of two tiles that are nearly alike the other may be chosen.
+                // Errors are rounded down pixel by pixel on the device, so that of tiles that are nearly alike, as those of the fence's
+                // like bars, others may be chosen; they are then worth as much.
                 std::vector<std::uint32_t> same_kind;
+                double chosen_error = 0.0, exchanged_error = 0.0;
                 for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
                     same_kind.push_back(made.tile_kinds[t] == static_cast<std::uint32_t>(twin.tile_kinds[t]) ? 1 : 0);
+                    const double error = twin.tile_errors.empty() ? 0.0 : twin.tile_errors[t];
+                    chosen_error += twin.tile_kinds[t] == TileKind::kPredicted ? error : 0.0;
+                    if (same_kind.back() == 0) { exchanged_error += made.tile_kinds[t] != 0 ? -error : error; }
                 }
                 const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
                 const Difference difference = compare(test::keepTiles(made.pictures[1 - dominant], same_kind),
@@ -124,6 +129,9 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 CHECK(difference.psnrDb() >= 70.0);  // measured: 84
                 CHECK(difference.shareOff() <= 0.0005);
                 CHECK(other_kinds <= 2);
+                // Canted, one disc that comes through the near plane is a newcomer for the twin alone: the device's bounds of such discs
+                // are wider, and let the dominant eye see it.
+                if (seen.name != "room, canted") { CHECK(std::abs(exchanged_error) <= 0.005 * chosen_error); }
                 CHECK(other_classes * 1000 <= twin.resolved.size());
             }
         }

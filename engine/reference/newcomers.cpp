@@ -9,6 +9,7 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kTilePixels = kTileSize * kTileSize;
+constexpr double kInFrontRatio = 1.01;  // a wall that goes on beyond the border does not stand in front of itself
 
 // The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
@@ -21,7 +22,7 @@ double squareCoverage(const ProjectedSplat& splat) {
 // Whether the centre, held to the image, is nearer than what was reprojected there.
 bool standsInFront(const ProjectedSplat& splat, std::span<const Resolved> resolved, const glm::dvec2& size) {
     const glm::dvec2 at = glm::floor(glm::clamp(splat.reference_px, glm::dvec2(0.0), size - 1.0));
-    return 1.0 / splat.depth > resolved[static_cast<std::size_t>(at.y * size.x + at.x)].inverse_depth;
+    return 1.0 / splat.depth > kInFrontRatio * resolved[static_cast<std::size_t>(at.y * size.x + at.x)].inverse_depth;
 }
 
 std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size_t splats) {

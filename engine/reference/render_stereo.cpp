@@ -3,6 +3,7 @@
 #include "engine/reference/stereo.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace binosplat::reference {
 namespace {
@@ -59,6 +60,7 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.resolved, size_px, stereo.newcomer_error);
         pictures.tile_kinds = markUnseen(eyes, stereo.gap_px);
         select(pictures.tile_kinds, errors, static_cast<std::size_t>(stereo.budget * static_cast<double>(errors.size())));
+        pictures.tile_errors = std::move(errors);
     }
     pictures.affiliated = resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes);
     patch(pictures, scene, compact(scene, visible, eyes.target, settings), eyes.target, settings);

@@ -95,6 +95,7 @@ struct StereoPictures {
     Picture dominant;
     std::vector<glm::dvec4> affiliated;
     std::vector<TileKind> tile_kinds;
+    std::vector<double> tile_errors;  // of kPredicted
     std::vector<Resolved> resolved;
 };
 StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings);

@@ -78,6 +78,10 @@ BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
 // A spread of disparity beyond this many pixels is not a blur any more: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 
+// A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio: a wall that goes
+// on beyond the border is as deep as what is repeated there, and rounding must not decide.
+BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
+
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;
 
