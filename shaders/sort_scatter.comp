@@ -9,10 +9,13 @@
 #include "passes.h"
 #include "lib/group.glsl"
 
-layout(local_size_x = kSortGroupSize) in;
+layout(constant_id = 0) const uint kThreads = 128;
+layout(constant_id = 1) const uint kMaxSubgroups = 16;
+layout(constant_id = 2) const bool kNarrowSubgroups = false;  // all have at most 8 invocations
+layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
-layout(constant_id = 0) const uint kMaxSubgroups = 16;
-layout(constant_id = 1) const bool kNarrowSubgroups = false;  // all have at most 8 invocations
+
+const uint kKeysPerThread = kSortBlock / kThreads;
 
 shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where a subgroup's run of a digit begins
 
@@ -38,15 +41,15 @@ void main() {
     const uint count = pass.list.at[0].count;
     const uint blocks = (count + kSortBlock - 1) / kSortBlock;
     const uint block = groupIndex();
-    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kSortGroupSize) { subgroup_digits[i] = 0; }
+    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) { subgroup_digits[i] = 0; }
     barrier();
 
     // Rank: how many keys of the subgroup's run have the same digit and come before.
     const uint lanes = laneCount();
-    const uint run_begin = block * kSortBlock + gl_SubgroupID * lanes * kSortKeysPerThread + gl_SubgroupInvocationID;
-    uint keys[kSortKeysPerThread];
-    uint ranks[kSortKeysPerThread];
-    for (uint i = 0; i < kSortKeysPerThread; ++i) {
+    const uint run_begin = block * kSortBlock + gl_SubgroupID * lanes * kKeysPerThread + gl_SubgroupInvocationID;
+    uint keys[kKeysPerThread];
+    uint ranks[kKeysPerThread];
+    for (uint i = 0; i < kKeysPerThread; ++i) {
         const uint item = run_begin + i * lanes;
         // Past the end stand keys of the last digit; they come after all others and are not written.
         keys[i] = item < count ? pass.keys_in.at[item] : 0xffffffffu;
@@ -61,24 +64,25 @@ void main() {
     barrier();
 
     // Where each digit begins, in all and in this block, and each subgroup's share of it.
-    const uint thread = threadIndex();
-    uint digits_before = 0;
-    for (uint first = 0; first < pass.digits; first += kSortGroupSize) {
-        const uint digit = first + thread;
-        uint total;
-        const uint before = digits_before + scanGroup(digit < pass.digits ? pass.totals.at[digit] : 0, total);
-        digits_before += total;
-        if (digit >= pass.digits) { continue; }
+    const uint digits_per_thread = (pass.digits + kThreads - 1) / kThreads;
+    const uint first_digit = min(threadIndex() * digits_per_thread, pass.digits);
+    const uint end_digit = min(first_digit + digits_per_thread, pass.digits);
+    uint own = 0;
+    for (uint digit = first_digit; digit < end_digit; ++digit) { own += pass.totals.at[digit]; }
+    uint total;
+    uint before = scanGroup(own, total);
+    for (uint digit = first_digit; digit < end_digit; ++digit) {
         uint place = before + (block < blocks ? pass.histograms.at[digit * blocks + block] : 0);
+        before += pass.totals.at[digit];
         for (uint s = 0; s < gl_NumSubgroups; ++s) {
-            const uint own = subgroup_digits[s * pass.digits + digit];
+            const uint in_run = subgroup_digits[s * pass.digits + digit];
             subgroup_digits[s * pass.digits + digit] = place;
-            place += own;
+            place += in_run;
         }
     }
     barrier();
 
-    for (uint i = 0; i < kSortKeysPerThread; ++i) {
+    for (uint i = 0; i < kKeysPerThread; ++i) {
         const uint item = run_begin + i * lanes;
         if (item < count) {
             const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);

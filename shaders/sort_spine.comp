@@ -1,26 +1,24 @@
-// Radix sort, second step of a round: a workgroup a digit sums that digit's counts along the blocks.
+// Radix sort, second step of a round: a subgroup a digit sums that digit's counts along the blocks. No barriers: subgroups go on alone.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
 
-const uint kSpineSize = 64;  // a sort of 100,000 keys has 50 blocks
-
-layout(local_size_x = kSpineSize) in;
+layout(local_size_x = kSortSpineSize) in;
 layout(push_constant, scalar) uniform Push { SortSpinePass pass; };
 
 void main() {
-    const uint digit = gl_WorkGroupID.x;
     const uint blocks = (pass.list.at[0].count + kSortBlock - 1) / kSortBlock;
-    const uint thread = threadIndex();
-    uint before_step = 0;
-    for (uint step_begin = 0; step_begin < blocks; step_begin += kSpineSize) {
-        const uint block = step_begin + thread;
-        const uint value = block < blocks ? pass.histograms.at[digit * blocks + block] : 0;
-        uint total;
-        const uint before = scanGroup(value, total);
-        if (block < blocks) { pass.histograms.at[digit * blocks + block] = before_step + before; }
-        before_step += total;
+    const uint lanes = laneCount();
+    for (uint digit = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; digit < pass.digits; digit += gl_NumWorkGroups.x * gl_NumSubgroups) {
+        uint before_step = 0;
+        for (uint step_begin = 0; step_begin < blocks; step_begin += lanes) {
+            const uint block = step_begin + gl_SubgroupInvocationID;
+            const uint value = block < blocks ? pass.histograms.at[digit * blocks + block] : 0;
+            const uint before = subgroupExclusiveAdd(value);
+            if (block < blocks) { pass.histograms.at[digit * blocks + block] = before_step + before; }
+            before_step += subgroupAdd(value);
+        }
+        if (subgroupElect()) { pass.totals.at[digit] = before_step; }
     }
-    if (gl_LocalInvocationIndex == 0) { pass.totals.at[digit] = before_step; }
 }

@@ -85,7 +85,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ScanSpinePass, FIELD(block_sums), FIELD(list), FIELD(result), FIELD(block_count), FIELD(capacity)),
         LAYOUT(ScanApplyPass, FIELD(values), FIELD(block_sums), FIELD(list)),
         LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(list), FIELD(shift), FIELD(digits)),
-        LAYOUT(SortSpinePass, FIELD(histograms), FIELD(totals), FIELD(list)),
+        LAYOUT(SortSpinePass, FIELD(histograms), FIELD(totals), FIELD(list), FIELD(digits)),
         LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(totals),
                FIELD(list), FIELD(shift), FIELD(digits)),
         LAYOUT(PresentPass, FIELD(colours), FIELD(depths), FIELD(tile_kinds), FIELD(pixel_classes), FIELD(pixels), FIELD(device_depths),

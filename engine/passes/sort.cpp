@@ -1,17 +1,25 @@
 // Recording the radix sort.
 #include "engine/passes/sort.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 namespace binosplat {
 
+namespace {
+
+gpu::uint threadsOf(const Context& context) { return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, 256u); }
+
+}  // namespace
+
 Sort::Sort(const Context& context)
-    : count_(context, "sort_count", sizeof(gpu::SortCountPass)),
+    : count_(context, "sort_count", sizeof(gpu::SortCountPass), {threadsOf(context)}),
       spine_(context, "sort_spine", sizeof(gpu::SortSpinePass)),
       scatter_(context, "sort_scatter", sizeof(gpu::SortScatterPass),
-               {/*max_subgroups=*/gpu::kSortGroupSize / std::min(context.minSubgroupSize(), gpu::kSortGroupSize),
-                /*narrow_subgroups=*/context.maxSubgroupSize() <= 8 && context.hasDynamicBroadcast()}) {}
+               {threadsOf(context), /*max_subgroups=*/std::max(threadsOf(context) / context.minSubgroupSize(), 1u),
+                /*narrow_subgroups=*/context.maxSubgroupSize() <= 8 && context.hasDynamicBroadcast()}),
+      digits_per_spine_group_(std::max(gpu::kSortSpineSize / context.subgroupSize(), 1u)) {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
     return ((items + gpu::kSortBlock - 1) / gpu::kSortBlock + 1) * gpu::kMaxDigits * sizeof(gpu::uint);
@@ -29,7 +37,8 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
         commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, list, shift, digits}, lists, groups);
-        commands.dispatch(spine_, gpu::SortSpinePass{counts, totals, list}, digits);
+        commands.dispatch(spine_, gpu::SortSpinePass{counts, totals, list, digits},
+                          (digits + digits_per_spine_group_ - 1) / digits_per_spine_group_);
         commands.dispatchIndirect(scatter_,
                                   gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, totals, list, shift, digits},
                                   lists, groups);

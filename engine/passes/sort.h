@@ -25,6 +25,7 @@ public:
 
 private:
     Kernel count_, spine_, scatter_;
+    gpu::uint digits_per_spine_group_;
 };
 
 }  // namespace binosplat

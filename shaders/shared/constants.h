@@ -20,12 +20,12 @@ BINOSPLAT_CONSTANT uint kGroupSize = 256;
 // Values that one workgroup of a scan handles: eight a thread.
 BINOSPLAT_CONSTANT uint kScanBlock = 2048;
 
-// Sorting: up to 8 bits a round; a block is what one workgroup ranks. 128 threads keep one histogram per subgroup within
-// 16 KiB of shared memory even where subgroups are eight wide; 16 keys a thread amortise it.
+// Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups, so that its histograms, one a
+// subgroup, keep to 4 KiB of shared memory and 16 keys a thread of 32-wide subgroups amortise them.
 BINOSPLAT_CONSTANT uint kMaxDigits = 256;
-BINOSPLAT_CONSTANT uint kSortGroupSize = 128;
-BINOSPLAT_CONSTANT uint kSortKeysPerThread = 16;
-BINOSPLAT_CONSTANT uint kSortBlock = kSortGroupSize * kSortKeysPerThread;
+BINOSPLAT_CONSTANT uint kSortBlock = 2048;
+BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
+BINOSPLAT_CONSTANT uint kSortSpineSize = 128;
 
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;

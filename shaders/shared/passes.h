@@ -200,6 +200,7 @@ struct SortSpinePass {
     Uints histograms;  // in and out: exclusive prefix sums along the blocks
     Uints totals;      // out: a sum a digit
     ListStates list;
+    uint digits;
 };
 struct SortScatterPass {
     Uints keys_in, values_in;
