@@ -8,6 +8,7 @@
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
+#include "lib/tile_set.glsl"
 #include "lib/sh.glsl"
 
 layout(local_size_x = kGroupSize) in;
@@ -45,16 +46,22 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     return uint(size.x * size.y);
 }
 
-uint countTiles(Outline outline, ivec4 box, uint row_tiles) {
+// How many tiles the splat meets; `small` has a bit for each where the box is small enough.
+uint countTiles(Outline outline, ivec4 box, uint row_tiles, out uint small) {
     uint tiles = 0;
-    for (int row = box.y; row < box.w; ++row) { tiles += countInRow(uint(row), tilesInRow(outline, uint(row), box), row_tiles); }
+    small = 0;
+    for (int row = box.y; row < box.w; ++row) {
+        const ivec2 in_row = tilesInRow(outline, uint(row), box);
+        tiles += countInRow(uint(row), in_row, row_tiles);
+        small |= smallRow(in_row - box.x, row - box.y);
+    }
     return tiles;
 }
 
 // From what the other eye saw; false if that does not suffice.
 bool projectShifted(uint rank, uvec2 size_tiles, out ProjectedSplat p, out Outline outline, out ivec4 box) {
     p = pass.splats.at[rank];
-    const uvec2 seen = pass.tile_boxes.at[rank];
+    const uvec2 seen = pass.tile_sets.at[rank];
     PixelMap map = pass.stereo.at[0].affiliated_from_dominant;
     if (seen.x == seen.y || !hasReference(p) || !shiftAlongRow(p, map.shift.x, map.excess_x.z)) { return false; }
     outline = outlineOfProjected(p);
@@ -85,14 +92,15 @@ void main() {
             box = tileBox(splat, eye, outline);
             if (!kMasked) { square_tiles = squareBoxTiles(splat, eye); }
         }
-        const uint tiles = countTiles(outline, box, size_tiles.x);
+        uint small;
+        const uint tiles = countTiles(outline, box, size_tiles.x, small);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
             p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position)));
             pass.splats.at[rank] = p;
         }
         // Empty where the splat meets no tile: then there is no splat either.
-        pass.tile_boxes.at[rank] = tiles > 0 ? uvec2(packTiles(box.xy), packTiles(box.zw)) : uvec2(0);
+        pass.tile_sets.at[rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
     }
     if (kMasked) { return; }
     const uint subgroup_square_tiles = subgroupAdd(square_tiles);

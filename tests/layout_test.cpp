@@ -46,8 +46,8 @@ std::vector<Layout> hostLayouts() {
                FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth),
                FIELD(camera_from_world_x_low), FIELD(camera_from_world_y_low), FIELD(camera_from_world_z_low), FIELD(position_low),
                FIELD(focal_px_low), FIELD(principal_px_low)),
-        LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth),
-               FIELD(opacity), FIELD(colour)),
+        LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth), FIELD(opacity),
+               FIELD(colour)),
         LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),
         LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(per_item), FIELD(per_scan_block), FIELD(per_sort_block), FIELD(per_tile)),
         LAYOUT(PixelMap, FIELD(excess_x), FIELD(excess_y), FIELD(excess_z), FIELD(shift)),
@@ -59,15 +59,15 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(StereoCounters, FIELD(covered_pixels), FIELD(gap_pixels), FIELD(hole_pixels), FIELD(components), FIELD(edge_tiles),
                FIELD(center_tiles), FIELD(predicted_tiles), FIELD(newcomers), FIELD(borders_px), FIELD(component_groups)),
         LAYOUT(PixelBox, FIELD(x0), FIELD(y0), FIELD(x1), FIELD(y1)),
-        LAYOUT(EyeCounters, FIELD(square_box_pairs_low), FIELD(square_box_pairs_high)),
+        LAYOUT(EyeCounters, FIELD(square_box_pairs_low), FIELD(square_box_pairs_high), FIELD(large_splats)),
         LAYOUT(CullPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_counts), FIELD(splat_count), FIELD(chunk_bits),
                FIELD(first_eye), FIELD(eye_count)),
         LAYOUT(CompactPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_offsets), FIELD(visible), FIELD(keys),
                FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye)),
-        LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_boxes), FIELD(tile_counts),
+        LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_sets), FIELD(tile_counts),
                FIELD(counters), FIELD(tiles_before), FIELD(stereo), FIELD(chunk_bits), FIELD(eye)),
-        LAYOUT(BinPass, FIELD(eyes), FIELD(splats), FIELD(tile_boxes), FIELD(pair_offsets), FIELD(visible), FIELD(pairs), FIELD(tiles),
-               FIELD(ranks), FIELD(tiles_before), FIELD(tile_list), FIELD(eye)),
+        LAYOUT(BinPass, FIELD(splats), FIELD(tile_sets), FIELD(pair_offsets), FIELD(visible), FIELD(pairs), FIELD(tiles), FIELD(ranks),
+               FIELD(large_splats), FIELD(counters), FIELD(tiles_before), FIELD(size_tiles)),
         LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges)),
         LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(depths), FIELD(moments),
                FIELD(tile_list), FIELD(masked_tiles), FIELD(background), FIELD(eye)),
@@ -203,6 +203,7 @@ std::vector<std::string> shaderNames() {
 
 // The pass of shaders/1_cull.comp is CullPass, that of shaders/sort_count.comp is SortCountPass.
 std::string passOf(const std::string& shader) {
+    if (shader == "5_bin_large") { return "BinPass"; }  // the second step of 5_bin
     const bool numbered = shader[0] >= '0' && shader[0] <= '9';
     std::string name;
     bool begins_word = true;

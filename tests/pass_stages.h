@@ -113,7 +113,7 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
 // What 4_project leaves for a list of splats, on the device.
 struct ProjectedOnDevice {
     std::uint32_t count;
-    Buffer list, order, splats, tile_boxes, tile_counts, counters;
+    Buffer list, order, splats, tile_sets, tile_counts, counters;
 };
 
 inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order) {
@@ -124,7 +124,7 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
                              gpu.upload("list", std::vector{makeList(count)}),
                              gpu.upload("order", order),
                              gpu.allocate<gpu::ProjectedSplat>("splats", count),
-                             gpu.allocate<glm::uvec2>("tile boxes", count),
+                             gpu.allocate<glm::uvec2>("tile sets", count),
                              gpu.allocate<std::uint32_t>("tile counts", count),
                              gpu.upload("counters", std::vector{gpu::EyeCounters{}})};
     gpu::ProjectPass pass{};
@@ -133,7 +133,7 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
     pass.order = result.order.address<gpu::uint>();
     pass.visible = result.list.address<gpu::ListState>();
     pass.splats = result.splats.address<gpu::ProjectedSplat>();
-    pass.tile_boxes = result.tile_boxes.address<gpu::uvec2>();
+    pass.tile_sets = result.tile_sets.address<gpu::uvec2>();
     pass.tile_counts = result.tile_counts.address<gpu::uint>();
     pass.counters = result.counters.address<gpu::EyeCounters>();
     pass.chunk_bits = device.scene.chunkBits();

@@ -33,23 +33,26 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order);
     const Scan scan(gpu.context());
-    const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass));
+    const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass)), large_kernel(gpu.context(), "5_bin_large", sizeof(gpu::BinPass));
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const Buffer pairs = gpu.allocate<gpu::ListState>("pairs", 1), tiles = gpu.allocate<gpu::uint>("tiles", capacity);
-    const Buffer ranks = gpu.allocate<gpu::uint>("ranks", capacity),
+    const Buffer ranks = gpu.allocate<gpu::uint>("ranks", capacity), large = gpu.allocate<gpu::uint>("large splats", capacity),
                  block_sums(gpu.context(), "block sums", Scan::blockSumBytes(projected.count + 1));
     gpu::BinPass pass{};
-    pass.eyes = device.eyeViews();
     pass.splats = projected.splats.address<gpu::ProjectedSplat>();
-    pass.tile_boxes = projected.tile_boxes.address<gpu::uvec2>();
+    pass.tile_sets = projected.tile_sets.address<gpu::uvec2>();
     pass.pair_offsets = projected.tile_counts.address<gpu::uint>();
     pass.visible = projected.list.address<gpu::ListState>();
     pass.pairs = pairs.address<gpu::ListState>();
     pass.tiles = tiles.address<gpu::uint>();
     pass.ranks = ranks.address<gpu::uint>();
+    pass.large_splats = large.address<gpu::uint>();
+    pass.counters = projected.counters.address<gpu::EyeCounters>();
+    pass.size_tiles = (view.eye.size_px + 15u) / 16u;
     gpu.run([&](Commands& commands) {
         scan.overList(commands, pass.pair_offsets, block_sums.address<gpu::uint>(), projected.list, 0, pass.pairs, capacity);
-        commands.dispatchIndirect(kernel, pass, pairs, offsetof(gpu::ListState, per_item));
+        commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_item));
+        commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);
     });
     const std::uint32_t count = gpu.readBack<gpu::ListState>(pairs, 1)[0].count;
     const auto tile_values = gpu.readBack<gpu::uint>(tiles, count), rank_values = gpu.readBack<gpu::uint>(ranks, count);

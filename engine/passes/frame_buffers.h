@@ -47,10 +47,10 @@ public:
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     // Depth keys and splat indices; sorting needs `spare`. Once they are sorted, the counts of tiles take the keys' place, and the
-    // boxes of tiles that of `spare`.
+    // sets of tiles that of `spare`.
     [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileBoxes() const { return at<gpu::uvec2>(8); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileSets() const { return at<gpu::uvec2>(8); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
     [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(16); }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }

@@ -75,16 +75,17 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     commands.dispatchIndirect(
         kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked, target.shifted}),
         gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
-                         buffers.visible.tileBoxes(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
+                         buffers.visible.tileSets(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
                          buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},
         buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());
-    commands.dispatchIndirect(
-        kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}),
-        gpu::BinPass{buffers.eyes(), buffers.visible.splats(), buffers.visible.tileBoxes(), buffers.visible.tileCounts(), visible, pairs,
-                     buffers.pairs.pairs().keys, buffers.pairs.pairs().values, tiles.tiles_before, tiles.tile_list, eye},
-        buffers.state, per_pair);
+    const gpu::BinPass bin{
+        buffers.visible.splats(),   buffers.visible.tileSets(),   buffers.visible.tileCounts(), visible,  pairs,
+        buffers.pairs.pairs().keys, buffers.pairs.pairs().values, buffers.pairs.spare().keys,   counters, tiles.tiles_before,
+        target.size_tiles};
+    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}), bin, buffers.state, per_visible);
+    commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked}), bin, gpu::kBinLargeGroups);
     commands.beginPass(role + "6_sort_tiles");
     const unsigned tile_bits = static_cast<unsigned>(std::bit_width(target.size_tiles.x * target.size_tiles.y));
     const KeyValues sorted =

@@ -89,9 +89,6 @@ ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     return ivec2(max(tiles.x, tile_box.x), min(tiles.y, tile_box.z));
 }
 
-uint packTiles(ivec2 tile) { return uint(tile.x) | (uint(tile.y) << 16); }
-ivec2 unpackTiles(uint packed) { return ivec2(packed & 0xffff, packed >> 16); }
-
 Outline outlineOfProjected(ProjectedSplat p) {
     const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
     Outline o = outlineOf(p.reference_px, p.plane_from_pixel, p.perspective, p.inverse_depth, cut);

@@ -27,6 +27,10 @@ BINOSPLAT_CONSTANT uint kSortBlock = 2048;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 BINOSPLAT_CONSTANT uint kSortSpineSize = 128;
 
+// 5_bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
+BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
+BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
+
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 

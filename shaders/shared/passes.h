@@ -39,7 +39,7 @@ struct ProjectPass {
     Uints order;  // indices into the scene, front to back
     ListStates visible;
     ProjectedSplats splats;  // out
-    UVec2s tile_boxes;       // out: x0 | y0 << 16, x1 | y1 << 16, half open
+    UVec2s tile_sets;       // out: lib/tile_set.glsl
     Uints tile_counts;       // out
     EyeCounterss counters;   // out
     Uints tiles_before;      // under a mask: how many masked tiles there are before each, and one more for all
@@ -48,19 +48,19 @@ struct ProjectPass {
     uint eye;
 };
 
-// 5_bin: a (tile, splat) pair for each tile a splat meets, front to back.
+// 5_bin and 5_bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
 struct BinPass {
-    EyeViews eyes;
     ProjectedSplats splats;
-    UVec2s tile_boxes;
+    UVec2s tile_sets;
     Uints pair_offsets;  // exclusive prefix sums of ProjectPass::tile_counts
     ListStates visible;
     ListStates pairs;
-    Uints tiles;  // out
-    Uints ranks;  // out: indices into `splats`
+    Uints tiles;        // out
+    Uints ranks;        // out: indices into `splats`
+    Uints large_splats;  // out of 5_bin, in no order: what is left to 5_bin_large
+    EyeCounterss counters;
     Uints tiles_before;  // under a mask, as in ProjectPass
-    Uints tile_list;     // likewise: the masked tiles
-    uint eye;
+    uvec2 size_tiles;
 };
 
 // 6_tile_ranges: where each tile's pairs lie once they are sorted by tile.

@@ -153,6 +153,7 @@ BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 struct EyeCounters {
     uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
     uint square_box_pairs_high;
+    uint large_splats;  // splats that 5_bin left to 5_bin_large
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 
