@@ -129,6 +129,7 @@ TEST_CASE("letters outside of ASCII are read in quotes and comments and refused 
     CHECK(messageOf("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n").empty());
     CHECK(messageOf("a = 1\nb = \u00e9\n").find("letters.toml:2: a letter that is neither ASCII") != std::string::npos);
     CHECK(messageOf("a = 1\n\nb = '''x'''\n").find("letters.toml:3: a text over several lines") != std::string::npos);
+    CHECK(messageOf("a = 1\nb = 2\"\u00e9\"\n").find("letters.toml:2: quotes within a word") != std::string::npos);
     attempts.attempt("not TOML", "=");
 }
 

@@ -180,6 +180,10 @@ TEST_CASE("headsetFilesWithMistakesAreRefusedWithTheirOwnLine") {
     refusesHeadset(replaced(kHeadset, "left = -40", "left = 50"), "h.toml:6: left.left must be less than left.right");
     refusesHeadset(replaced(kHeadset, "up = 40", "up = \"high\""), "h.toml:9: left.up must be a number from -85 to 85");
     refusesHeadset(replaced(kHeadset, "[right]", "[middle]"), "middle is not a key of a headset");
+    refusesHeadset(kHeadset + "\xc3\xa9 = 1\n", "h.toml:16: a letter that is neither ASCII nor in quotes nor in a comment");
+    refusesHeadset(kHeadset + "a = 2\"\xc3\xa9\"\n", "h.toml:16: quotes within a word, must be around it");
+    refusesHeadset(kHeadset + "a = \"\"\"b\"\"\"\n", "h.toml:16: quotes within a word");
+    refusesHeadset(kHeadset + "a = " + std::string(65, '.') + "\n", "h.toml:16: more than 64 dots outside of quotes");
     refusesHeadset(replaced(kHeadset, "canting_deg", "kanting"), "h.toml:4: kanting is not a key of a headset, must be name, source");
 }
 

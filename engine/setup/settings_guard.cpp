@@ -1,5 +1,5 @@
 // One look at every byte. toml++ 3.1 makes a table within a table for each dot of a key and frees them by recursion, and runs into an
-// "unreachable" branch at letters from U+00A1 to U+0499 where a blank could stand.
+// "unreachable" branch at letters such as U+00A1 to U+0499 where a blank could stand, be it between quotes that begin within a number.
 #include "engine/setup/settings_guard.h"
 
 #include "engine/error.h"
@@ -7,7 +7,7 @@
 namespace binosplat {
 
 void refuseUnreadableSettings(const std::string& file, std::string_view text) {
-    constexpr std::string_view kByteOrderMark("\xef\xbb\xbf"), kBetweenKeys("=,[]{}/:;()\n");
+    constexpr std::string_view kByteOrderMark("\xef\xbb\xbf"), kBetweenKeys("=,[]{}/:;()\n"), kBeforeQuotes(" \t=,[{\n\r");
     constexpr int kMaxParts = 64;
     if (text.starts_with(kByteOrderMark)) { text.remove_prefix(kByteOrderMark.size()); }
     int line = 1, dots = 0;
@@ -34,6 +34,8 @@ void refuseUnreadableSettings(const std::string& file, std::string_view text) {
         check(static_cast<unsigned char>(letter) < 128, "{}:{}: a letter that is neither ASCII nor in quotes nor in a comment", file, line);
         comment = letter == '#';
         if (letter != '"' && letter != '\'') { continue; }
+        const bool begins = i == 0 || kBeforeQuotes.find(text[i - 1]) != std::string_view::npos;
+        check(begins, "{}:{}: quotes within a word, must be around it", file, line);
         const std::string_view three = text.substr(i, 3);
         check(three != "\"\"\"" && three != "'''", "{}:{}: a text over several lines, must be on one", file, line);
         quote = letter;

@@ -8,10 +8,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-60}
 shift || true
 targets=("$@")
-((${#targets[@]} > 0)) || targets=(scene ply spz sog_meta sog_bundle settings headset cameras motion)
+((${#targets[@]} > 0)) || targets=(scene ply spz sog_meta sog_bundle settings headset cameras motion script script_headset script_motion)
 
 [[ -e build/fuzz/build.ninja ]] ||
-    cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON -DBINOSPLAT_OPENXR=OFF
+    cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON
 cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" --parallel 2
 
 mkdir -p build/fuzz/findings

@@ -8,12 +8,16 @@
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
+#ifdef BINOSPLAT_OPENXR
+#include "xr/simulated/script_files.h"
+#endif
 
 #include <sys/mman.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -79,6 +83,25 @@ void readMotion(Bytes input) {
     (void)parseHeadMotion(text, "motion.csv", MotionAxes::kUnity);
 }
 
+#ifdef BINOSPLAT_OPENXR
+// A script that is read is asked, too: before, within and after its keys. What it names lies in a folder that is not there.
+void readScript(Bytes input) {
+    const std::string text(input.begin(), input.end());
+    const simulated::Script script = simulated::Script::parse(text, "/nowhere/a.script");
+    (void)script.stageFromLocal();
+    for (const double time_s : {-1e7, -0.5, 0.0, 0.25, 1.0, 2.5, 1e7}) {
+        const simulated::State state = script.at(time_s);
+        if (!std::isfinite(state.stage_from_head.position.x) || !std::isfinite(state.stage_from_head.orientation.w)) { std::abort(); }
+    }
+    if (script.eventsIn(-1e7, 1e7).size() != script.events.size()) { std::abort(); }
+}
+void readScriptHeadset(Bytes input) { (void)simulated::parseHeadset({input.begin(), input.end()}, "headset.toml"); }
+void readScriptMotion(Bytes input) {
+    const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
+    (void)simulated::parseHeadMotion(text, "motion.csv", simulated::MotionAxes::kUnity);
+}
+#endif
+
 // "scene" takes any file: .splat, gzip, and what tells the formats apart.
 constexpr auto kTargets = std::to_array<Target>({
     {"scene", readScene},
@@ -92,7 +115,18 @@ constexpr auto kTargets = std::to_array<Target>({
     {"headset", readHeadsetText},
     {"cameras", readCameras},
     {"motion", readMotion},
+#ifdef BINOSPLAT_OPENXR
+    {"script", readScript},
+    {"script_headset", readScriptHeadset},
+    {"script_motion", readScriptMotion},
+#endif
 });
+
+void requireOneLine(std::string_view message) {
+    if (!message.empty() && message.find('\n') == std::string_view::npos) { return; }
+    std::fprintf(stderr, "not a message as it should be: %.*s\n", static_cast<int>(message.size()), message.data());
+    std::abort();
+}
 
 }  // namespace
 
@@ -104,11 +138,11 @@ void runTarget(const std::string& name, Bytes input) {
         try {
             target.read(input);
         } catch (const Error& error) {
-            const std::string_view message = error.what();
-            if (message.empty() || message.find('\n') != std::string_view::npos) {
-                std::fprintf(stderr, "not a message as it should be: %s\n", error.what());
-                std::abort();
-            }
+            requireOneLine(error.what());
+#ifdef BINOSPLAT_OPENXR
+        } catch (const simulated::ScriptError& error) {
+            requireOneLine(error.what());
+#endif
         }
         return;
     }
