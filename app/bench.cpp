@@ -3,6 +3,8 @@
 
 #include "app/bench_point.h"
 #include "app/commands.h"
+#include "app/device_options.h"
+#include "app/interrupt.h"
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
@@ -75,7 +77,7 @@ void requireFiles(const BenchPlan& plan, const RunOptions& run) {
 void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     requireFiles(plan, options.run);
     OutputFiles files(options.out);
-    const Context context({.device = options.run.device});
+    const Context context(contextOptions(options.run));
     BenchRun run{context.deviceName(), options.run.config, {}};
     {
         PointProgress progress(pointCount(plan, options.run));
@@ -94,6 +96,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
     writeText(files.staging() / "bench.csv", benchCsv(run));
     writeText(files.staging() / "bench.svg", benchPlot(run));
     context.requireNoValidationMessages();
+    stopIfInterrupted();
     files.publish();
     fmt::print("{}", benchTable(run));
 }

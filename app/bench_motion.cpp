@@ -1,6 +1,8 @@
 // `binosplat bench --motion`: every method at every pose of a recorded head.
 #include "app/bench.h"
 #include "app/bench_point.h"
+#include "app/device_options.h"
+#include "app/interrupt.h"
 #include "app/modes.h"
 #include "app/motion_results.h"
 #include "app/progress.h"
@@ -111,7 +113,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     const HeadMotion motion =
         readHeadMotion(options.motion_file, options.motion_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr);
     OutputFiles files(options.out);
-    const Context context({.device = options.run.device});
+    const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
     for (const std::string& source : plan.scenes) {
         const Scene scene = loadScene(source);
@@ -137,6 +139,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     writeText(files.staging() / "motion.json", motionJson(run));
     writeText(files.staging() / "motion.svg", motionPlot(run));
     context.requireNoValidationMessages();
+    stopIfInterrupted();
     files.publish();
     fmt::print("{}", motionTable(run));
 }

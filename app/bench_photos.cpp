@@ -2,6 +2,8 @@
 // protocol, so that PSNR and SSIM are against the photograph).
 #include "app/bench.h"
 #include "app/bench_point.h"
+#include "app/device_options.h"
+#include "app/interrupt.h"
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
@@ -122,7 +124,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     std::vector<fs::path> photos;
     for (std::size_t i = 0; i < cameras.size(); i += options.every) { photos.push_back(findPhoto(options.photos_folder, cameras[i].name)); }
     OutputFiles files(options.out);
-    const Context context({.device = options.run.device});
+    const Context context(contextOptions(options.run));
     const double eye_distance = options.run.stereo.ipd_m.value_or(kDefaultIpdMetres) / options.run.metres_per_unit;
     const int affiliated = 1 - options.run.stereo.dominant;
     const BenchMethod shared = plainMethod("shared", options.run);
@@ -155,6 +157,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     writeText(files.staging() / "photos.csv", photosCsv(context.deviceName(), rows));
     writeText(files.staging() / "photos.json", photosJson(context.deviceName(), means));
     context.requireNoValidationMessages();
+    stopIfInterrupted();
     files.publish();
     fmt::print("{}", photosTable(context.deviceName(), means));
 }

@@ -1,6 +1,7 @@
 // All methods at one scene, view and size.
 #include "app/bench_point.h"
 
+#include "app/interrupt.h"
 #include "app/modes.h"
 #include "engine/reference/reference.h"
 
@@ -83,6 +84,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
 }  // namespace
 
 MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
+    stopIfInterrupted();
     FrameSettings settings = frameSettings(camera, stereo);
     settings.keep_depth = false;  // nobody reads it here, so no mode pays for it unless it needs it itself
     const bool reprojected = reprojects(settings.mode);
@@ -95,7 +97,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const Camera
 MethodFrames::Rendered MethodFrames::renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
     frames_.clear();
     MemoryUse& use = context_.memoryUse();
-    use.peak_bytes = use.current_bytes;
+    use.peak_bytes = use.current_bytes.load();
     return render(cameras, camera, stereo);
 }
 

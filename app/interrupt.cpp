@@ -7,26 +7,33 @@ namespace binosplat {
 
 namespace {
 
-volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_signal = 0;  // the one that came, or 0
+int g_living = 0;
 
 void mark(int signal) {
-    g_interrupted = 1;
+    g_signal = signal;
     std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 Interrupt::Interrupt() {
-    g_interrupted = 0;
+    if (g_living++ > 0) { return; }
+    g_signal = 0;
     std::signal(SIGINT, mark);
     std::signal(SIGTERM, mark);
 }
 
 Interrupt::~Interrupt() {
+    if (--g_living > 0) { return; }
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
 }
 
-bool Interrupt::came() const { return g_interrupted != 0; }
+bool Interrupt::came() const { return g_signal != 0; }
+
+void stopIfInterrupted() {
+    if (g_signal != 0) { throw Interrupted{g_signal}; }
+}
 
 }  // namespace binosplat

@@ -1,10 +1,12 @@
 // The program: reads its options, runs one command, and turns what went wrong into one line and an exit code.
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/options.h"
-#include "engine/error.h"
+#include "engine/gpu/device_error.h"
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -42,10 +44,18 @@ int report(ExitCode code, std::string message) {
 
 int main(int argument_count, char** arguments) {
     using namespace binosplat;
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes fails like one to a full disk
+    const Interrupt interrupt;
     try {
         run(argument_count, arguments);
         return static_cast<int>(ExitCode::kDone);
     } catch (const Error& error) { return report(error.code(), error.what()); } catch (const std::bad_alloc&) {
         return report(ExitCode::kBadInput, "memory: not enough for this scene and picture size, must be smaller");
+    } catch (const vk::SystemError& error) {
+        const Error explained = deviceError("Vulkan", error);
+        return report(explained.code(), explained.what());
+    } catch (const Interrupted& stop) {
+        fmt::print(stderr, "binosplat: stopped by {}, nothing was written\n", stop.signal == SIGINT ? "SIGINT" : "SIGTERM");
+        return 128 + stop.signal;  // as a shell has it
     } catch (const std::exception& error) { return report(ExitCode::kBadInput, error.what()); }
 }

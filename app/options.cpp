@@ -22,6 +22,7 @@ namespace {
 constexpr std::uint64_t kMaxGapPx = 64;
 // Values lie between 0 and a few; the passes hold a pixel's squared error under 64.
 constexpr double kMaxExpectedError = 8.0;
+constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 
 // What CLI11 fills in; values stay text until both layers are merged.
 struct CommandLine {
@@ -60,7 +61,7 @@ void addViewRows(CLI::App& command, CommandLine& line, std::string& config) {
     for (const OptionRow& row : kStereoRows) {
         if (std::string_view(row.key) != "ipd") { addRows(command, line, std::span(&row, 1), "Stereo"); }
     }
-    addRows(command, line, std::span(kRunRows, 1), "Run");  // metres-per-unit: the device is the headset's
+    addRows(command, line, std::span(kRunRows, 2), "Run");  // without the last: the device is the headset's
     command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
 }
 
@@ -152,6 +153,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("hole-error", [&](const Setting& s) { stereo.hole_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("newcomer-error", [&](const Setting& s) { stereo.newcomer_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
+    read("memory-limit", [&](const Setting& s) { options.memory_limit_mib = readCount(s, 1, kMaxMemoryMib); });
     read("device", [&](const Setting& s) { options.device = readText(s); });
     return options;
 }

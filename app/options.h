@@ -48,6 +48,7 @@ struct RunOptions {
     StereoOptions stereo;
     double metres_per_unit = 1.0;
     std::string device;
+    std::uint64_t memory_limit_mib = 0;  // of device memory; 0: none
     std::string config;
 };
 

@@ -1,6 +1,8 @@
 // One line on a terminal for work that takes longer than a second.
 #include "app/progress.h"
 
+#include "app/interrupt.h"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -19,6 +21,7 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(double share) {
+    if (std::this_thread::get_id() == thread_) { stopIfInterrupted(); }
     const Clock::time_point now = Clock::now();
     if (!terminal_ || now - start_ < std::chrono::seconds(1) || (shown_ && now - last_ < std::chrono::milliseconds(100))) { return; }
     const int percent = std::clamp(static_cast<int>(std::lround(100.0 * share)), 0, 100);

@@ -1,8 +1,10 @@
-// One line on a terminal for work that takes longer than a second; nothing where stderr is not a terminal.
+// One line on a terminal for work that takes longer than a second; nothing where stderr is not a terminal. Work that reports its progress
+// can also be stopped there.
 #pragma once
 
 #include <chrono>
 #include <string>
+#include <thread>
 
 namespace binosplat {
 
@@ -13,12 +15,14 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
     ~ProgressLine();  // clears the line
 
-    // `share` done, 0 to 1. Cheap enough for inner loops: the line is drawn at most ten times a second.
+    // `share` done, 0 to 1. Throws Interrupted after a Ctrl-C, but only where the line was made on the same thread. Cheap enough for inner
+    // loops: the line is drawn at most ten times a second.
     void show(double share);
 
 private:
     using Clock = std::chrono::steady_clock;
     std::string what_;
+    std::thread::id thread_ = std::this_thread::get_id();
     bool terminal_;
     bool shown_ = false;
     Clock::time_point start_ = Clock::now(), last_ = start_;

@@ -1,6 +1,8 @@
 // `binosplat render`: one frame, its pictures and its report.
 #include "app/camera_options.h"
 #include "app/commands.h"
+#include "app/device_options.h"
+#include "app/interrupt.h"
 #include "app/load.h"
 #include "app/modes.h"
 #include "app/report.h"
@@ -18,6 +20,7 @@ constexpr double kLongFrameMs = 2000.0;
 
 void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& settings) {
     const auto write = [&](const char* name, const Image& image) {
+        stopIfInterrupted();
         writePicture(files.staging() / name, PictureKind::kFloat, image);
         writePicture(files.staging() / name, PictureKind::kDisplay, image);
     };
@@ -47,7 +50,7 @@ void runRender(const RenderOptions& options) {
     LoadNotes notes;
     Scene scene = loadWithProgress(options.scene, 0, notes);
     const Cameras cameras = makeCameras(options.run, camera_files, scene);
-    const Context context({.device = options.run.device});
+    const Context context(contextOptions(options.run));
     const GpuScene gpu_scene = [&] {
         ProgressLine line("uploading " + options.scene);
         return GpuScene(context, scene, [&](double share) { line.show(share); });
@@ -57,7 +60,9 @@ void runRender(const RenderOptions& options) {
     StereoFrame frame(context, gpu_scene);
     const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     const FrameSettings settings = frameSettings(options.run.camera, stereo);
+    stopIfInterrupted();
     FrameResult result = frame.render(eyes, settings);
+    stopIfInterrupted();
     // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
     if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }
 
@@ -66,6 +71,7 @@ void runRender(const RenderOptions& options) {
     writePictures(files, frame, settings);
     writeText(files.staging() / "report.json", reportJson(report));
     context.requireNoValidationMessages();
+    stopIfInterrupted();
     files.publish();
 
     fmt::print("{}", reportTable(report));

@@ -36,7 +36,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     Json json{{"scene", options.scene},
               {"out", options.out.string()},
               {"config", given(options.run.config)},
-              {"device", given(options.run.device)}};
+              {"device", given(options.run.device)},
+              {"memory-limit", options.run.memory_limit_mib > 0 ? Json(options.run.memory_limit_mib) : Json()}};
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
     json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();

@@ -1,5 +1,6 @@
 // `binosplat view`: a scene in a headset.
 #include "app/commands.h"
+#include "app/device_options.h"
 #include "app/mirror_window.h"
 #include "app/simulate.h"
 #include "app/viewer.h"
@@ -11,7 +12,7 @@ void runView(const ViewOptions& given) {
     ViewOptions options = given;
     if (options.simulate) { simulateHeadset(options); }
     const xr::Instance instance;
-    ContextOptions context_options;
+    ContextOptions context_options = contextOptions(options.run);
     context_options.maker = instance.deviceMaker();
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
     if (windows) {

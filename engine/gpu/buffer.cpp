@@ -12,10 +12,13 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     using Usage = vk::BufferUsageFlagBits;
     using Property = vk::MemoryPropertyFlagBits;
     const vk::Device device = *context.device();
-    const std::string what =
-        fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, static_cast<double>(bytes) / 1048576.0);
+    const auto mebibytes = [](std::uint64_t count) { return static_cast<double>(count) / 1048576.0; };
+    const std::string what = fmt::format("{}: {} needs {:.1f} MiB of device memory", context.deviceName(), name, mebibytes(bytes));
     check(bytes <= context.maxAllocationBytes(), "{}, one allocation holds at most {:.1f} MiB", what,
-          static_cast<double>(context.maxAllocationBytes()) / 1048576.0);
+          mebibytes(context.maxAllocationBytes()));
+    const std::uint64_t used_bytes = context.memoryUse().current_bytes, limit_bytes = context.memoryLimitBytes();
+    const bool fits = kind != MemoryKind::kDevice || limit_bytes == 0 || used_bytes + bytes <= limit_bytes;
+    check(fits, "{} beside {:.1f} MiB in use, the limit is {:.1f} MiB (memory-limit)", what, mebibytes(used_bytes), mebibytes(limit_bytes));
     try {
         const auto usage =
             Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eTransferSrc | Usage::eTransferDst;
@@ -48,8 +51,8 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
     if (kind == MemoryKind::kDevice) {
         address_ = device.getBufferAddress(vk::BufferDeviceAddressInfo(*buffer_), *context.device().getDispatcher());
         use_ = &context.memoryUse();
-        use_->current_bytes += allocated_bytes_;
-        use_->peak_bytes = std::max(use_->peak_bytes, use_->current_bytes);
+        const std::uint64_t now = use_->current_bytes += allocated_bytes_;
+        for (std::uint64_t peak = use_->peak_bytes; peak < now && !use_->peak_bytes.compare_exchange_weak(peak, now);) {}
     } else {
         mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     }

@@ -1,7 +1,7 @@
 // Barriers, timestamps and labels, in one place.
 #include "engine/gpu/commands.h"
 
-#include "engine/error.h"
+#include "engine/gpu/device_error.h"
 
 #include <cassert>
 
@@ -140,10 +140,7 @@ void Commands::submitAndWait() {
         }
         const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
         check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
-    } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::kNoDevice,
-                    fmt::format("{}: the device gave up in the middle of a frame: {}", context_.deviceName(), error.what()));
-    }
+    } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
     context_.device().resetFences(*fence_);
 
     times_.clear();

@@ -71,7 +71,7 @@ int preferenceOf(vk::PhysicalDeviceType type) {
 
 }  // namespace
 
-Context::Context(const ContextOptions& options) {
+Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.memory_limit_bytes) {
     const char* environment = std::getenv("BINOSPLAT_VALIDATION");
     try {
         loader_.emplace();

@@ -1,6 +1,7 @@
 // The Vulkan device: chosen, opened, and what it can do. One queue; no descriptor sets anywhere.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -23,6 +24,7 @@ struct ContextOptions {
     std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
     bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
     std::uint64_t max_allocation_bytes = 0;             // not more in one allocation; 0: what the device allows
+    std::uint64_t memory_limit_bytes = 0;               // not more in all buffers together; 0: what the device has
     DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
     std::vector<const char*> instance_extensions = {};  // beside those that the passes need; literals
     std::vector<const char*> device_extensions = {};    // likewise, where the device has them
@@ -30,8 +32,8 @@ struct ContextOptions {
 
 // Bytes of device memory in use and the most there ever were.
 struct MemoryUse {
-    std::uint64_t current_bytes = 0;
-    std::uint64_t peak_bytes = 0;
+    // Any thread may make and free buffers.
+    std::atomic<std::uint64_t> current_bytes = 0, peak_bytes = 0;
 };
 
 class Context {
@@ -52,6 +54,8 @@ public:
     [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
+    // Of memoryUse(); 0: none.
+    [[nodiscard]] std::uint64_t memoryLimitBytes() const { return memory_limit_bytes_; }
     // Nanoseconds of a timestamp's step; 0 if the queue has none.
     [[nodiscard]] double timestampPeriodNs() const { return timestamp_period_ns_; }
     // The bits of a timestamp that count.
@@ -106,7 +110,7 @@ private:
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
     std::set<std::string> device_extensions_;
-    std::uint64_t max_allocation_bytes_ = 0;
+    std::uint64_t max_allocation_bytes_ = 0, memory_limit_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;
     std::uint64_t timestamp_mask_ = 0;
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;

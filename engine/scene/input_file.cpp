@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include <sys/stat.h>
+
 namespace binosplat {
 
 namespace {
@@ -26,10 +28,19 @@ InputFile::InputFile(const std::string& path) : name_(path) {
           path);
     file_.reset(std::fopen(path.c_str(), "rb"));
     check(file_ != nullptr, "{}: cannot be opened: {}", path, std::strerror(errno));
-    size_bytes_ = std::filesystem::file_size(path, error);
-    check(!error, "{}: cannot be read: {}", path, error.message());
+    opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
     buffer_.resize(kBufferBytes);
+}
+
+InputFile::Stamp InputFile::stamp() const {
+    struct stat status {};
+    check(::fstat(::fileno(file_.get()), &status) == 0, "{}: cannot be read: {}", name_, std::strerror(errno));
+    return {static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
+
+void InputFile::requireUnchanged() const {
+    check(stamp() == opened_, "{}: was changed while it was read, must stay as it is until then", name_);
 }
 
 void InputFile::fillTo(std::size_t count) {

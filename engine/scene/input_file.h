@@ -18,9 +18,13 @@ public:
     explicit InputFile(const std::string& path);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    [[nodiscard]] std::uint64_t sizeBytes() const { return size_bytes_; }
+    [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
-    [[nodiscard]] std::uint64_t bytesLeft() const { return size_bytes_ > position_bytes_ ? size_bytes_ - position_bytes_ : 0; }
+    [[nodiscard]] std::uint64_t bytesLeft() const { return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0; }
+
+    // Throws Error if the file was written to since it was opened: what was read may be half of each. Removed or replaced by another, it
+    // is read to its end as it was.
+    void requireUnchanged() const;
 
     // The first bytes of the file, `count` at most, without moving on. Only before anything was read.
     [[nodiscard]] std::string_view peek(std::size_t count);
@@ -40,11 +44,17 @@ private:
     struct Closer {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
+    struct Stamp {
+        std::uint64_t size_bytes;
+        std::int64_t changed_s, changed_ns;
+        bool operator==(const Stamp&) const = default;
+    };
+    [[nodiscard]] Stamp stamp() const;
     void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
 
     std::string name_;
     std::unique_ptr<std::FILE, Closer> file_;
-    std::uint64_t size_bytes_ = 0;
+    Stamp opened_{};
     std::uint64_t position_bytes_ = 0;
     std::vector<char> buffer_;
     std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer

@@ -53,9 +53,24 @@ std::string listFormats() {
     return names;
 }
 
+// A file that changes meanwhile is the reason for whatever else is found wrong with it.
+Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, const Progress& progress) {
+    const auto requireUnchanged = [&] {
+        if (source.file) { source.file->requireUnchanged(); }
+    };
+    try {
+        Scene scene = format.read(source, notes, progress);
+        requireUnchanged();
+        return scene;
+    } catch (const Error&) {
+        requireUnchanged();
+        throw;
+    }
+}
+
 Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
     for (const SceneFormat& format : kSceneFormats) {
-        if (format.matches(source)) { return format.read(source, notes, progress); }
+        if (format.matches(source)) { return readWhole(format, source, notes, progress); }
     }
     check(source.file != nullptr, "{}: is a directory, expected a scene file: {}", source.path, listFormats());
     check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());

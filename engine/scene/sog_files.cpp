@@ -31,7 +31,10 @@ public:
         bytes.reserve(file.sizeBytes());
         for (;;) {
             const std::span<const std::byte> block = file.readBlock(std::size_t{1} << 16);
-            if (block.empty()) { return bytes; }
+            if (block.empty()) {
+                file.requireUnchanged();
+                return bytes;
+            }
             check(bytes.size() + block.size() <= max_bytes, "{}: grows while it is read", file.name());
             bytes.insert(bytes.end(), block.begin(), block.end());
         }

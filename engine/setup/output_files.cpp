@@ -61,6 +61,12 @@ void OutputFiles::removeUnpublished() noexcept {
 
 void OutputFiles::publish() {
     if (staging_.empty()) { return; }
+    // A folder in a file's place is known before the first file moves.
+    for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
+        const fs::path target = folder_ / entry.path().filename();
+        std::error_code none;
+        check(!fs::is_directory(target, none), "{}: cannot be written (is a directory), must be a file or not there", target.string());
+    }
     for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
         const fs::path target = folder_ / entry.path().filename();
         std::error_code error;

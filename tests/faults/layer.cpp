@@ -1,0 +1,147 @@
+// A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
+// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait or allocate, N from 1, and FAULT lost, no-device-memory, no-host-memory, SIGINT or
+// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once.
+#include <vulkan/vk_layer.h>
+#include <vulkan/vulkan.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace {
+
+// What BINOSPLAT_FAULT says.
+struct Plan {
+    std::string call, fault;
+    int number = 0;
+
+    Plan() {
+        const char* given = std::getenv("BINOSPLAT_FAULT");
+        const std::string text = given != nullptr ? given : "";
+        const std::size_t first = text.find(':'), second = text.find(':', first + 1);
+        if (first == std::string::npos || second == std::string::npos) { return; }
+        call = text.substr(0, first);
+        number = std::atoi(text.substr(first + 1, second - first - 1).c_str());
+        fault = text.substr(second + 1);
+    }
+};
+
+// One instance and one device a process, as the program has them.
+PFN_vkGetInstanceProcAddr g_instance_next = nullptr;
+PFN_vkGetDeviceProcAddr g_device_next = nullptr;
+PFN_vkQueueSubmit g_submit = nullptr;
+PFN_vkWaitForFences g_wait = nullptr;
+PFN_vkAllocateMemory g_allocate = nullptr;
+
+// What the call returns instead of being made; VK_SUCCESS: make it.
+VkResult strike(const char* call) {
+    static const Plan plan;
+    static std::atomic<int> calls{0};
+    if (plan.call != call) { return VK_SUCCESS; }
+    const int number = ++calls;
+    if (number < plan.number) { return VK_SUCCESS; }
+    if (plan.fault == "lost") { return VK_ERROR_DEVICE_LOST; }
+    if (plan.fault == "no-device-memory") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
+    if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
+    if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
+    const VkResult result = strike("submit");
+    return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
+}
+
+// A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
+VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout) {
+    const VkResult waited = g_wait(device, count, fences, all, timeout);
+    const VkResult result = strike("wait");
+    return result != VK_SUCCESS ? result : waited;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
+                                        VkDeviceMemory* memory) {
+    const VkResult result = strike("allocate");
+    return result != VK_SUCCESS ? result : g_allocate(device, info, callbacks, memory);
+}
+
+// The next layer's link in what the loader chained to a create info.
+template <typename Link>
+Link* linkOf(const void* chain, VkStructureType type) {
+    for (const auto* item = static_cast<const VkBaseInStructure*>(chain); item != nullptr; item = item->pNext) {
+        if (item->sType != type) { continue; }
+        auto* link = reinterpret_cast<Link*>(const_cast<VkBaseInStructure*>(item));
+        if (link->function == VK_LAYER_LINK_INFO) { return link; }
+    }
+    return nullptr;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
+                                              VkInstance* instance) {
+    auto* link = linkOf<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO);
+    if (link == nullptr) { return VK_ERROR_INITIALIZATION_FAILED; }
+    g_instance_next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+    const auto create = reinterpret_cast<PFN_vkCreateInstance>(g_instance_next(VK_NULL_HANDLE, "vkCreateInstance"));
+    return create(info, callbacks, instance);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, const VkDeviceCreateInfo* info,
+                                            const VkAllocationCallbacks* callbacks, VkDevice* device) {
+    auto* link = linkOf<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO);
+    if (link == nullptr) { return VK_ERROR_INITIALIZATION_FAILED; }
+    const PFN_vkGetInstanceProcAddr instance_next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+    g_device_next = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
+    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+    const auto create = reinterpret_cast<PFN_vkCreateDevice>(instance_next(VK_NULL_HANDLE, "vkCreateDevice"));
+    const VkResult result = create(physical_device, info, callbacks, device);
+    if (result != VK_SUCCESS) { return result; }
+    g_submit = reinterpret_cast<PFN_vkQueueSubmit>(g_device_next(*device, "vkQueueSubmit"));
+    g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
+    g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name);
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name);
+
+template <typename Function>
+PFN_vkVoidFunction asVoid(Function* function) {
+    return reinterpret_cast<PFN_vkVoidFunction>(function);
+}
+
+PFN_vkVoidFunction ownFunction(const char* name) {
+    if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
+    if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
+    if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
+    if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
+    return nullptr;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
+    const PFN_vkVoidFunction own = ownFunction(name);
+    return own != nullptr ? own : g_device_next(device, name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
+    if (std::strcmp(name, "vkCreateInstance") == 0) { return asVoid(createInstance); }
+    if (std::strcmp(name, "vkCreateDevice") == 0) { return asVoid(createDevice); }
+    if (std::strcmp(name, "vkGetInstanceProcAddr") == 0) { return asVoid(getInstanceProcAddr); }
+    const PFN_vkVoidFunction own = ownFunction(name);
+    if (own != nullptr) { return own; }
+    return instance != VK_NULL_HANDLE ? g_instance_next(instance, name) : nullptr;
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) VKAPI_ATTR VkResult VKAPI_CALL
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* interface) {
+    if (interface->loaderLayerInterfaceVersion < 2) { return VK_ERROR_INITIALIZATION_FAILED; }
+    interface->loaderLayerInterfaceVersion = 2;
+    interface->pfnGetInstanceProcAddr = getInstanceProcAddr;
+    interface->pfnGetDeviceProcAddr = getDeviceProcAddr;
+    interface->pfnGetPhysicalDeviceProcAddr = nullptr;
+    return VK_SUCCESS;
+}
