@@ -155,9 +155,11 @@ void main() {
                     const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? (u_p * u_p + v_p * v_p) * (z * z) : kFar;
                     const float rho2 = rho2_x + plane.w * (dy * dy);
                     const bool on_disc = rho3 <= rho2;
-                    const float alpha = min(kMaxAlpha, exp2(-depth_form.w - (on_disc ? rho3 : rho2)));
-                    const float full_weight = alpha >= kMinAlpha ? alpha * max(transmittance[p], 0) : 0;
-                    const float after = transmittance[p] - full_weight;
+                    const float exponent = depth_form.w + (on_disc ? rho3 : rho2);
+                    const float opacity = exp2(-exponent);
+                    const float alpha = min(kMaxAlpha, opacity);
+                    const float full_weight = exponent <= kLog2Of255 ? alpha * max(transmittance[p], 0) : 0;
+                    const float after = full_weight > 0 ? transmittance[p] * max(1 - opacity, kMinPassing) : transmittance[p];
                     const bool closes = after < kMinTransmittance && after >= 0;
                     const float weight = closes ? 0 : full_weight;
                     transmittance[p] = closes ? -transmittance[p] : after;

@@ -35,12 +35,12 @@ BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
-// kMinTransmittance (Kerbl et al. 2023, appendix C).
+// kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
+// and two such hits leave exactly 1e-4, which is not under it.
 BINOSPLAT_CONSTANT float kMaxAlpha = 0.99f;
 BINOSPLAT_CONSTANT float kMinAlpha = 1.0f / 255.0f;
-// Two hits of kMaxAlpha leave exactly 1e-4, which is not under it; in float32 they leave 0.99999819e-4, so the limit lies
-// below that by a little more than rounding.
-BINOSPLAT_CONSTANT float kMinTransmittance = 0.99999e-4f;
+BINOSPLAT_CONSTANT float kMinPassing = 0.01f;
+BINOSPLAT_CONSTANT float kMinTransmittance = 1e-4f;
 BINOSPLAT_CONSTANT float kLog2Of255 = 7.99435343685886f;
 // rho is in units of exp(-rho/2): exp(-rho/2) = exp2(-kLog2PerRho rho).
 BINOSPLAT_CONSTANT float kLog2PerRho = 0.72134752044448f;
