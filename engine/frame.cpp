@@ -20,14 +20,14 @@ void split(const Wide& value, Narrow& high, Narrow& low) {
     low = Narrow(value - Wide(high));
 }
 
-gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
+gpu::EyeView viewOf(const Eye& eye, double near) {
     const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
     const Intrinsics& k = eye.intrinsics;
     gpu::EyeView view{};
     split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
     split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
     split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
-    split(eye.world_from_camera.position - scene_origin, view.position, view.position_low);
+    split(eye.world_from_camera.position, view.position, view.position_low);
     split(glm::dvec2(k.fx, k.fy), view.focal_px, view.focal_px_low);
     split(glm::dvec2(k.cx, k.cy), view.principal_px, view.principal_px_low);
     view.size_px = eye.size_px;
@@ -89,7 +89,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     const int first = dominant_, second = 1 - dominant_;
     const StereoSettings stereo = stereoSettingsOf(settings);
     FrameState state{};
-    for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], scene_.origin(), settings.near); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], settings.near); }
     if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
 
     const auto targetOf = [&](int eye, int list) {

@@ -26,7 +26,7 @@ void main() {
     for (uint w = group * (kGroupSize / 32); w < word; ++w) { place += bitCount(pass.visible_bits.at[w]); }
 
     SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-    const vec3 from_eye = chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)] - eye.position;
+    const vec3 from_eye = fromEye(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]);
     pass.keys.at[place] = sortableBits(dot(eye.camera_from_world_z, from_eye));
     pass.splats.at[place] = i;
 }

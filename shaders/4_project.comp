@@ -96,7 +96,7 @@ void main() {
         const uint tiles = countTiles(outline, box, size_tiles.x, small);
         pass.tile_counts.at[rank] = tiles;
         if (tiles > 0) {
-            p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(chunk.positions.at[in_chunk] - eye.position)));
+            p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(fromEye(eye, chunk.positions.at[in_chunk]))));
             pass.splats.at[rank] = p;
         }
         // Empty where the splat meets no tile: then there is no splat either.

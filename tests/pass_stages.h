@@ -33,7 +33,7 @@ struct TwinStages {
     std::vector<reference::TileRange> ranges;
 };
 
-inline gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, double near) {
+inline gpu::EyeView viewOf(const Eye& eye, double near) {
     const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
     gpu::EyeView view{};
     const auto split = [](const auto& value, auto& high, auto& low) {
@@ -43,7 +43,7 @@ inline gpu::EyeView viewOf(const Eye& eye, const glm::dvec3& scene_origin, doubl
     split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
     split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
     split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
-    split(eye.world_from_camera.position - scene_origin, view.position, view.position_low);
+    split(eye.world_from_camera.position, view.position, view.position_low);
     split(glm::dvec2(eye.intrinsics.fx, eye.intrinsics.fy), view.focal_px, view.focal_px_low);
     split(glm::dvec2(eye.intrinsics.cx, eye.intrinsics.cy), view.principal_px, view.principal_px_low);
     view.size_px = eye.size_px;
@@ -58,7 +58,7 @@ struct SceneOnDevice {
     SceneOnDevice(Gpu& gpu, const Scene& host_scene, const std::vector<Eye>& host_eyes, double near)
         : scene(gpu.context(), host_scene), eyes(gpu.upload("eyes", [&] {
               std::vector<gpu::EyeView> views;
-              for (const Eye& eye : host_eyes) { views.push_back(viewOf(eye, scene.origin(), near)); }
+              for (const Eye& eye : host_eyes) { views.push_back(viewOf(eye, near)); }
               return views;
           }())) {}
 

@@ -30,10 +30,8 @@ std::vector<ViewedScene> allScenes() {
     return scenes;
 }
 
-// What the device rounds when it takes a splat to the camera: both it and the eye are relative to the scene's origin.
-double distanceToRound(const glm::dvec3& origin, const glm::dvec3& position, const Eye& eye) {
-    return glm::length(position - origin) + glm::length(eye.world_from_camera.position - origin);
-}
+// What the device rounds when it takes a splat to the camera: the eye has 48 bits, so that nothing counts but how far apart they are.
+double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
 
 struct Culled {
     std::vector<std::uint32_t> bits, group_counts;
@@ -66,8 +64,7 @@ struct FieldErrors {
         worst[field] = std::max(worst[field], std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error) / unit);
     }
 
-    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i,
-              const glm::dvec3& origin) {
+    void note(const gpu::ProjectedSplat& splat, const reference::ProjectedSplat& truth, const ViewedScene& view, std::uint32_t i) {
         const test::OpacityColour packed = test::unpack(splat);
         if (packed.has_reference != truth.low_pass) {
             ++other_kind;
@@ -76,7 +73,7 @@ struct FieldErrors {
         noteColour(packed, truth, view.scene, i);
         const glm::dvec2 focal(view.eye.intrinsics.fx, view.eye.intrinsics.fy), principal(view.eye.intrinsics.cx, view.eye.intrinsics.cy);
         const glm::dvec3 position(view.scene.positions[i]), from_eye = position - view.eye.world_from_camera.position;
-        const double rounding = kEpsilon * distanceToRound(origin, position, view.eye);  // of the centre in camera space
+        const double rounding = kEpsilon * distanceToRound(position, view.eye);  // of the centre in camera space
         const double z = truth.depth;
         if (truth.low_pass) {
             const glm::dvec2 c = (truth.reference_px - principal) / focal * z;
@@ -96,7 +93,7 @@ struct FieldErrors {
         const glm::quat& q = view.scene.rotations[i];
         const double delta = std::abs(glm::dot(glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z))[2], from_eye));
         const double scale = static_cast<double>(std::min(view.scene.scales[i].x, view.scene.scales[i].y));
-        const double row = rounding / delta * distanceToRound(origin, position, view.eye) / (scale * delta * std::min(focal.x, focal.y));
+        const double row = rounding / delta * distanceToRound(position, view.eye) / (scale * delta * std::min(focal.x, focal.y));
         const glm::dvec3 plane_error = glm::dvec3(splat.plane_from_pixel) - truth.plane_from_pixel;
         note("A", plane_error.x, row);
         note("B", plane_error.y, row);
@@ -196,7 +193,7 @@ TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order 
         double worst = 0.0;
         for (std::size_t i = 0; i < visible; ++i) {
             const glm::dvec3 position(view.scene.positions[twin.compacted.splats[i]]);
-            const double distance = distanceToRound(device.scene.origin(), position, view.eye);
+            const double distance = distanceToRound(position, view.eye);
             worst = std::max(
                 worst, std::abs(static_cast<double>(test::floatOfKey(key_values[i])) - twin.compacted.depths[i]) / (kEpsilon * distance));
         }
@@ -257,7 +254,7 @@ TEST_CASE_FIXTURE(Gpu, "4_project gives the twin's fields, up to roundings times
         std::size_t compared = 0;
         for (std::size_t rank = 0; rank < splats.size(); ++rank) {
             if (tile_counts[rank] == 0) { continue; }  // nothing is said of what meets no tile
-            errors.note(splats[rank], twin.splats[rank], view, twin.order[rank], device.scene.origin());
+            errors.note(splats[rank], twin.splats[rank], view, twin.order[rank]);
             ++compared;
         }
         CHECK(2 * compared > splats.size());

@@ -9,14 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace binosplat {
 namespace {
 
 // Splats that are packed and copied at a time: the upload buffer is at most 9 MiB.
 constexpr std::uint32_t kUploadSplats = 65536;
-// Splats that say where the scene's middle is.
-constexpr std::size_t kOriginSamples = 1u << 20;
 
 std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2; }
 
@@ -43,31 +42,23 @@ std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }
 
-// Zero, or where most splats are if they are far off: along each axis the median, since the middle of the bounds would lie far off
-// with the farthest splat. Positions that differ by less than a factor of two have exact differences, so that nothing is rounded
-// for most splats of a far-off scene; those of a scene about zero stay as they are.
-constexpr double kFarOff = 16.0;  // median deviations
-glm::dvec3 originFor(const Scene& scene) {
-    if (scene.size() == 0) { return glm::dvec3(0.0); }
-    const std::size_t stride = scene.size() / kOriginSamples + 1;
-    std::vector<float> values;
-    glm::dvec3 origin;
-    for (int axis = 0; axis < 3; ++axis) {
-        values.clear();
-        for (std::size_t i = 0; i < scene.size(); i += stride) { values.push_back(scene.positions[i][axis]); }
-        const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), half, values.end());
-        const float median = *half;
-        for (float& value : values) { value = std::abs(value - median); }
-        std::nth_element(values.begin(), half, values.end());
-        origin[axis] = std::abs(static_cast<double>(median)) > kFarOff * static_cast<double>(*half) ? static_cast<double>(median) : 0.0;
-    }
-    return origin;
+// The rotation as the device holds it: x, y, z, w of unit length. Nothing for a splat that cannot be shown.
+std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat) {
+    const glm::vec3& p = scene.positions[splat];
+    const glm::vec2& scale = scene.scales[splat];
+    const auto values = static_cast<std::uint64_t>(3 * shCoefficientCount(scene.sh_degree));
+    // v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN.
+    float zero = (p.x + p.y + p.z) * 0.0f + (scale.x + scale.y) * 0.0f + scene.opacities[splat] * 0.0f;
+    for (std::uint64_t i = splat * values; i < (splat + 1) * values; ++i) { zero += scene.sh[i] * 0.0f; }
+    const glm::quat& q = scene.rotations[splat];
+    const glm::dvec4 rotation(q.x, q.y, q.z, q.w);
+    const double length = glm::length(rotation);
+    if (!(zero == 0.0f && length > 0.0 && std::isfinite(length))) { return std::nullopt; }
+    return glm::vec4(rotation / length);
 }
 
 // Writes splats [first, first + count) of `scene` to `to`, laid out as `layout` (of at least `count` splats).
-void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const glm::dvec3& origin, const ChunkLayout& layout,
-                std::uint8_t* to) {
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const ChunkLayout& layout, std::uint8_t* to) {
     const auto put = [&]<typename T>(std::uint64_t array, std::uint64_t i, const T& value) {
         std::memcpy(to + array + i * sizeof(T), &value, sizeof(T));
     };
@@ -75,11 +66,11 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
     const std::uint64_t sh_words = shWords(scene.sh_degree);
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t splat = first + i;
-        const glm::quat& q = scene.rotations[splat];
-        put(layout.positions, i, glm::vec3(glm::dvec3(scene.positions[splat]) - origin));
-        put(layout.rotations, i, glm::vec4(q.x, q.y, q.z, q.w));
+        const std::optional<glm::vec4> rotation = rotationToShow(scene, splat);
+        put(layout.positions, i, scene.positions[splat]);
+        put(layout.rotations, i, rotation.value_or(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)));
         put(layout.scales, i, scene.scales[splat]);
-        put(layout.opacities, i, scene.opacities[splat]);
+        put(layout.opacities, i, rotation ? scene.opacities[splat] : 0.0f);
         const float* sh = scene.sh.data() + splat * static_cast<std::uint64_t>(coefficients) * 3;
         put(layout.base_colours, i, glm::uvec2(packHalves(sh[0], sh[1]), packHalves(sh[2], 0.0f)));
         const std::uint64_t halves = 3 * static_cast<std::uint64_t>(coefficients - 1);
@@ -93,8 +84,7 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 
 std::uint64_t deviceBytesPerSplat(int sh_degree) { return 48 + shWords(sh_degree) * sizeof(std::uint32_t); }
 
-GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress)
-    : sh_degree_(scene.sh_degree), origin_(originFor(scene)) {
+GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : sh_degree_(scene.sh_degree) {
     check(scene.size() < (1u << 31), "{}: {} splats, at most {} can be shown", scene.name, scene.size(), (1u << 31) - 1);
     splat_count_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
@@ -119,7 +109,7 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
                          buffer.address<gpu::uvec2>(layout.base_colours), buffer.address<std::uint32_t>(layout.sh)});
         for (std::uint64_t done = 0; done < count; done += upload_splats) {
             const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
-            packSplats(scene, first + done, block, origin_, upload_layout, upload.mapped<std::uint8_t>().data());
+            packSplats(scene, first + done, block, upload_layout, upload.mapped<std::uint8_t>().data());
             commands.begin();
             const auto copyArray = [&](std::uint64_t from, std::uint64_t to, std::uint64_t bytes_per_splat) {
                 commands.copy(upload, buffer, block * bytes_per_splat, from, to + done * bytes_per_splat);

@@ -9,7 +9,8 @@
 
 namespace binosplat {
 
-// Positions, rotations, scales and opacities stay float32; colours are half floats (off by at most 2^-11 of themselves).
+// Positions, rotations, scales and opacities stay float32, rotations are normalised; colours are half floats (off by at most 2^-11 of
+// themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
 class GpuScene {
 public:
     // Splits the scene into chunks of a power of two splats where one allocation cannot hold it.
@@ -17,8 +18,6 @@ public:
 
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     [[nodiscard]] int shDegree() const { return sh_degree_; }
-    // World position that device positions are relative to.
-    [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
@@ -28,7 +27,6 @@ public:
 private:
     std::uint32_t splat_count_ = 0;
     int sh_degree_ = 0;
-    glm::dvec3 origin_{0.0};
     std::uint32_t chunk_bits_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;

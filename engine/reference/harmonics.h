@@ -3,9 +3,15 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace binosplat::reference {
 
-// Sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient.
+// The device holds coefficients and colours as half floats, which end here: what lies beyond counts as this.
+inline constexpr double kMaxHalf = 65504.0;
+
+// Sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient. Not finite if one of them is not.
 inline glm::dvec3 evaluateHarmonics(const float* sh, int degree, const glm::dvec3& d) {
     const double x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
     const double basis[16] = {
@@ -26,8 +32,13 @@ inline glm::dvec3 evaluateHarmonics(const float* sh, int degree, const glm::dvec
         1.445305721320277 * z * (xx - yy),  // sqrt(105 / pi) / 4
         -0.5900435899266435 * x * (xx - 3.0 * yy),
     };
+    const auto limit = [](float value) {
+        return std::isfinite(value) ? std::clamp(static_cast<double>(value), -kMaxHalf, kMaxHalf) : static_cast<double>(value);
+    };
     glm::dvec3 sum(0.0);
-    for (int k = 0; k < (degree + 1) * (degree + 1); ++k) { sum += basis[k] * glm::dvec3(sh[3 * k], sh[3 * k + 1], sh[3 * k + 2]); }
+    for (int k = 0; k < (degree + 1) * (degree + 1); ++k) {
+        sum += basis[k] * glm::dvec3(limit(sh[3 * k]), limit(sh[3 * k + 1]), limit(sh[3 * k + 2]));
+    }
     return sum;
 }
 

@@ -54,7 +54,7 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
     splat.depth = c.z;
     splat.cut = camera->cut;
     splat.opacity = static_cast<double>(scene.opacities[index]);
-    splat.colour = glm::max(colour, glm::dvec3(0.0));
+    splat.colour = glm::clamp(colour, 0.0, kMaxHalf);
     splat.row_w = {a.z, b.z, c.z};
     splat.row_u = k.fx * glm::dvec3(a.x, b.x, c.x) + k.cx * splat.row_w;
     splat.row_v = k.fy * glm::dvec3(a.y, b.y, c.y) + k.cy * splat.row_w;

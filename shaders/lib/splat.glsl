@@ -37,8 +37,15 @@ CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
     return splat;
 }
 
+// From the eye to a place in the world, which may lie close together and far from its origin: in this order the first difference
+// is exact where it is small beside its terms.
+vec3 fromEye(EyeView eye, vec3 position) {
+    precise const vec3 difference = (position - eye.position) - eye.position_low;
+    return difference;
+}
+
 CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
-    splat.centre = cameraFromWorld(eye, splat.centre - eye.position);
+    splat.centre = cameraFromWorld(eye, fromEye(eye, splat.centre));
     splat.t_u = cameraFromWorld(eye, splat.t_u);
     splat.t_v = cameraFromWorld(eye, splat.t_v);
     return splat;

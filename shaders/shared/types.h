@@ -15,7 +15,7 @@ BINOSPLAT_ARRAY_OF(vec4, Vec4s);
 
 // A run of splats that lies in one allocation: 48 bytes a splat, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
 struct SceneChunk {
-    Vec3s positions;  // relative to the scene's origin, so that far-off worlds keep their precision
+    Vec3s positions;
     Vec4s rotations;  // x, y, z, w
     Vec2s scales;
     Floats opacities;
@@ -29,7 +29,7 @@ struct EyeView {
     vec3 camera_from_world_x;  // rows of the rotation
     vec3 camera_from_world_y;
     vec3 camera_from_world_z;
-    vec3 position;  // relative to the scene's origin
+    vec3 position;
     vec2 focal_px;
     vec2 principal_px;
     uvec2 size_px;
