@@ -1,5 +1,6 @@
 // What `bench` measured, as tables on a terminal: per point one of methods and one of passes.
 #include "app/bench_results.h"
+#include "app/text_columns.h"
 
 #include <fmt/format.h>
 
@@ -32,31 +33,8 @@ std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
     return sum;
 }
 
-// Right-aligned columns as wide as their widest cell; the first is left-aligned.
-class Columns {
-public:
-    void addRow(std::vector<std::string> cells) {
-        widths_.resize(std::max(widths_.size(), cells.size()), 0);
-        for (std::size_t i = 0; i < cells.size(); ++i) { widths_[i] = std::max(widths_[i], cells[i].size()); }
-        rows_.push_back(std::move(cells));
-    }
-    [[nodiscard]] std::string text() const {
-        std::string text;
-        for (const std::vector<std::string>& row : rows_) {
-            text += fmt::format("  {:<{}}", row[0], widths_[0]);
-            for (std::size_t i = 1; i < row.size(); ++i) { text += fmt::format("  {:>{}}", row[i], widths_[i]); }
-            text += "\n";
-        }
-        return text;
-    }
-
-private:
-    std::vector<std::vector<std::string>> rows_;
-    std::vector<std::size_t> widths_;
-};
-
 std::string methodsTable(const std::vector<const BenchResult*>& point) {
-    Columns columns;
+    TextColumns columns;
     columns.addRow({"method", "front", "ms", "least", "most", "/ two-pass", "/ shared", "peak MiB", "PSNR dB", "reprojected",
                     "interpolated", "patched", "SSIM", "FLIP", "tiles again", "holes px", "gaps px", "pairs"});
     for (const BenchResult* r : point) {
@@ -89,7 +67,7 @@ std::string timesTable(const std::vector<const BenchResult*>& point) {
     for (const BenchResult* r : point) {
         for (const auto& [name, ms] : byPass(*r)) { passes[name] = true; }
     }
-    Columns columns;
+    TextColumns columns;
     std::vector<std::string> head{"ms by stage, then by pass"};
     for (const char* stage : kStages) { head.emplace_back(stage); }
     for (const auto& [name, there] : passes) { head.push_back(name); }

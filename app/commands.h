@@ -11,5 +11,6 @@ void runView(const ViewOptions& options);
 void runInfo(const InfoOptions& options);
 void runScene(const SceneOptions& options);
 void runConvert(const ConvertOptions& options);
+void runStability(const StabilityOptions& options);
 
 }  // namespace binosplat

@@ -163,7 +163,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
-    CommandLine render_line, bench_line, view_line;
+    CommandLine render_line, bench_line, view_line, stability_line;
     RenderOptions render;
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
@@ -213,6 +213,13 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     convert_command->add_option("SCENE", convert.scene, "file, directory or builtin:NAME")->required();
     convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
 
+    StabilityOptions stability;
+    CLI::App* stability_command = app.add_subcommand("stability", "Hold stiff and extreme cases against the float64 twin");
+    stability_command->add_option("--out", stability.out, "directory for stability.txt, stability.csv and stability.svg")
+        ->required()
+        ->type_name("DIR");
+    addRows(*stability_command, stability_line, std::span(kRunRows).last(1), "Run");
+
     try {
         app.parse(readableArguments(argument_count, arguments));
     } catch (const CLI::CallForHelp&) {
@@ -239,6 +246,10 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         view.run = readRun(view_line, view.run.config, {"view"}, &view.tables);
         if (frames_option->count() > 0) { view.frames = readCount({"--frames", {frames}}, 1, 1000000000); }
         return view;
+    }
+    if (stability_command->parsed()) {
+        stability.device = runOptions(commandLineLayer(stability_line)).device;
+        return stability;
     }
     if (info_command->parsed()) { return info; }
     if (convert_command->parsed()) { return convert; }

@@ -96,11 +96,17 @@ struct ConvertOptions {
     std::filesystem::path out;
 };
 
+struct StabilityOptions {
+    std::filesystem::path out;
+    std::string device;
+};
+
 struct HelpText {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, HelpText>;
+using Options =
+    std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, StabilityOptions, HelpText>;
 
 // Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);

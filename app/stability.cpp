@@ -1,0 +1,38 @@
+// `binosplat stability`: the stiff and extreme cases on the present device, beside their float64 twins.
+#include "app/commands.h"
+#include "app/progress.h"
+#include "app/stability_report.h"
+#include "engine/error.h"
+#include "engine/setup/output_files.h"
+
+namespace binosplat {
+
+void runStability(const StabilityOptions& options) {
+    OutputFiles files(options.out);
+    const Context context({.device = options.device});
+    StabilityRun run{context.deviceName(), stability::makeCatalogue(), {}, stability::makePaths(), {}};
+    {
+        ProgressLine line("stability");
+        const auto all = static_cast<double>(run.cases.size() + run.paths.size());
+        for (const stability::Case& one : run.cases) {
+            run.scores.push_back(stability::runCase(context, one));
+            line.show(static_cast<double>(run.scores.size()) / all);
+        }
+        for (const stability::Path& path : run.paths) {
+            run.path_scores.push_back(stability::runPath(context, path));
+            line.show(static_cast<double>(run.scores.size() + run.path_scores.size()) / all);
+        }
+    }
+    const std::string table = stabilityTable(run);
+    writeText(files.staging() / "stability.txt", table);
+    writeText(files.staging() / "stability.csv", stabilityCsv(run));
+    writeText(files.staging() / "stability.svg", stabilityPlot(run));
+    context.requireNoValidationMessages();
+    files.publish();
+    fmt::print("{}", table);
+    const std::vector<std::string> failures = run.failures();
+    check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(),
+          run.cases.size() + run.paths.size(), failures.empty() ? "" : failures.front());
+}
+
+}  // namespace binosplat

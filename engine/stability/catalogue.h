@@ -1,0 +1,61 @@
+// The stiff and extreme cases of DESIGN, section 7, as data: a scene, eyes, and what the device's pictures must keep to beside
+// those of the float64 twin.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/scene/scene.h"
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace binosplat::stability {
+
+// Over red, green, blue and alpha. A value is off if it differs by more than 2/255 of the peak. Of an eye made from the other, over
+// the tiles that both the device and the twin render again, or neither does.
+struct Bound {
+    double psnr_db;                                            // at least; the peak is 1, or the twin's brightest value if that is more
+    double share_off;                                          // of the values, at most
+    double largest = std::numeric_limits<double>::infinity();  // difference, at most; of the peak
+    double other_tiles = 0.0;                                  // share of the tiles that one of them alone renders again, at most
+};
+
+// What is rendered.
+struct Stage {
+    Scene scene;
+    Eye middle;
+    std::array<Eye, 2> eyes;
+    double near = 0.2;
+};
+
+struct Case {
+    std::string family;     // cases of one family are points of one curve
+    std::string parameter;  // what `value` is, with its unit; empty where the family has one case
+    double value = 0.0;
+    std::function<Stage()> make;
+    Bound rendered;  // of an eye rendered in full
+    Bound moved;     // of an eye made from the other
+    std::string reason;
+    bool beyond = false;  // single precision cannot tell what is asked: the bounds say what is left
+    bool large = false;   // takes longer than all others together
+
+    [[nodiscard]] std::string name() const;
+};
+
+std::vector<Case> makeCatalogue();
+
+// An eye on its way: what changes from one frame to the next must not be more than what changes in the twin.
+struct Path {
+    std::string name;
+    std::function<Stage()> make;
+    glm::dvec3 step;  // of the eye in its camera's axes, from frame to frame
+    int frames;
+    double slack;  // how much more than the twin's greatest change a change may be
+    std::string reason;
+};
+
+std::vector<Path> makePaths();
+
+}  // namespace binosplat::stability

@@ -1,0 +1,34 @@
+// The scenes of the catalogue: each takes the one number that makes it stiff.
+#pragma once
+
+#include "engine/stability/catalogue.h"
+
+namespace binosplat::stability {
+
+// Discs.
+Stage makeEdgeOn(double angle_rad);     // discs whose planes all but hold both eyes
+Stage makeHorizon(double angle_rad);    // likewise, and their planes project onto a row of pixel centres
+Stage makeNeedles(double aspect);       // scales s sqrt(aspect) and s / sqrt(aspect)
+Stage makeScales(double scale);         // from specks to discs that hold the eye
+Stage makeThroughEye(double distance);  // large discs whose planes pass the eye at this distance
+Stage makeDepthRatio(double ratio);     // discs of one apparent size at depths 0.001 to 0.001 ratio
+Stage makeOpacity(double opacity);
+Stage makeLayers(double count);            // discs of opacity 0.01 over the whole view
+Stage makeSeparation(double separation);   // overlapping discs whose depths differ by this share
+Stage makeBrokenAttributes(double value);  // a scene with a splat for each attribute that has this value
+Stage makeQuaternions(double length);      // rotations of this length
+Stage makeHarmonics(double amplitude);     // SH of degree 3
+
+// Worlds and views.
+Stage makeUnit(double unit);           // all lengths of an ordinary scene, the eyes' distance and the near plane too
+Stage makeFarOff(double offset);       // all of a scene, and the eyes, so far from the world's origin along every axis
+Stage makeTwoPlaces(double distance);  // the eyes at a few splats, most splats so far away
+Stage makeEyeDistance(double distance);
+Stage makeCanting(double degrees);
+Stage makeFieldOfView(double degrees);
+Stage makeImage(glm::uvec2 size_px);
+Stage makeEmpty();
+Stage makeCovered();  // a hundred discs, each over every tile
+Stage makeCloud();    // the eye inside
+
+}  // namespace binosplat::stability

@@ -1,0 +1,50 @@
+// One case of the catalogue: on the device in every mode, twice, and on the float64 twin.
+#pragma once
+
+#include "engine/frame.h"
+#include "engine/stability/catalogue.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace binosplat::stability {
+
+// A picture beside its twin.
+struct PictureScore {
+    Mode mode = Mode::kMono;
+    std::string eye;       // "middle", "left" or "right"
+    bool moved = false;    // made from the other eye
+    double psnr_db = 0.0;  // infinite where both are equal
+    double share_off = 0.0;
+    double largest = 0.0;
+    double other_tiles = 0.0;
+    std::uint64_t not_finite = 0;  // of the picture's values and of the dominant eye's depths
+    bool repeats = false;          // the second run gave the same bytes
+    bool passes = false;           // its bound, is finite and repeats
+};
+
+struct CaseScore {
+    std::vector<PictureScore> pictures;
+
+    [[nodiscard]] bool passes() const;
+    // The picture with the greatest error of a mode's.
+    [[nodiscard]] const PictureScore& worstOf(Mode mode) const;
+};
+
+inline constexpr Mode kModes[] = {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
+const char* nameOf(Mode mode);
+
+CaseScore runCase(const Context& context, const Case& one);
+
+// The greatest change of any value from one frame to the next, on the device and in the twin, along a path.
+struct PathScore {
+    double device = 0.0, twin = 0.0;
+    double psnr_db = 0.0;  // of the worst frame
+    std::uint64_t not_finite = 0;
+    bool passes = false;
+};
+
+PathScore runPath(const Context& context, const Path& path);
+
+}  // namespace binosplat::stability

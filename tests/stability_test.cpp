@@ -1,0 +1,95 @@
+// Facts about stiff and extreme cases: the catalogue of `binosplat stability` but for its largest picture, on the device.
+#include "engine/stability/extreme_scenes.h"
+#include "engine/stability/run_case.h"
+#include "tests/gpu_fixture.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+using namespace binosplat;
+using namespace binosplat::stability;
+using test::Gpu;
+
+namespace {
+
+std::vector<Image> renderPair(const Context& context, const Stage& stage, Mode mode) {
+    const GpuScene scene(context, stage.scene);
+    StereoFrame frame(context, scene);
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.near = stage.near;
+    frame.render(stage.eyes, settings);
+    return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+}
+
+// The first `count` splats of a scene without SH bands.
+Stage keepFirst(Stage stage, std::size_t count) {
+    stage.scene.positions.resize(count);
+    stage.scene.rotations.resize(count);
+    stage.scene.scales.resize(count);
+    stage.scene.opacities.resize(count);
+    stage.scene.sh.resize(3 * count);
+    return stage;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode") {
+    std::set<std::string> names;
+    for (const Case& one : makeCatalogue()) {
+        CHECK(names.insert(one.name()).second);
+        if (one.large) { continue; }
+        const CaseScore score = runCase(context(), one);
+        CHECK(score.pictures.size() == 11);
+        for (const PictureScore& picture : score.pictures) {
+            INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db << " dB, off "
+                            << picture.share_off << ", largest " << picture.largest << ", other tiles " << picture.other_tiles);
+            CHECK(picture.not_finite == 0);
+            CHECK(picture.repeats);
+            CHECK(picture.passes);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's") {
+    for (const Path& path : makePaths()) {
+        const PathScore score = runPath(context(), path);
+        INFO(path.name << ": " << score.device << ", the twin's " << score.twin << ", worst frame " << score.psnr_db << " dB");
+        CHECK(score.not_finite == 0);
+        CHECK(score.passes);
+        CHECK(score.psnr_db >= 50.0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is") {
+    for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        const Stage stage = makeBrokenAttributes(broken);
+        const std::size_t count = stage.scene.size(), broken_splats = 3 + 3 + 4 + 2 + 1;
+        for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+            const auto with = renderPair(context(), stage, mode),
+                       without = renderPair(context(), keepFirst(stage, count - broken_splats), mode);
+            CHECK(with[kLeft].values == without[kLeft].values);
+            CHECK(with[kRight].values == without[kRight].values);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one") {
+    const auto unit = renderPair(context(), makeQuaternions(1.0), Mode::kShared);
+    for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two round nothing
+        CHECK(renderPair(context(), makeQuaternions(length), Mode::kShared)[kLeft].values == unit[kLeft].values);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
+    Case one = makeCatalogue().front();
+    one.moved = {0.0, 1.0, HUGE_VAL, 1.0};
+    for (const Bound& bound : {Bound{200.0, 1.0}, Bound{0.0, 1.0, 0.0}}) {
+        one.rendered = bound;
+        CHECK_FALSE(runCase(context(), one).passes());
+    }
+    one.rendered = {0.0, 1.0};
+    CHECK(runCase(context(), one).passes());
+}
