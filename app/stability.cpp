@@ -13,13 +13,14 @@ void runStability(const StabilityOptions& options) {
     StabilityRun run{context.deviceName(), stability::makeCatalogue(), {}, stability::makePaths(), {}};
     {
         ProgressLine line("stability");
+        stability::CaseRunner runner(context);
         const auto all = static_cast<double>(run.cases.size() + run.paths.size());
         for (const stability::Case& one : run.cases) {
-            run.scores.push_back(stability::runCase(context, one));
+            run.scores.push_back(runner.run(one));
             line.show(static_cast<double>(run.scores.size()) / all);
         }
         for (const stability::Path& path : run.paths) {
-            run.path_scores.push_back(stability::runPath(context, path));
+            run.path_scores.push_back(runner.run(path));
             line.show(static_cast<double>(run.scores.size() + run.path_scores.size()) / all);
         }
     }

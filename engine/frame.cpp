@@ -59,14 +59,20 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
 
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
-      scene_(scene),
-      passes_(context, scene.shDegree(), options.threads_per_cell),
+      passes_(context, options.threads_per_cell),
       stereo_passes_(context),
       commands_(context),
-      buffers_(makeFrameBuffers(context, scene.splatCount())),
-      state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback) {
-    growFrameBuffers(context, buffers_,
-                     {std::min(options.first_capacity.visible, std::max(scene.splatCount(), 1u)), options.first_capacity.pairs});
+      state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
+      first_capacity_(options.first_capacity) {
+    show(scene);
+}
+
+void StereoFrame::show(const GpuScene& scene) {
+    scene_ = &scene;
+    regrowths_ = 0;
+    buffers_ = {};
+    buffers_ = makeFrameBuffers(context_, scene.splatCount());
+    growFrameBuffers(context_, buffers_, {std::min(first_capacity_.visible, std::max(scene.splatCount(), 1u)), first_capacity_.pairs});
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings) {
@@ -108,30 +114,30 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     commands_.update(buffers_.state, &state, sizeof(state));
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands_, scene_, buffers_, 0, 1, 0, 0, "");
-            passes_.recordEye(commands_, scene_, buffers_, dominantOf(0), "");
+            passes_.recordVisible(commands_, *scene_, buffers_, 0, 1, 0, 0, "");
+            passes_.recordEye(commands_, *scene_, buffers_, dominantOf(0), "");
             break;
         case Mode::kTwoPass:
-            passes_.recordVisible(commands_, scene_, buffers_, first, 1, first, first, "dominant ");
-            passes_.recordEye(commands_, scene_, buffers_, dominantOf(first), "dominant ");
-            passes_.recordVisible(commands_, scene_, buffers_, second, 1, second, second, "affiliated ");
-            passes_.recordEye(commands_, scene_, buffers_, targetOf(second, second), "affiliated ");
+            passes_.recordVisible(commands_, *scene_, buffers_, first, 1, first, first, "dominant ");
+            passes_.recordEye(commands_, *scene_, buffers_, dominantOf(first), "dominant ");
+            passes_.recordVisible(commands_, *scene_, buffers_, second, 1, second, second, "affiliated ");
+            passes_.recordEye(commands_, *scene_, buffers_, targetOf(second, second), "affiliated ");
             break;
         case Mode::kShared:
-            passes_.recordVisible(commands_, scene_, buffers_, 0, 2, first, 0, "both ");
-            passes_.recordEye(commands_, scene_, buffers_, dominantOf(0), "dominant ");
-            if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, second, 0, "affiliated "); }
-            passes_.recordEye(commands_, scene_, buffers_, targetOf(second, 0), "affiliated ");
+            passes_.recordVisible(commands_, *scene_, buffers_, 0, 2, first, 0, "both ");
+            passes_.recordEye(commands_, *scene_, buffers_, dominantOf(0), "dominant ");
+            if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, *scene_, buffers_, second, 0, "affiliated "); }
+            passes_.recordEye(commands_, *scene_, buffers_, targetOf(second, 0), "affiliated ");
             break;
         case Mode::kReproject:
         case Mode::kPaper:
         case Mode::kPredicted: {
-            passes_.recordVisible(commands_, scene_, buffers_, 0, 2, first, 0, "both ");
+            passes_.recordVisible(commands_, *scene_, buffers_, 0, 2, first, 0, "both ");
             EyeTarget dominant = dominantOf(0);
             dominant.stereo_pixels = images_[second].colours.address<gpu::StereoPixel>();
             dominant.kept.stereo_pixels = true;
             dominant.kept.inverse_depth_moments = settings.mode == Mode::kPredicted || stereo.depth_choice == gpu::kDepthInverse;
-            passes_.recordEye(commands_, scene_, buffers_, dominant, "dominant ");
+            passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
             recordAffiliated(eyes, stereo, targetOf(second, 0));
             break;
         }
@@ -143,7 +149,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
     const bool rectified = isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo));
     stereo_buffers_.borrow(buffers_.pairs.pairs().keys);
-    stereo_passes_.record(commands_, scene_, buffers_, stereo_buffers_, stereo, rectified, dominant_, images_[dominant_],
+    stereo_passes_.record(commands_, *scene_, buffers_, stereo_buffers_, stereo, rectified, dominant_, images_[dominant_],
                           images_[target.eye]);
     if (stereo.patching != Patching::kNone) { recordPatches(eyes, stereo, target); }
     // Last, since the classes of pixels take the pairs' place.
@@ -152,8 +158,8 @@ void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettin
 
 void StereoFrame::recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
     target.shifted = isShifted(stereoViewOf(eyes[dominant_], eyes[target.eye], stereo));
-    if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, scene_, buffers_, target.eye, 0, "affiliated "); }
-    passes_.recordTiles(commands_, scene_, buffers_, target, {stereo_buffers_.tilesBefore(), stereo_buffers_.tileList()}, "affiliated ");
+    if (!haveSameDepths(eyes[0], eyes[1])) { passes_.recordOrder(commands_, *scene_, buffers_, target.eye, 0, "affiliated "); }
+    passes_.recordTiles(commands_, *scene_, buffers_, target, {stereo_buffers_.tilesBefore(), stereo_buffers_.tileList()}, "affiliated ");
 }
 
 void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& settings) {
@@ -203,7 +209,7 @@ bool StereoFrame::growIfNeeded() {
         const double roomy = std::min(std::ceil(needed * slack / 1024.0) * 1024.0, 4294966272.0);
         return std::max(needed, static_cast<std::uint32_t>(roomy));
     };
-    const std::uint32_t visible_room = std::min(enough(visible, buffers_.visible.capacity()), std::max(scene_.splatCount(), 1u));
+    const std::uint32_t visible_room = std::min(enough(visible, buffers_.visible.capacity()), std::max(scene_->splatCount(), 1u));
     growFrameBuffers(context_, buffers_, {visible_room, enough(pairs, buffers_.pairs.capacity())});
     return false;
 }
@@ -214,8 +220,8 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
     result.gpu_total_ms = commands_.totalMs();
     result.peak_gpu_bytes = context_.memoryUse().peak_bytes;
     auto& counters = result.counters;
-    counters["splats_read"] = scene_.splatCount();
-    counters["scene_bytes"] = scene_.bytes();
+    counters["splats_read"] = scene_->splatCount();
+    counters["scene_bytes"] = scene_->bytes();
     counters["visible_bytes"] = buffers_.visible.bytes();
     counters["pair_bytes"] = buffers_.pairs.bytes();
     counters["scratch_bytes"] = buffers_.scratch.bytes();
@@ -256,7 +262,7 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     const bool moments =
         settings.keep_moments || settings.mode == Mode::kPredicted || (reprojected && settings.stereo.depth_choice == gpu::kDepthInverse);
     const gpu::StereoCounters& stereo = state_.stereo_counters;
-    leaveOut(scene_.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_.shDegree()));
+    leaveOut(scene_->shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_->shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");

@@ -54,6 +54,9 @@ class StereoFrame {
 public:
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
 
+    // From now on frames are of `scene`, on the same device. Kernels stay compiled.
+    void show(const GpuScene& scene);
+
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
     // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings);
@@ -86,7 +89,7 @@ private:
     [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);
 
     const Context& context_;
-    const GpuScene& scene_;
+    const GpuScene* scene_;
     Passes passes_;
     StereoPasses stereo_passes_;
     Commands commands_;
@@ -99,6 +102,7 @@ private:
     FrameState state_{};
     Mode mode_ = Mode::kMono;  // of the last frame
     int dominant_ = 0;
+    FrameCapacity first_capacity_;
     int regrowths_ = 0;
 };
 

@@ -41,6 +41,7 @@ TEST_CASE("usageErrorsExitWithTwo") {
     checkRefused(work.run("render builtin:one-splat --out out --headset quest2 --fov-x 60"), 2, "--headset and --fov-x");
     checkRefused(work.run("render builtin:one-splat --out out --cameras c.json --eye 0,0,0"), 2, "--cameras and --eye");
     checkRefused(work.run("bench --out out"), 2, "SCENE");
+    checkRefused(work.run("stability"), 2, "--out");
     checkRefused(work.run("bench builtin:one-splat --out out --photos p"), 2, "--cameras");
     checkRefused(work.run("bench builtin:one-splat --out out --every 2"), 2, "--motion or --photos");
     checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --cameras c.json --photos p"), 2, "--motion and --photos");
@@ -109,6 +110,7 @@ TEST_CASE("withoutADeviceTheExitCodeIsThree") {
     const Outcome outcome = work.run("render builtin:one-splat --out out/below", kNoDriver);
     checkRefused(outcome, 3, "install");
     checkRefused(work.run("render builtin:one-splat --out out --device nobody-has-this"), 3, "nobody-has-this");
+    checkRefused(work.run("stability --out out --device nobody-has-this"), 3, "nobody-has-this");
     CHECK(work.isEmpty());
 }
 

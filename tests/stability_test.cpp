@@ -38,10 +38,11 @@ Stage keepFirst(Stage stage, std::size_t count) {
 
 TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds beside the twin, in every mode") {
     std::set<std::string> names;
+    CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
         CHECK(names.insert(one.name()).second);
         if (one.large) { continue; }
-        const CaseScore score = runCase(context(), one);
+        const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);
         for (const PictureScore& picture : score.pictures) {
             INFO(one.name() << ", " << nameOf(picture.mode) << ", " << picture.eye << ": " << picture.psnr_db << " dB, off "
@@ -54,8 +55,9 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes sees no more change at a time than the twin's") {
+    CaseRunner runner(context());
     for (const Path& path : makePaths()) {
-        const PathScore score = runPath(context(), path);
+        const PathScore score = runner.run(path);
         INFO(path.name << ": " << score.device << ", the twin's " << score.twin << ", worst frame " << score.psnr_db << " dB");
         CHECK(score.not_finite == 0);
         CHECK(score.passes);
@@ -84,12 +86,13 @@ TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one") {
 }
 
 TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
+    CaseRunner runner(context());
     Case one = makeCatalogue().front();
     one.moved = {0.0, 1.0, HUGE_VAL, 1.0};
     for (const Bound& bound : {Bound{200.0, 1.0}, Bound{0.0, 1.0, 0.0}}) {
         one.rendered = bound;
-        CHECK_FALSE(runCase(context(), one).passes());
+        CHECK_FALSE(runner.run(one).passes());
     }
     one.rendered = {0.0, 1.0};
-    CHECK(runCase(context(), one).passes());
+    CHECK(runner.run(one).passes());
 }

@@ -5,9 +5,8 @@
 #include <bit>
 
 namespace binosplat {
-Passes::Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell)
-    : sh_degree_(static_cast<std::uint32_t>(sh_degree)),
-      // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
+Passes::Passes(const Context& context, std::uint32_t threads_per_cell)
+    :  // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
       threads_per_cell_(threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u)),
       scan_(context),
       sort_(context),
@@ -73,7 +72,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     commands.beginPass(role + "4_project");
     const std::uint32_t masked = mask != nullptr ? 1 : 0;
     commands.dispatchIndirect(
-        kernels_.get("4_project", sizeof(gpu::ProjectPass), {sh_degree_, masked, target.shifted}),
+        kernels_.get("4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(scene.shDegree()), masked, target.shifted}),
         gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
                          buffers.visible.tileSets(), buffers.visible.tileCounts(), counters, tiles.tiles_before,
                          buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},

@@ -45,7 +45,7 @@ struct EyeTarget {
 class Passes {
 public:
     // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's subgroups.
-    Passes(const Context& context, int sh_degree, std::uint32_t threads_per_cell = 0);
+    explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
 
     // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
     // the depths of `order_eye`. `role` goes before the passes' names.
@@ -66,7 +66,7 @@ private:
                 const std::string& role);
     const Kernel& rasterizeKernel(Kept kept, bool masked);
 
-    std::uint32_t sh_degree_, threads_per_cell_;
+    std::uint32_t threads_per_cell_;
     Scan scan_;
     Sort sort_;
     KernelCache kernels_;

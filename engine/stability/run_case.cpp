@@ -159,20 +159,28 @@ const char* nameOf(Mode mode) {
     return kNames[static_cast<int>(mode)];
 }
 
-CaseScore runCase(const Context& context, const Case& one) {
+StereoFrame& CaseRunner::show(const Stage& stage) {
+    scene_.emplace(context_, stage.scene);
+    if (frame_) {
+        frame_->show(*scene_);
+    } else {
+        frame_.emplace(context_, *scene_);
+    }
+    return *frame_;
+}
+
+CaseScore CaseRunner::run(const Case& one) {
     const Stage stage = one.make();
-    const GpuScene scene(context, stage.scene);
-    StereoFrame frame(context, scene);
+    StereoFrame& frame = show(stage);
     TwinPictures twins(stage);
     CaseScore result;
     for (const Mode mode : kModes) { runMode(result, frame, stage, one, mode, twins); }
     return result;
 }
 
-PathScore runPath(const Context& context, const Path& path) {
+PathScore CaseRunner::run(const Path& path) {
     const Stage stage = path.make();
-    const GpuScene scene(context, stage.scene);
-    StereoFrame frame(context, scene);
+    StereoFrame& frame = show(stage);
     reference::Settings twin_settings;
     twin_settings.near = stage.near;
     PathScore score{.psnr_db = HUGE_VAL};

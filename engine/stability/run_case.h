@@ -4,7 +4,7 @@
 #include "engine/frame.h"
 #include "engine/stability/catalogue.h"
 
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +35,6 @@ struct CaseScore {
 inline constexpr Mode kModes[] = {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
 const char* nameOf(Mode mode);
 
-CaseScore runCase(const Context& context, const Case& one);
-
 // The greatest change of any value from one frame to the next, on the device and in the twin, along a path.
 struct PathScore {
     double device = 0.0, twin = 0.0;
@@ -45,6 +43,19 @@ struct PathScore {
     bool passes = false;
 };
 
-PathScore runPath(const Context& context, const Path& path);
+// Runs cases one after the other, in frames that keep what is compiled.
+class CaseRunner {
+public:
+    explicit CaseRunner(const Context& context) : context_(context) {}
+    CaseScore run(const Case& one);
+    PathScore run(const Path& path);
+
+private:
+    StereoFrame& show(const Stage& stage);
+
+    const Context& context_;
+    std::optional<GpuScene> scene_;  // of the last stage
+    std::optional<StereoFrame> frame_;
+};
 
 }  // namespace binosplat::stability
