@@ -202,6 +202,8 @@ std::vector<Case> makeCatalogue() {
             "sizes from one pixel to more than a headset's, odd ones with tiles that are cut"));
         cases.back().large = size_px.x >= 4096;
     }
+    cases.push_back(
+        standAlone("equal depths", makeEqualDepths, "ties are broken by the order of the scene, so that nothing is left to rounding"));
     cases.push_back(standAlone("empty scene", makeEmpty, "nothing is seen but the background"));
     cases.push_back(standAlone("every tile covered", makeCovered, "a hundred discs meet every tile"));
     cases.push_back(

@@ -37,6 +37,18 @@ Stage makeDiscs(int count, unsigned seed, const std::function<void(Disc&, Random
     return stage.finish();
 }
 
+// Discs that face the eye and hide each other, deeper from one to the next by this share.
+void addHidingDiscs(StageBuilder& stage, double separation) {
+    Random random(10);
+    for (int i = 0; i < 60; ++i) {
+        const double depth = 2.0 * (1.0 + separation * i);
+        stage.add({.centre = depth * glm::dvec3(random.between(-0.4, 0.4), random.between(-0.3, 0.3), 1.0),
+                   .scale = glm::dvec2(0.3),
+                   .opacity = 0.9,
+                   .colour = random.colour()});
+    }
+}
+
 }  // namespace
 
 Stage makeEdgeOn(double angle_rad) {
@@ -127,14 +139,15 @@ Stage makeLayers(double count) {
 
 Stage makeSeparation(double separation) {
     StageBuilder stage;
-    Random random(10);
-    for (int i = 0; i < 60; ++i) {
-        const double depth = 2.0 * (1.0 + separation * i);
-        stage.add({.centre = depth * glm::dvec3(random.between(-0.4, 0.4), random.between(-0.3, 0.3), 1.0),
-                   .scale = glm::dvec2(0.3),
-                   .opacity = 0.9,
-                   .colour = random.colour()});
-    }
+    addHidingDiscs(stage, separation);
+    return stage.finish();
+}
+
+Stage makeEqualDepths() {
+    StageBuilder stage;
+    stage.middle.world_from_camera = {};
+    stage.setEyeDistance(0.063);
+    addHidingDiscs(stage, 0.0);
     return stage.finish();
 }
 

@@ -15,6 +15,7 @@ Stage makeDepthRatio(double ratio);     // discs of one apparent size at depths 
 Stage makeOpacity(double opacity);
 Stage makeLayers(double count);            // discs of opacity 0.01 over the whole view
 Stage makeSeparation(double separation);   // overlapping discs whose depths differ by this share
+Stage makeEqualDepths();                   // exactly, before an eye along the world axes
 Stage makeBrokenAttributes(double value);  // a scene with a splat for each attribute that has this value
 Stage makeQuaternions(double length);      // rotations of this length
 Stage makeHarmonics(double amplitude);     // SH of degree 3
