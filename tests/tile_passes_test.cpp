@@ -180,7 +180,7 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize blends the twin's splats, pairs and ranges t
         std::vector<std::uint32_t> pair_ranks;
         for (const TilePair& pair : twin.sorted_pairs) { pair_ranks.push_back(pair.splat); }
         const std::size_t pixels = std::size_t{view.eye.size_px.x} * view.eye.size_px.y;
-        const gpu::EyeView eye_view = test::viewOf(view.eye, glm::dvec3(0.0), settings.near);
+        const gpu::EyeView eye_view = test::viewOf(view.eye, settings.near);
         const Buffer eyes = upload("eyes", std::vector{eye_view}), splats = upload("splats", device_splats);
         const Buffer ranks = upload("ranks", pair_ranks), ranges = upload("ranges", twin.ranges);
         const Buffer colours = allocate<glm::vec4>("colours", pixels), depths = allocate<float>("depths", pixels),
