@@ -136,7 +136,7 @@ std::array<float, 3> unpackVector(std::uint32_t word) { return {unpack(word, 21,
 using Words = std::array<std::uint32_t, kWordNames.size()>;
 
 void unpackSplat(const Words& words, const Bounds& bounds, StoredBlock& block, std::size_t row) {
-    const auto put = [&](int attribute, float value) { block.column(attribute)[row] = value; };
+    const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     const auto between = [&](std::size_t low, std::size_t axis, float share) {
         return bounds[low + axis] * (1.0f - share) + bounds[low + 3 + axis] * share;
     };
@@ -193,9 +193,7 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
             unpackSplat(all_words[first + row], bounds[chunk], block, row);
             if (layout.sh_degree == 0) { continue; }
             const std::span<const std::byte> rest = readRow(file, layout.rest, "sh", first + row);
-            for (std::size_t i = 0; i < layout.rest.offsets.size(); ++i) {
-                block.column(kStoredRest0 + static_cast<int>(i))[row] = unpackRest(rest[layout.rest.offsets[i]]);
-            }
+            for (std::size_t i = 0; i < layout.rest.offsets.size(); ++i) { block.rest(row)[i] = unpackRest(rest[layout.rest.offsets[i]]); }
         }
         builder.append(block);
     }

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace binosplat {
 
@@ -89,6 +90,12 @@ std::span<const std::byte> InputFile::readBlock(std::size_t count) {
     begin_ += block.size();
     position_bytes_ += block.size();
     return std::as_bytes(block);
+}
+
+std::size_t InputFile::readAt(std::uint64_t offset, std::span<std::byte> target) const {
+    const ssize_t got = ::pread(::fileno(file_.get()), target.data(), target.size(), static_cast<off_t>(offset));
+    check(got >= 0, "{}: reading failed at byte {}: {}", name_, offset, std::strerror(errno));
+    return static_cast<std::size_t>(got);
 }
 
 void InputFile::skip(std::uint64_t count) {

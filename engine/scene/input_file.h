@@ -26,6 +26,9 @@ public:
     // is read to its end as it was.
     void requireUnchanged() const;
 
+    // Bytes from anywhere, without moving on; fewer at the end of the file.
+    [[nodiscard]] std::size_t readAt(std::uint64_t offset, std::span<std::byte> target) const;
+
     // The first bytes of the file, `count` at most, without moving on. Only before anything was read.
     [[nodiscard]] std::string_view peek(std::size_t count);
 

@@ -4,6 +4,7 @@
 #include "engine/error.h"
 #include "engine/scene/ply_header.h"
 #include "engine/scene/ply_rows.h"
+#include "engine/scene/read_ahead.h"
 #include "engine/scene/scene_builder.h"
 
 #include <algorithm>
@@ -86,14 +87,20 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     const std::unique_ptr<ply::RowReader> rows = ply::openRows(file, header, vertex, layout.columns);
 
     SceneBuilder builder(file.name(), vertex.count, layout.sh_degree, layout.three_scales);
-    StoredBlock block;
     constexpr std::uint64_t kBlocksPerReport = 128;
-    for (std::uint64_t done = 0, blocks = 0; done < vertex.count; ++blocks) {
-        if (progress && blocks % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
-        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, vertex.count - done));
-        rows->read(block);
-        builder.append(block);
-        done += block.rows;
+    if (progress) { progress(0.0); }
+    StoredBlock some;
+    rows->sample(some);
+    builder.expect(some);
+    ReadAhead blocks(vertex.count, [&](ReadAhead::Block& block) {
+        rows->read(block.stored);
+        builder.activate(block.stored, block.active);
+    });
+    std::uint64_t done = 0, count = 0;
+    while (const ReadAhead::Block* block = blocks.next()) {
+        builder.append(block->stored, block->active);
+        done += block->stored.rows;
+        if (progress && ++count % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
     }
     if (progress) { progress(1.0); }
     return builder.finish(notes);

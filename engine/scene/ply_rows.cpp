@@ -23,13 +23,13 @@ T loadValue(const std::byte* source) {
     return std::bit_cast<T>(bytes);
 }
 
-// One column of a block: rows are `stride` bytes apart.
+// One property of a block: rows are `stride` bytes apart, and `step` values in the block.
 template <typename T, bool kSwap>
-void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target) {
-    for (std::size_t row = 0; row < rows; ++row) { target[row] = static_cast<float>(loadValue<T, kSwap>(source + row * stride)); }
+void convertColumn(const std::byte* source, std::size_t stride, std::size_t rows, float* target, std::size_t step) {
+    for (std::size_t row = 0; row < rows; ++row) { target[row * step] = static_cast<float>(loadValue<T, kSwap>(source + row * stride)); }
 }
 
-using ConvertColumn = void (*)(const std::byte*, std::size_t, std::size_t, float*);
+using ConvertColumn = void (*)(const std::byte*, std::size_t, std::size_t, float*, std::size_t);
 
 template <bool kSwap>
 ConvertColumn selectConversion(Type type) {
@@ -66,7 +66,17 @@ public:
             const Type type = element.properties[column.property].type;
             columns_.push_back({offsets[column.property],
                                 needsSwap(encoding) ? selectConversion<true>(type) : selectConversion<false>(type), column.attribute});
+            if (column.attribute < kStoredRest0) { continue; }
+            const auto i = static_cast<std::size_t>(column.attribute - kStoredRest0);
+            const bool in_place = type == Type::kFloat32 && !needsSwap(encoding) && i == rest_count_ &&
+                                  (i == 0 || offsets[column.property] == rest_offset_ + 4 * i);
+            if (i == 0) { rest_offset_ = offsets[column.property]; }
+            rest_count_ += in_place;
         }
+        // Values that lie in the file as in a block are copied together.
+        std::erase_if(columns_, [&](const Source& source) {
+            return source.attribute >= kStoredRest0 && static_cast<std::size_t>(source.attribute - kStoredRest0) < rest_count_;
+        });
     }
 
     void read(StoredBlock& block) override {
@@ -76,15 +86,38 @@ public:
             const std::size_t rows = std::min(rows_at_once, block.rows - done);
             const std::span<const std::byte> bytes = file_.readBlock(rows * stride_);
             check(bytes.size() == rows * stride_, "{}: data: ends in splat {} of {}", file_.name(), done_ + bytes.size() / stride_, total_);
-            for (const Source& source : columns_) {
-                source.convert(bytes.data() + source.offset, stride_, rows, block.column(source.attribute) + done);
-            }
+            convert(bytes.data(), rows, block, done);
             done += rows;
             done_ += rows;
         }
     }
 
+    void sample(StoredBlock& block) const override {
+        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, total_));
+        std::vector<std::byte> row(stride_);
+        for (std::size_t i = 0; i < block.rows; ++i) {
+            const std::uint64_t offset = file_.positionBytes() + total_ * i / block.rows * stride_;
+            if (file_.readAt(offset, row) < row.size()) {  // it was cut off meanwhile, as reading it will say
+                block.rows = i;
+                return;
+            }
+            convert(row.data(), 1, block, i);
+        }
+    }
+
 private:
+    // From `source` on to the rows of `block` from `first` on.
+    void convert(const std::byte* source, std::size_t rows, StoredBlock& block, std::size_t first) const {
+        for (const Source& one : columns_) {
+            const bool is_rest = one.attribute >= kStoredRest0;
+            float* target = is_rest ? block.rest(first) + (one.attribute - kStoredRest0) : block.column(one.attribute) + first;
+            one.convert(source + one.offset, stride_, rows, target, is_rest ? StoredBlock::kRestStride : 1);
+        }
+        for (std::size_t row = 0; rest_count_ > 0 && row < rows; ++row) {
+            std::memcpy(block.rest(first + row), source + row * stride_ + rest_offset_, rest_count_ * sizeof(float));
+        }
+    }
+
     static constexpr std::size_t kReadBytes = std::size_t{1} << 19;
     struct Source {
         std::size_t offset;
@@ -94,6 +127,7 @@ private:
     InputFile& file_;
     std::uint64_t total_, done_ = 0;
     std::size_t stride_;
+    std::size_t rest_offset_ = 0, rest_count_ = 0;  // the first f_rest values, where they lie together as float32
     std::vector<Source> columns_;
 };
 
@@ -141,7 +175,7 @@ public:
                 const std::string_view rest = text;
                 check(takeNumber(text, value), "{}: splat {} of {}: property {} is '{}', expected a number", file_.name(), done_,
                       element_.count, element_.properties[i].name, firstWord(rest));
-                if (attribute_of_[i] >= 0) { block.column(attribute_of_[i])[row] = value; }
+                if (attribute_of_[i] >= 0) { block.put(attribute_of_[i], row, value); }
             }
             check(text.find_first_not_of(" \t") == std::string_view::npos,
                   "{}: splat {} of {}: more than the expected {} values in its line", file_.name(), done_, element_.count,

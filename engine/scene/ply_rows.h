@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/scene/ply_header.h"
-#include "engine/scene/scene_builder.h"
+#include "engine/scene/stored_block.h"
 
 #include <cstdint>
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace binosplat::ply {
 
-// Where a property goes: column `attribute` of a StoredBlock.
+// Where a property goes: `attribute` of a StoredBlock.
 struct Column {
     std::size_t property;
     int attribute;
@@ -21,6 +21,8 @@ public:
     virtual ~RowReader() = default;
     // Fills `block` with its next rows (block.rows of them). Throws Error with the splat's number if the file ends or a value is no number.
     virtual void read(StoredBlock& block) = 0;
+    // Fills `block` with rows from all over the element, before the first is read; none where they cannot be found without reading all.
+    virtual void sample(StoredBlock& block) const { block.rows = 0; }
 };
 
 // Moves `file` past an element that is of no interest.

@@ -1,4 +1,4 @@
-// Activations of DESIGN's "what a pixel is", block by block.
+// Blocks put together, and what is said about them.
 #include "engine/scene/scene_builder.h"
 
 #include "engine/error.h"
@@ -12,55 +12,6 @@
 namespace binosplat {
 
 namespace {
-
-// Which rows hold only finite numbers: v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN.
-std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, int sh_degree, bool three_scales) {
-    std::array<float, StoredBlock::kRows> zeros{};
-    const int rest_count = 3 * (shCoefficientCount(sh_degree) - 1);
-    for (int attribute = 0; attribute < kStoredRest0 + rest_count; ++attribute) {
-        if (attribute == kStoredScale2 && !three_scales) { continue; }
-        const float* column = block.column(attribute);
-        for (std::size_t row = 0; row < block.rows; ++row) { zeros[row] += column[row] * 0.0f; }
-    }
-    std::array<bool, StoredBlock::kRows> finite{};
-    for (std::size_t row = 0; row < block.rows; ++row) { finite[row] = zeros[row] == 0.0f; }
-    return finite;
-}
-
-// The unit quaternion along (w, x, y, z), in float64 so that neither tiny nor huge lengths are lost; false for length zero.
-bool normaliseRotation(double w, double x, double y, double z, glm::dquat& unit) {
-    const double length = std::sqrt(w * w + x * x + y * y + z * z);
-    if (!(length > 0.0)) { return false; }
-    unit.w = w / length;
-    unit.x = x / length;
-    unit.y = y / length;
-    unit.z = z / length;
-    return true;
-}
-
-struct Flattened {
-    glm::dquat rotation;
-    float log_scale_u, log_scale_v;
-    float flatness;
-};
-
-// Drops the shortest of three axes. The two others follow it in cyclic order, so (t_u, t_v, t_w) is a cyclic permutation of
-// the columns of the rotation: right-handed, with t_w along the dropped axis. Such a permutation is a turn by 120 degrees about
-// (1, 1, 1), hence the product with (1/2, +-1/2, +-1/2, +-1/2).
-Flattened dropShortestAxis(const glm::dquat& rotation, const std::array<float, 3>& log_scales) {
-    std::size_t shortest = 2;  // ties keep the order of the file
-    for (const std::size_t axis : {std::size_t{1}, std::size_t{0}}) {
-        if (log_scales[axis] < log_scales[shortest]) { shortest = axis; }
-    }
-    const float u = log_scales[(shortest + 1) % 3], v = log_scales[(shortest + 2) % 3];
-    glm::dquat turn = glm::identity<glm::dquat>();
-    if (shortest != 2) {
-        const double sign = shortest == 0 ? 1.0 : -1.0;
-        turn.w = 0.5;
-        turn.x = turn.y = turn.z = sign * 0.5;
-    }
-    return {rotation * turn, u, v, std::exp(log_scales[shortest] - std::min(u, v))};
-}
 
 // Room for `count` entries, in large pages where the system has them: small ones take a third of the time of loading.
 template <typename T>
@@ -96,70 +47,58 @@ SceneBuilder::SceneBuilder(std::string name, std::uint64_t splats, int sh_degree
     }
 }
 
-void SceneBuilder::append(const StoredBlock& block) {
-    std::array<bool, StoredBlock::kRows> kept = findFiniteRows(block, notes_.sh_degree_in_file, notes_.three_scales);
-    const std::size_t first_new = scene_.size();
-    for (std::size_t row = 0; row < block.rows; ++row) {
-        const auto value = [&](int attribute) { return block.column(attribute)[row]; };
-        glm::vec2 scale(0.0f);
-        if (kept[row]) { scale = {std::exp(value(kStoredScale0)), std::exp(value(kStoredScale1))}; }
-        glm::dquat rotation = glm::identity<glm::dquat>();
-        const bool turned =
-            kept[row] && normaliseRotation(value(kStoredRot0), value(kStoredRot1), value(kStoredRot2), value(kStoredRot3), rotation);
-        float flatness = 0.0f;
-        if (turned && notes_.three_scales) {
-            const Flattened flat = dropShortestAxis(rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
-            rotation = flat.rotation;
-            scale = {std::exp(flat.log_scale_u), std::exp(flat.log_scale_v)};
-            flatness = flat.flatness;
-        }
-        if (!kept[row] || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 is an infinite float32 scale
-            kept[row] = false;
-            ++notes_.skipped_not_finite;
-            continue;
-        }
-        if (!turned) {
-            kept[row] = false;
-            ++notes_.skipped_zero_rotation;
-            continue;
-        }
-        scene_.positions.emplace_back(value(kStoredX), value(kStoredY), value(kStoredZ));
-        scene_.rotations.emplace_back(rotation);
-        scene_.scales.push_back(scale);
-        scene_.opacities.push_back(1.0f / (1.0f + std::exp(-value(kStoredOpacity))));
-        if (notes_.three_scales) { flatness_.push_back(flatness); }
-    }
-    appendSh(block, kept, first_new);
+void SceneBuilder::expect(const StoredBlock& some) {
+    activate(some, active_);
+    if (active_.sh_degree > scene_.sh_degree) { growShTo(active_.sh_degree); }
 }
 
-void SceneBuilder::appendSh(const StoredBlock& block, const std::array<bool, StoredBlock::kRows>& kept, std::size_t first_new) {
-    // The highest band any kept splat uses decides how wide the rows are from here on.
-    const int file_coefficients = shCoefficientCount(notes_.sh_degree_in_file);
-    int used_degree = scene_.sh_degree;
-    for (int k = shCoefficientCount(used_degree); k < file_coefficients; ++k) {
-        bool any = false;
-        for (int channel = 0; channel < 3; ++channel) {
-            const float* column = block.column(kStoredRest0 + channel * (file_coefficients - 1) + k - 1);
-            for (std::size_t row = 0; row < block.rows; ++row) { any |= kept[row] && column[row] != 0.0f; }
-        }
-        while (any && shCoefficientCount(used_degree) <= k) { ++used_degree; }
-    }
-    if (used_degree > scene_.sh_degree) { growShTo(used_degree); }
+void SceneBuilder::append(const StoredBlock& block) {
+    activate(block, active_);
+    append(block, active_);
+}
 
-    const int coefficients = shCoefficientCount(scene_.sh_degree);
-    std::array<const float*, 48> sources{};  // in the scene's order: coefficient by coefficient, channels together
-    for (int k = 0; k < coefficients; ++k) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const int attribute = k == 0 ? kStoredDc0 + channel : kStoredRest0 + channel * (file_coefficients - 1) + k - 1;
-            sources[static_cast<std::size_t>(3 * k + channel)] = block.column(attribute);
-        }
+void SceneBuilder::activate(const StoredBlock& block, ActiveBlock& active) const {
+    binosplat::activate(block, notes_.sh_degree_in_file, notes_.three_scales, active);
+}
+
+void SceneBuilder::append(const StoredBlock& block, const ActiveBlock& active) {
+    const auto appendTo = [&](auto& values, const auto& kept) { values.insert(values.end(), kept.data(), kept.data() + active.count); };
+    appendTo(scene_.positions, active.positions);
+    appendTo(scene_.rotations, active.rotations);
+    appendTo(scene_.scales, active.scales);
+    appendTo(scene_.opacities, active.opacities);
+    if (notes_.three_scales) { appendTo(flatness_, active.flatness); }
+    notes_.skipped_not_finite += active.skipped_not_finite;
+    notes_.skipped_zero_rotation += active.skipped_zero_rotation;
+    appendSh(block, active);
+}
+
+namespace {
+
+// A splat's coefficients in the scene's order: coefficient by coefficient, channels together. The file has `in_file` a channel.
+template <int kCoefficients>
+void gatherSh(const StoredBlock& block, std::size_t row, int in_file, float* target) {
+    const float* rest = block.rest(row);
+    for (int channel = 0; channel < 3; ++channel) {
+        target[channel] = block.column(kStoredDc0 + channel)[row];
+        for (int k = 1; k < kCoefficients; ++k) { target[3 * k + channel] = rest[channel * (in_file - 1) + k - 1]; }
     }
-    const auto width = static_cast<std::size_t>(3 * coefficients);
-    scene_.sh.resize(scene_.size() * width);
-    float* target = scene_.sh.data() + first_new * width;
-    for (std::size_t row = 0; row < block.rows; ++row) {
-        if (!kept[row]) { continue; }
-        for (std::size_t i = 0; i < width; ++i) { *target++ = sources[i][row]; }
+}
+
+}  // namespace
+
+void SceneBuilder::appendSh(const StoredBlock& block, const ActiveBlock& active) {
+    // The highest band any kept splat uses decides how wide the rows are from here on.
+    if (active.sh_degree > scene_.sh_degree) { growShTo(active.sh_degree); }
+    constexpr std::array gathers{gatherSh<1>, gatherSh<4>, gatherSh<9>, gatherSh<16>};
+    const auto gather = gathers[static_cast<std::size_t>(scene_.sh_degree)];
+    const int in_file = shCoefficientCount(notes_.sh_degree_in_file);
+    const auto width = static_cast<std::size_t>(3 * shCoefficientCount(scene_.sh_degree));
+    // Row by row through a small array: growing the vector first would write everything twice.
+    std::array<float, 48> splat{};
+    for (std::size_t i = 0; i < active.count; ++i) {
+        gather(block, active.source[i], in_file, splat.data());
+        scene_.sh.insert(scene_.sh.end(), splat.data(), splat.data() + width);
     }
 }
 

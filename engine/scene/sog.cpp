@@ -102,7 +102,7 @@ Pictures decodePictures(SogFiles& files, SogMeta& meta) {
 float expandPosition(float value) { return std::copysign(std::expm1(std::abs(value)), value); }
 
 void unpackSplat(const SogMeta& meta, const Pictures& pictures, std::size_t splat, StoredBlock& block, std::size_t row) {
-    const auto put = [&](int attribute, float value) { block.column(attribute)[row] = value; };
+    const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     const std::size_t pixel = 4 * splat;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int offset = static_cast<int>(axis);

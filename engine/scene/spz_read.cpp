@@ -148,7 +148,7 @@ std::array<float, 4> loadRotation3(const std::byte* at) {
 }
 
 void unpackSplat(const Header& header, const Attributes& attributes, std::size_t splat, StoredBlock& block, std::size_t row) {
-    const auto put = [&](int attribute, float value) { block.column(attribute)[row] = value; };
+    const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int offset = static_cast<int>(axis);
         const float position = loadFixed(attributes.positions + 9 * splat + 3 * axis, header.fractional_bits);

@@ -1,0 +1,55 @@
+// Two threads for one scene: one reads blocks and activates them, the other one puts them together.
+#pragma once
+
+#include "engine/scene/stored_block.h"
+
+#include <array>
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <semaphore>
+#include <thread>
+#include <vector>
+
+namespace binosplat {
+
+// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of whoever takes them. A scene of few rows is filled
+// where it is taken: a thread would take longer to start.
+class ReadAhead {
+public:
+    struct Block {
+        StoredBlock stored;
+        ActiveBlock active;
+    };
+    // `fill(block)` fills stored.rows rows and activates them. What it throws, next() throws where that block would have come.
+    ReadAhead(std::uint64_t rows, std::function<void(Block&)> fill);
+    ReadAhead(const ReadAhead&) = delete;
+    ReadAhead& operator=(const ReadAhead&) = delete;
+    ~ReadAhead();  // also before the last block
+
+    // Valid until the next call; null behind the last block.
+    [[nodiscard]] const Block* next();
+
+private:
+    // Handed over together: waking a thread costs as much as a few blocks.
+    struct Batch {
+        std::array<Block, 8> blocks;
+        std::size_t count = 0;
+        std::exception_ptr failure;  // behind the `count` blocks
+    };
+    static constexpr std::ptrdiff_t kBatches = 4;
+
+    void fillBatch(Batch& batch);
+    void run();
+
+    std::uint64_t rows_left_;
+    std::function<void(Block&)> fill_;
+    std::vector<Batch> batches_;
+    std::size_t batch_ = 0, taken_ = 0;  // the batch being taken, and how many of its blocks were
+    bool holds_batch_ = false;
+    std::counting_semaphore<kBatches + 1> free_{kBatches}, filled_{0};  // one more where it ends early
+    std::atomic<bool> stops_ = false;
+    std::thread thread_;
+};
+
+}  // namespace binosplat
