@@ -62,6 +62,7 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
       passes_(context, options.threads_per_cell),
       stereo_passes_(context),
       commands_(context),
+      shown_{ShownTiles(context), ShownTiles(context)},
       state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
       first_capacity_(options.first_capacity) {
     show(scene);
@@ -86,6 +87,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     do {
         recordFrame(eyes, settings);
         commands_.submitAndWait();
+        for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
         state_ = state_readback_.mapped<FrameState>()[0];
     } while (!growIfNeeded());
     return collect(eyes, settings);
@@ -93,7 +95,8 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 
 void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& settings) {
     const int first = dominant_, second = 1 - dominant_;
-    const StereoSettings stereo = stereoSettingsOf(settings);
+    StereoSettings stereo = stereoSettingsOf(settings);
+    stereo.hidden_tiles = shown_[second].hiddenCount();
     FrameState state{};
     for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], settings.near); }
     if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
@@ -102,6 +105,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
         EyeTarget target{
             eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
         target.kept.depth = images_[eye].depths.bytes() > 0;
+        target.shown = {shown_[eye].before(), shown_[eye].list()};
         return target;
     };
     const auto dominantOf = [&](int list) {
@@ -112,6 +116,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 
     commands_.begin();
     commands_.update(buffers_.state, &state, sizeof(state));
+    for (ShownTiles& shown : shown_) { shown.record(commands_); }
     switch (settings.mode) {
         case Mode::kMono:
             passes_.recordVisible(commands_, *scene_, buffers_, 0, 1, 0, 0, "");
@@ -150,10 +155,11 @@ void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettin
     const bool rectified = isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo));
     stereo_buffers_.borrow(buffers_.pairs.pairs().keys);
     stereo_passes_.record(commands_, *scene_, buffers_, stereo_buffers_, stereo, rectified, dominant_, images_[dominant_],
-                          images_[target.eye]);
+                          images_[target.eye], shown_);
     if (stereo.patching != Patching::kNone) { recordPatches(eyes, stereo, target); }
     // Last, since the classes of pixels take the pairs' place.
-    stereo_passes_.recordResample(commands_, buffers_, stereo_buffers_, rectified, images_[dominant_], images_[target.eye]);
+    stereo_passes_.recordResample(commands_, buffers_, stereo_buffers_, rectified, images_[dominant_], images_[target.eye],
+                                  target.background);
 }
 
 void StereoFrame::recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
@@ -176,9 +182,12 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         const std::uint64_t pixels = std::uint64_t{sizes_px_[e].x} * sizes_px_[e].y;
         const glm::uvec2 tiles = tilesOf(sizes_px_[e]);
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
+        const std::span<const std::uint8_t> hidden = used ? settings.hidden_tiles[e] : std::span<const std::uint8_t>{};
+        assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
+        shown_[e].set(hidden);
         const bool dominant = used && e == dominant_;
         resize(images_[e].colours, "colours", pixels * sizeof(gpu::vec4));
-        const bool keeps_depth = dominant ? settings.keep_depth || read_depth : settings.keep_both_depths && !reprojects(settings.mode);
+        const bool keeps_depth = dominant ? settings.keep_depth || read_depth : settings.keep_both_depths;
         resize(images_[e].depths, "depths", keeps_depth ? pixels * sizeof(float) : 0);
         if (dominant) { resize(moments_, "inverse depth moments", settings.keep_moments ? pixels * sizeof(gpu::StereoPixel) : 0); }
     }
@@ -233,6 +242,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
         counters["square_box_tile_pairs" + suffix] =
             (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
         counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
+        if (shown_[e].hideAny()) { counters["tiles_hidden" + suffix] = shown_[e].hiddenCount(); }
         counters["pixels" + suffix] = std::uint64_t{eyes[e].size_px.x} * eyes[e].size_px.y;
         counters["pixel_bytes" + suffix] = images_[e].colours.bytes() + images_[e].depths.bytes();
     }
@@ -268,6 +278,11 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && haveSameDepths(eyes[0], eyes.back()),
              "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const std::uint64_t tiles = std::uint64_t{tilesOf(eyes[e].size_px).x} * tilesOf(eyes[e].size_px).y;
+        leaveOut(shown_[e].hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown_[e].hiddenCount(),
+                                                  tiles, e == kLeft ? "left" : "right"));
+    }
     leaveOut(patched && state_.masked_tiles.count == 0, "patching: no tile needs to be rendered again");
     leaveOut(settings.mode == Mode::kPaper && !settings.stereo.center_rois, "centre ROIs: not asked for");
     leaveOut(settings.mode == Mode::kPaper && settings.stereo.center_rois && stereo.hole_pixels == 0,
@@ -289,7 +304,7 @@ std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first
 }
 
 Image StereoFrame::readPicture(int eye) { return {sizes_px_[eye], 4, readBuffer<float>(images_[eye].colours)}; }
-Image StereoFrame::readDominantDepth() { return {sizes_px_[dominant_], 1, readBuffer<float>(images_[dominant_].depths)}; }
+Image StereoFrame::readDepth(int eye) { return {sizes_px_[eye], 1, readBuffer<float>(images_[eye].depths)}; }
 
 Image StereoFrame::readInverseDepthMoments() {
     const std::vector<gpu::StereoPixel> pixels = readBuffer<gpu::StereoPixel>(moments_);

@@ -32,8 +32,11 @@ struct FrameSettings {
     glm::dvec3 background{0.0};
     StereoSettings stereo;          // how one eye is made from the other; `patching` follows from the mode
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
-    bool keep_both_depths = false;  // D of the affiliated eye, too, where the mode renders it in full
+    bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
+    // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
+    // pairs and take no part in the budget, which is a share of the others.
+    std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
 };
 
 struct FrameResult {
@@ -64,7 +67,9 @@ public:
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);
     // D = sum w z of the dominant eye, one channel.
-    [[nodiscard]] Image readDominantDepth();
+    [[nodiscard]] Image readDominantDepth() { return readDepth(dominant_); }
+    // The same of any eye, where it was kept.
+    [[nodiscard]] Image readDepth(int eye);
     // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; only of a mode that renders every eye in full.
     [[nodiscard]] Image readInverseDepthMoments();
     // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
@@ -95,6 +100,7 @@ private:
     Commands commands_;
     FrameBuffers buffers_;
     StereoBuffers stereo_buffers_;
+    std::array<ShownTiles, 2> shown_;
     std::array<EyeImage, 2> images_;
     Buffer moments_;  // StereoPixels of the dominant eye, where keep_moments asks for them
     std::array<glm::uvec2, 2> sizes_px_{};

@@ -10,6 +10,7 @@
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
 layout(constant_id = 1) const bool kReadDepth = false;  // the choice of depth wants D
+layout(constant_id = 2) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 
 struct Moved {
     vec2 place_px;
@@ -17,13 +18,25 @@ struct Moved {
     bool valid;
 };
 
+bool isHiddenAt(StereoView stereo, uvec2 pixel) {
+    const uint tile = (pixel.y / kTileSize) * stereo.size_tiles.x + pixel.x / kTileSize;
+    return pass.shown_before.at[tile + 1] == pass.shown_before.at[tile];
+}
+
+// Whether the pixel or one within kHiddenMargin of it lies in a hidden tile; tiles are larger than that.
+bool isNearHidden(StereoView stereo, uvec2 pixel) {
+    const uvec2 low = uvec2(max(ivec2(pixel) - int(kHiddenMargin), ivec2(0))), high = min(pixel + kHiddenMargin, stereo.size_px - 1);
+    return isHiddenAt(stereo, low) || isHiddenAt(stereo, high) || isHiddenAt(stereo, uvec2(low.x, high.y)) || isHiddenAt(stereo, uvec2(high.x, low.y));
+}
+
 // A dominant pixel as the affiliated eye sees it. Comparisons are written so that NaN goes nowhere.
 Moved moveDominant(StereoView stereo, uvec2 pixel) {
     const uint i = pixel.y * stereo.size_px.x + pixel.x;
     const float inverse_depth = chosenInverseDepth(stereo.depth_choice, pass.colours.at[i].w, kReadDepth ? pass.depths.at[i] : 1.0,
                                                    pass.pixels.at[i].inverse_depth_sum);
     const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
-    return Moved(moved.xy, inverse_depth / moved.z, moved.z > 0 && inverse_depth >= 0 && inverse_depth < 1e30);
+    const bool seen = !kHiddenTiles || !isNearHidden(stereo, pixel);
+    return Moved(moved.xy, inverse_depth / moved.z, seen && moved.z > 0 && inverse_depth >= 0 && inverse_depth < 1e30);
 }
 
 void put(StereoView stereo, ivec2 at, float inverse_depth, bool covered) {

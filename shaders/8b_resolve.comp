@@ -11,6 +11,7 @@
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ResolvePass pass; };
 layout(constant_id = 1) const bool kPredictErrors = false;
+layout(constant_id = 2) const bool kHiddenTiles = false;
 
 const uint kTilesPerStep = kGroupSize / kTileSize;
 shared uint step_errors[kTilesPerStep];
@@ -113,8 +114,9 @@ void main() {
             }
             pass.pixels.at[row + x].resolved_inverse_depth = inverse_depth;
             if (nearest == 0) { pass.pixels.at[row + x].nearest = packUncovered(anchor, pixel_class); }
-            atomicAdd(row_counts[pixel_class], 1);
-            if (kPredictErrors) {
+            const bool shown = !kHiddenTiles || pass.tile_kinds.at[(y / kTileSize) * stereo.size_tiles.x + x / kTileSize] != kTileHidden;
+            if (shown) { atomicAdd(row_counts[pixel_class], 1); }
+            if (kPredictErrors && shown) {
                 // Mixed pixels are many and alike: every other row stands for two.
                 const float error = pixel_class == kHole ? holeError(stereo, vec2(anchor, y) + 0.5, inverse_depth, int(anchor) - int(x))
                                     : (y & 1) == 0       ? 2 * mixedDepthError(stereo, vec2(x, y) + 0.5, inverse_depth)

@@ -94,6 +94,7 @@ void main() {
         const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
         const bool beyond = (high_borders.x > 0 && at.x >= high_tiles.x) || (high_borders.y > 0 && at.y >= high_tiles.y);
         const bool edge = any(lessThan(at, low_tiles)) || beyond;
+        if (pass.tile_kinds.at[tile] == kTileHidden) { continue; }
         pass.tile_kinds.at[tile] = edge ? kTileEdge : 0;
         edge_tiles += edge ? 1 : 0;
     }

@@ -10,15 +10,26 @@
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 1) const bool kPredicted = false;  // otherwise tile_kinds says which
+layout(constant_id = 2) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 
 shared uint digit_counts[256];
 shared uint chosen_digit, left_to_choose;
 
 // Where sums stop growing (8f), the order of threads decides by how much they went beyond.
-uint errorOf(uint tile) { return pass.tile_kinds.at[tile] == kTileEdge ? 0 : min(pass.tile_errors.at[tile], 0x7fffffffu); }
+uint errorOf(uint tile) {
+    const uint kind = pass.tile_kinds.at[tile];
+    return kind == kTileEdge || kind == kTileHidden ? 0 : min(pass.tile_errors.at[tile], 0x7fffffffu);
+}
+
+bool isHiddenAt(StereoView stereo, vec2 place_px) {
+    const uvec2 at = uvec2(clamp(place_px, vec2(0), vec2(stereo.size_px) - 1)) / kTileSize;
+    const uint tile = at.y * stereo.size_tiles.x + at.x;
+    return pass.shown_before.at[tile + 1] == pass.shown_before.at[tile];
+}
 
 // Whether a corner of the tile lies outside the dominant picture by more than a gap even if all is infinitely far: so much of a
-// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill, and it would eat up the budget.
+// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill, and it would eat up the budget. Likewise
+// where the dominant eye's lens hides what it would need, which the paper's borders do not know of.
 bool isUnseen(StereoView stereo, uint tile) {
     const uvec2 first = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x) * kTileSize;
     const uvec2 last = min(first + kTileSize, stereo.size_px) - 1;
@@ -27,7 +38,8 @@ bool isUnseen(StereoView stereo, uint tile) {
     for (uint corner = 0; corner < 4; ++corner) {
         const vec2 at = vec2((corner & 1) == 0 ? first.x : last.x, corner < 2 ? first.y : last.y) + 0.5;
         const vec3 moved = movePixel(stereo.dominant_from_affiliated, at, 0);
-        unseen = unseen || !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
+        const bool beyond = !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
+        unseen = unseen || (kPredicted ? beyond : false) || (kHiddenTiles && !beyond && isHiddenAt(stereo, moved.xy));
     }
     return unseen;
 }
@@ -68,9 +80,13 @@ void main() {
     const StereoView stereo = pass.stereo.at[0];
     const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
     const uint wanted = min(stereo.budget_tiles, tiles);
-    if (kPredicted) {
+    if (kPredicted || kHiddenTiles) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kGroupSize) {
-            pass.tile_kinds.at[tile] = isUnseen(stereo, tile) ? kTileEdge : 0;
+            const uint kind = pass.tile_kinds.at[tile];
+            if (kind == kTileHidden || (!kPredicted && kind != 0)) { continue; }
+            const bool unseen = isUnseen(stereo, tile);
+            pass.tile_kinds.at[tile] = unseen ? kTileEdge : 0;
+            if (unseen && !kPredicted) { atomicAdd(pass.counters.at[0].edge_tiles, 1); }
         }
         memoryBarrierBuffer();
         barrier();
@@ -97,7 +113,8 @@ void main() {
             unseen += unseen_here;
             selected = selected || edge;
         } else {
-            selected = tile < tiles && pass.tile_kinds.at[tile] != 0;
+            const uint kind = tile < tiles ? pass.tile_kinds.at[tile] : 0;
+            selected = kind != 0 && kind != kTileHidden;
         }
         uint listed_here;
         const uint place = listed + scanGroup(selected ? 1 : 0, listed_here);

@@ -1,5 +1,6 @@
 // 9: the colour of each pixel of the affiliated eye that no tile will render again, sampled backwards: the pixel knows its place in
-// the dominant picture to a fraction of a pixel, and a cubic kernel (Catmull and Rom 1974) reads it there.
+// the dominant picture to a fraction of a pixel, and a cubic kernel (Catmull and Rom 1974) reads it there. Tiles that no lens shows
+// become background.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -7,6 +8,8 @@
 
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(push_constant, scalar) uniform Push { ResamplePass pass; };
+
+layout(constant_id = 1) const bool kDepth = false;
 
 shared uint row_classes[16];
 
@@ -45,15 +48,22 @@ void main() {
     const bool inside = all(lessThan(at, stereo.size_px));
     if (gl_LocalInvocationIndex < 16) { row_classes[gl_LocalInvocationIndex] = 0; }
     barrier();
+    const uint i = at.y * stereo.size_px.x + at.x;
+    const uint kind = pass.tile_kinds.at[gl_WorkGroupID.y * stereo.size_tiles.x + gl_WorkGroupID.x];
     // Tiles that were rendered again hold colours already.
-    if (inside && pass.tile_kinds.at[gl_WorkGroupID.y * stereo.size_tiles.x + gl_WorkGroupID.x] == 0) {
-        const uint i = at.y * stereo.size_px.x + at.x;
+    if (inside && kind == 0) {
         const uint nearest = pass.pixels.at[i].nearest;
         atomicOr(row_classes[gl_LocalInvocationID.y], pixelClass(nearest) << (2 * gl_LocalInvocationID.x));
         const float column = float(isUncovered(nearest) ? anchorColumn(nearest) : at.x);
         const vec2 pixel_px = vec2(column, float(at.y)) + 0.5;
-        const vec2 source_px = movePixel(stereo.dominant_from_affiliated, pixel_px, pass.pixels.at[i].resolved_inverse_depth).xy;
-        pass.affiliated.at[i] = kRectified ? sampleCubicInRow(source_px.x, int(at.y), int(stereo.size_px.x)) : sampleCubic(source_px, ivec2(stereo.size_px));
+        const float inverse_depth = pass.pixels.at[i].resolved_inverse_depth;
+        const vec2 source_px = movePixel(stereo.dominant_from_affiliated, pixel_px, inverse_depth).xy;
+        const vec4 colour = kRectified ? sampleCubicInRow(source_px.x, int(at.y), int(stereo.size_px.x)) : sampleCubic(source_px, ivec2(stereo.size_px));
+        pass.affiliated.at[i] = colour;
+        if (kDepth) { pass.depths.at[i] = inverse_depth > 0 ? colour.a / inverse_depth : 0; }
+    } else if (inside && kind == kTileHidden) {
+        pass.affiliated.at[i] = vec4(pass.background, 0);
+        if (kDepth) { pass.depths.at[i] = 0; }
     }
     barrier();
     if (gl_LocalInvocationID.x == 0 && inside) { pass.pixel_classes.at[at.y * stereo.size_tiles.x + gl_WorkGroupID.x] = row_classes[gl_LocalInvocationID.y]; }

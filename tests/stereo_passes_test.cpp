@@ -224,7 +224,7 @@ TEST_CASE_FIXTURE(Gpu, "8b_resolve counts no errors where nobody predicts them")
     CHECK(device.readCounters().covered_pixels > 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "9_resample reads the twin's colours, leaves marked tiles alone and states the classes of all pixels") {
+TEST_CASE_FIXTURE(Gpu, "9_resample reads the twin's colours and depths, leaves marked tiles alone and states the classes of all pixels") {
     double worst = 0.0;
     for (const StereoCase& c : test::makeStereoCases()) {
         CAPTURE(c.name);
@@ -235,21 +235,31 @@ TEST_CASE_FIXTURE(Gpu, "9_resample reads the twin's colours, leaves marked tiles
         const auto before = pixelsOf(c, arrivals, resolved);
         device.writePixels(before);
         std::vector<TileKind> kinds(device.tileCount(), TileKind::kNone);
-        for (std::size_t t = 0; t < kinds.size(); t += 3) { kinds[t] = static_cast<TileKind>(1 + t % 3); }
+        for (std::size_t t = 0; t < kinds.size(); t += 3) { kinds[t] = static_cast<TileKind>(1 + t % 4); }
         device.writeTileKinds(test::kindsOf(kinds));
-        device.resample();
+        const glm::vec3 background(0.25f, 0.5f, 0.75f);
+        const auto depths = device.resample(background);
         const auto colours = device.readAffiliated();
         const auto left = device.readPixels();
         const auto classes = device.readClasses();
-        const auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes);
+        const auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes, glm::dvec3(background));
+        const auto expected_depths = reference::resampleDepths(expected, resolved, kinds, c.sizePx());
         const std::size_t width = c.sizePx().x, columns = (width + 15) / 16;
-        std::size_t touched = 0, other_class = 0;
+        std::size_t touched = 0, other_class = 0, other_depth = 0, hidden = 0;
         for (std::size_t i = 0; i < expected.size(); ++i) {
-            if (kinds[i / width / 16 * columns + i % width / 16] != TileKind::kNone) {
+            const TileKind kind = kinds[i / width / 16 * columns + i % width / 16];
+            if (kind == TileKind::kHidden) {
+                ++hidden;
+                touched += colours[i] == gpu::vec4(background, 0.0f) && depths[i] == 0.0f ? 0 : 1;
+                continue;
+            }
+            if (kind != TileKind::kNone) {
+                other_depth += depths[i] == -1.0f ? 0 : 1;
                 touched +=
                     left[i].nearest == before[i].nearest && left[i].resolved_inverse_depth == before[i].resolved_inverse_depth ? 0 : 1;
                 continue;
             }
+            other_depth += isNear(static_cast<double>(depths[i]), expected_depths[i], 1e-4, 1e-5) ? 0 : 1;
             other_class += classes[i] == static_cast<std::uint8_t>(resolved[i].pixel_class) ? 0 : 1;
             for (int channel = 0; channel < 4; ++channel) {
                 worst = std::max(worst, std::abs(static_cast<double>(colours[i][channel]) - expected[i][channel]));
@@ -257,6 +267,8 @@ TEST_CASE_FIXTURE(Gpu, "9_resample reads the twin's colours, leaves marked tiles
         }
         CHECK(touched == 0);
         CHECK(other_class == 0);
+        CHECK(other_depth == 0);
+        CHECK((hidden > 0 || kinds.size() < 4));
     }
     // A place is off by float32's rounding of a column, up to 1e-5 px, and the picture's slope is up to about 1 a pixel.
     CHECK(worst <= 5e-5);

@@ -36,12 +36,12 @@ public:
     }
 
     void reproject() {
-        dispatch("8a_reproject", {alongRows(), readDepth()}, gpu::ReprojectPass{view(), colours(), depths(), stereoPixels()},
+        dispatch("8a_reproject", {alongRows(), readDepth()}, gpu::ReprojectPass{view(), colours(), depths(), stereoPixels(), {}},
                  view_.size_tiles);
     }
     void resolve(bool predict) {
         dispatch("8b_resolve", {alongRows(), predict ? 1u : 0u},
-                 gpu::ResolvePass{view(), colours(), stereoPixels(), buffers_.tileErrors(), counters()}, {view_.size_px.y, 1});
+                 gpu::ResolvePass{view(), colours(), stereoPixels(), buffers_.tileErrors(), {}, counters()}, {view_.size_px.y, 1});
     }
     void boundDepths() {
         dispatch("8c_depth_bounds", {alongRows(), readDepth()},
@@ -88,17 +88,28 @@ public:
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
         const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
         dispatch("8g_select", {alongRows(), predicted ? 1u : 0u},
-                 gpu::SelectPass{view(), buffers_.tileErrors(), buffers_.tileKinds(), buffers_.tileList(), buffers_.tilesBefore(), list(0),
-                                 list(1), list(2), counters()},
+                 gpu::SelectPass{view(),
+                                 buffers_.tileErrors(),
+                                 buffers_.tileKinds(),
+                                 buffers_.tileList(),
+                                 buffers_.tilesBefore(),
+                                 list(0),
+                                 list(1),
+                                 list(2),
+                                 counters(),
+                                 {}},
                  {1, 1});
         const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
         return {states[1], states[2], readTiles(buffers_.tileList(), states[1].count), readTiles(buffers_.tilesBefore(), tileCount() + 1)};
     }
-    void resample() {
-        dispatch("9_resample", {alongRows()},
-                 gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), buffers_.tileKinds(),
-                                   buffers_.pixelClasses()},
+    // Returns D.
+    std::vector<float> resample(const glm::vec3& background = glm::vec3(0.0f)) {
+        const Buffer affiliated_depths = gpu_.upload("affiliated depths", std::vector<float>(pixelCount(), -1.0f));
+        dispatch("9_resample", {alongRows(), /*depth=*/1},
+                 gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), affiliated_depths.address<float>(),
+                                   buffers_.tileKinds(), buffers_.pixelClasses(), background},
                  view_.size_tiles);
+        return gpu_.readBack<float>(affiliated_depths, pixelCount());
     }
 
     [[nodiscard]] std::vector<gpu::StereoPixel> readPixels() { return gpu_.readBack<gpu::StereoPixel>(pixels_, pixelCount()); }

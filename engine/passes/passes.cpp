@@ -67,10 +67,10 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     const auto per_visible = visible_list + offsetof(gpu::ListState, per_item);
     const auto per_pair = pair_list + offsetof(gpu::ListState, per_item);
     const auto scratch = buffers.scratch.address<gpu::uint>();
-    const TileMask tiles = mask != nullptr ? *mask : TileMask{};
+    const TileMask tiles = mask != nullptr ? *mask : target.shown;
 
     commands.beginPass(role + "4_project");
-    const std::uint32_t masked = mask != nullptr ? 1 : 0;
+    const std::uint32_t masked = tiles.tiles_before.value != 0 ? 1 : 0;
     commands.dispatchIndirect(
         kernels_.get("4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(scene.shDegree()), masked, target.shifted}),
         gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
@@ -105,7 +105,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
                                        buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
                                        target.background,
                                        eye};
-    if (mask == nullptr) {
+    if (mask == nullptr) {  // hidden tiles have no pairs, and so become background
         commands.dispatch(rasterizeKernel(target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
     } else {
         commands.dispatchIndirect(rasterizeKernel(target.kept, true), rasterize, buffers.state,

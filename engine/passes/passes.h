@@ -25,7 +25,7 @@ struct Kept {
     bool inverse_depth_moments = false;  // with I and J in it
 };
 
-// The tiles that are rendered; see 8g_select.
+// The tiles that are rendered; see 8g_select, and ShownTiles.
 struct TileMask {
     gpu::DeviceAddress<gpu::uint> tiles_before, tile_list;
 };
@@ -39,7 +39,8 @@ struct EyeTarget {
     gpu::DeviceAddress<gpu::StereoPixel> stereo_pixels;
     glm::vec3 background{0.0f};
     Kept kept;
-    bool shifted = false;  // under a mask: the splats were last projected for the dominant eye, and isShifted
+    TileMask shown = {};   // what the lens shows, if it hides anything; the other tiles become background
+    bool shifted = false;  // for some tiles alone: the splats were last projected for the dominant eye, and isShifted
 };
 
 class Passes {
@@ -57,7 +58,7 @@ public:
     // Passes 4 to 7: the picture of an eye.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                    const std::string& role);
-    // The same under a mask: the other tiles stay as they are.
+    // The same for some tiles alone: the others stay as they are.
     void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
                      const std::string& role);
 

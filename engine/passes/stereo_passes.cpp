@@ -52,7 +52,7 @@ gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const S
     view.edge_samples = settings.edge_samples;
     view.tight_edges = settings.tight_edges ? 1 : 0;
     view.center_rois = settings.center_rois ? 1 : 0;
-    view.budget_tiles = static_cast<gpu::uint>(std::floor(settings.budget * tiles.x * tiles.y));
+    view.budget_tiles = static_cast<gpu::uint>(std::floor(settings.budget * (1.0 * tiles.x * tiles.y - settings.hidden_tiles)));
     view.hole_error = static_cast<float>(settings.hole_error);
     view.newcomer_error = static_cast<float>(settings.newcomer_error);
     return view;
@@ -73,7 +73,7 @@ bool isShifted(const gpu::StereoView& view) {
 
 void StereoPasses::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
                           const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant,
-                          const EyeImage& affiliated) {
+                          const EyeImage& affiliated, const std::array<ShownTiles, 2>& shown) {
     const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
     const auto counters = buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(0));
@@ -85,14 +85,17 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     const bool read_depth = settings.depth_choice != gpu::kDepthInverse;
     const bool predict = settings.patching == Patching::kPredicted;
     const bool paper = settings.patching == Patching::kPaper;
+    const ShownTiles &dominant_shown = shown[dominant_eye], &affiliated_shown = shown[1 - dominant_eye];
+    const bool dominant_hides = dominant_shown.hideAny(), affiliated_hides = affiliated_shown.hideAny();
 
     commands.beginPass("affiliated 8a_reproject");
     commands.fillZero(stereo.tiles());
-    commands.dispatch(kernels_.get("8a_reproject", sizeof(gpu::ReprojectPass), {along_rows, read_depth}),
-                      gpu::ReprojectPass{view, colours, depths, pixels}, tiles.x, tiles.y);
+    affiliated_shown.recordKinds(commands, stereo.tiles(), stereo.tileKindsOffset());
+    commands.dispatch(kernels_.get("8a_reproject", sizeof(gpu::ReprojectPass), {along_rows, read_depth, dominant_hides}),
+                      gpu::ReprojectPass{view, colours, depths, pixels, dominant_shown.before()}, tiles.x, tiles.y);
     commands.beginPass("affiliated 8b_resolve");
-    commands.dispatch(kernels_.get("8b_resolve", sizeof(gpu::ResolvePass), {along_rows, predict}),
-                      gpu::ResolvePass{view, colours, pixels, stereo.tileErrors(), counters}, size_px.y);
+    commands.dispatch(kernels_.get("8b_resolve", sizeof(gpu::ResolvePass), {along_rows, predict, affiliated_hides}),
+                      gpu::ResolvePass{view, colours, pixels, stereo.tileErrors(), stereo.tileKinds(), counters}, size_px.y);
     if (paper) {
         commands.beginPass("affiliated 8c_depth_bounds");
         commands.dispatch(kernels_.get("8c_depth_bounds", sizeof(gpu::DepthBoundsPass), {along_rows, read_depth}),
@@ -124,22 +127,24 @@ void StereoPasses::record(Commands& commands, const GpuScene& scene, const Frame
     }
     if (paper || predict) {
         commands.beginPass("affiliated 8g_select");
-        commands.dispatch(kernels_.get("8g_select", sizeof(gpu::SelectPass), {along_rows, predict}),
-                          gpu::SelectPass{view, stereo.tileErrors(), stereo.tileKinds(), stereo.tileList(), stereo.tilesBefore(), visible,
-                                          buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
-                                          buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters},
-                          1);
+        commands.dispatch(
+            kernels_.get("8g_select", sizeof(gpu::SelectPass), {along_rows, predict, dominant_hides}),
+            gpu::SelectPass{view, stereo.tileErrors(), stereo.tileKinds(), stereo.tileList(), stereo.tilesBefore(), visible,
+                            buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                            buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_visible)), counters, dominant_shown.before()},
+            1);
     }
 }
 
 void StereoPasses::recordResample(Commands& commands, const FrameBuffers& buffers, const StereoBuffers& stereo, bool rectified,
-                                  const EyeImage& dominant, const EyeImage& affiliated) {
+                                  const EyeImage& dominant, const EyeImage& affiliated, const glm::vec3& background) {
     const auto view = buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo));
     const glm::uvec2 tiles = tilesOf(stereo.sizePx());
     commands.beginPass("affiliated 9_resample");
-    commands.dispatch(kernels_.get("9_resample", sizeof(gpu::ResamplePass), {rectified ? 1u : 0u}),
+    commands.dispatch(kernels_.get("9_resample", sizeof(gpu::ResamplePass), {rectified ? 1u : 0u, affiliated.depths.bytes() > 0 ? 1u : 0u}),
                       gpu::ResamplePass{view, dominant.colours.address<gpu::vec4>(), affiliated.colours.address<gpu::StereoPixel>(),
-                                        affiliated.colours.address<gpu::vec4>(), stereo.tileKinds(), stereo.pixelClasses()},
+                                        affiliated.colours.address<gpu::vec4>(), affiliated.depths.address<float>(), stereo.tileKinds(),
+                                        stereo.pixelClasses(), background},
                       tiles.x, tiles.y);
 }
 

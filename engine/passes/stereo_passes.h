@@ -13,7 +13,10 @@
 #include "engine/geometry.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/passes/frame_buffers.h"
+#include "engine/passes/shown_tiles.h"
 #include "shaders/shared/passes.h"
+
+#include <array>
 
 namespace binosplat {
 
@@ -33,7 +36,8 @@ struct StereoSettings {
     gpu::uint edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.15;  // share of the tiles
+    double budget = 0.15;        // share of the tiles that are not hidden
+    gpu::uint hidden_tiles = 0;  // of the affiliated eye
     double hole_error = 1.0;
     double newcomer_error = 0.3;
 };
@@ -49,12 +53,15 @@ class StereoPasses {
 public:
     explicit StereoPasses(const Context& context) : kernels_(context) {}
 
-    // Passes 8. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo pixels.
+    // Passes 8. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo pixels;
+    // `shown` what the lenses show, by eye.
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
-                const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated);
-    // Pass 9: the affiliated eye's colours take the place of its stereo pixels but in the tiles that are masked.
+                const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated,
+                const std::array<ShownTiles, 2>& shown);
+    // Pass 9: the affiliated eye's colours take the place of its stereo pixels but in the tiles that are masked; its depths, too, where
+    // it has room for them. Tiles that are hidden become background.
     void recordResample(Commands& commands, const FrameBuffers& buffers, const StereoBuffers& stereo, bool rectified,
-                        const EyeImage& dominant, const EyeImage& affiliated);
+                        const EyeImage& dominant, const EyeImage& affiliated, const glm::vec3& background);
 
 private:
     KernelCache kernels_;

@@ -60,4 +60,9 @@ std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 siz
     return pairs;
 }
 
+void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden) {
+    if (hidden.empty()) { return; }
+    std::erase_if(pairs, [&](const TilePair& pair) { return hidden[pair.tile] != 0; });
+}
+
 }  // namespace binosplat::reference

@@ -92,6 +92,9 @@ std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uin
 // low-pass is what remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
 
+// Likewise 5: takes out the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
+void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
+
 // 6: pairs by tile, depth order kept within; and where each tile's pairs lie.
 void sortTiles(std::vector<TilePair>& pairs, const Settings& settings = {});
 std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);

@@ -1,5 +1,6 @@
 // 8a: each pixel of the source goes to where the target sees it; the nearest stays.
 #include "engine/reference/eye_change.h"
+#include "engine/reference/splat.h"
 
 #include <algorithm>
 
@@ -53,6 +54,21 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
     }
 }
 
+// Around a pixel that is sampled: the cubic kernel reads two pixels to each side, and its place is up to one off.
+constexpr int kHiddenMarginPx = 3;
+
+// Whether all that lies about a pixel of the source was rendered.
+bool isWellInside(const std::vector<std::uint8_t>& hidden, const glm::ivec2& pixel, const glm::ivec2& size) {
+    if (hidden.empty()) { return true; }
+    const int columns = (size.x + kTileSize - 1) / kTileSize;
+    for (int y = std::max(pixel.y - kHiddenMarginPx, 0); y <= std::min(pixel.y + kHiddenMarginPx, size.y - 1); ++y) {
+        for (int x = std::max(pixel.x - kHiddenMarginPx, 0); x <= std::min(pixel.x + kHiddenMarginPx, size.x - 1); ++x) {
+            if (hidden[static_cast<std::size_t>(y / kTileSize * columns + x / kTileSize)] != 0) { return false; }
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice) {
@@ -76,7 +92,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
     Arrivals arrivals{size, std::vector<Arrival>(dominant.rgba.size())};
     // Where a pixel goes; nowhere if its depth is not one or it ends up behind the target.
     const auto moved = [&](int x, int y) -> std::optional<Moved> {
-        if (x >= size.x || y >= size.y) { return std::nullopt; }
+        if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) { return std::nullopt; }
         const double inverse_depth = chooseInverseDepth(dominant, static_cast<std::size_t>(y * size.x + x), settings.depth_choice);
         if (!(inverse_depth >= 0.0) || !std::isfinite(inverse_depth)) { return std::nullopt; }
         const Moved there = change.move({x + 0.5, y + 0.5}, inverse_depth);

@@ -32,17 +32,30 @@ glm::dvec4 sample(const Picture& picture, const glm::dvec2& place_px) {
 }  // namespace
 
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                 const EyePair& eyes) {
+                                 const EyePair& eyes, const glm::dvec3& background) {
     const EyeChange source_from_target(eyes.source, eyes.target);
     const std::size_t width = dominant.size_px.x, columns = tileGrid(dominant.size_px).x;
     std::vector<glm::dvec4> colours(resolved.size(), glm::dvec4(0.0));
     for (std::size_t i = 0; i < resolved.size(); ++i) {
         const std::size_t x = i % width, y = i / width;
-        if (kinds[y / kTileSize * columns + x / kTileSize] != TileKind::kNone) { continue; }
+        const TileKind kind = kinds[y / kTileSize * columns + x / kTileSize];
+        if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
+        if (kind != TileKind::kNone) { continue; }
         const glm::dvec2 pixel_px(resolved[i].column + 0.5, static_cast<double>(y) + 0.5);
         colours[i] = sample(dominant, source_from_target.move(pixel_px, resolved[i].inverse_depth).place_px);
     }
     return colours;
+}
+
+std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                   glm::uvec2 size_px) {
+    const std::size_t width = size_px.x, columns = tileGrid(size_px).x;
+    std::vector<double> depths(resolved.size(), 0.0);
+    for (std::size_t i = 0; i < resolved.size(); ++i) {
+        const bool made = kinds[i / width / kTileSize * columns + i % width / kTileSize] == TileKind::kNone;
+        if (made && resolved[i].inverse_depth > 0.0) { depths[i] = colours[i].a / resolved[i].inverse_depth; }
+    }
+    return depths;
 }
 
 }  // namespace binosplat::reference

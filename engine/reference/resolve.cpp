@@ -92,6 +92,8 @@ std::vector<double> expectErrors(std::span<const Resolved> resolved, const Pictu
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             const Resolved& pixel = resolved[static_cast<std::size_t>(y * size.x + x)];
+            const std::size_t tile = static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize);
+            if (!settings.target_hidden.empty() && settings.target_hidden[tile] != 0) { continue; }
             const bool hole = pixel.pixel_class == PixelClass::kHole;
             if (!hole && y % 2 != 0) { continue; }  // rows are sampled in pairs
             const int column = static_cast<int>(pixel.column);
@@ -100,8 +102,7 @@ std::vector<double> expectErrors(std::span<const Resolved> resolved, const Pictu
             const double error =
                 hole ? holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
                      : 2.0 * mixedDepthError(dominant, target_from_source, glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1));
-            errors[static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize)] +=
-                std::min(error, kMaxPixelError);
+            errors[tile] += std::min(error, kMaxPixelError);
         }
     }
     return errors;

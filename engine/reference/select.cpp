@@ -1,4 +1,4 @@
-// 8g: the tiles that the source does not see, and those of the greatest expected errors.
+// 8g: the tiles that the source does not see, and those of the greatest expected errors; and those that nobody sees.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 
@@ -25,6 +25,33 @@ std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px) {
         }
     }
     return kinds;
+}
+
+void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings) {
+    for (std::size_t tile = 0; tile < settings.target_hidden.size(); ++tile) {
+        if (settings.target_hidden[tile] != 0) { kinds[tile] = TileKind::kHidden; }
+    }
+}
+
+void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings) {
+    if (settings.source_hidden.empty()) { return; }
+    const EyeChange source_from_target(eyes.source, eyes.target);
+    const glm::uvec2 size_px = eyes.target.size_px, tiles = tileGrid(size_px);
+    const auto isBehind = [&](const glm::uvec2& pixel) {
+        const auto moved = source_from_target.move(glm::dvec2(pixel) + 0.5, 0.0);
+        const glm::dvec2 at = moved.place_px, limit = glm::dvec2(size_px) + static_cast<double>(settings.gap_px);
+        if (!moved.in_front || at.x < -settings.gap_px || at.y < -settings.gap_px || at.x > limit.x || at.y > limit.y) { return false; }
+        const glm::uvec2 source = glm::uvec2(glm::clamp(at, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0)) / unsigned{kTileSize};
+        return settings.source_hidden[source.y * tiles.x + source.x] != 0;
+    };
+    for (unsigned tile = 0; tile < tiles.x * tiles.y; ++tile) {
+        if (kinds[tile] != TileKind::kNone) { continue; }
+        const glm::uvec2 first = glm::uvec2(tile % tiles.x, tile / tiles.x) * unsigned{kTileSize};
+        const glm::uvec2 last = glm::min(first + unsigned{kTileSize}, size_px) - 1u;
+        if (isBehind(first) || isBehind(last) || isBehind({first.x, last.y}) || isBehind({last.x, first.y})) {
+            kinds[tile] = TileKind::kEdge;
+        }
+    }
 }
 
 void select(std::vector<TileKind>& kinds, std::span<const double> errors, std::size_t budget_tiles) {

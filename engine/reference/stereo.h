@@ -9,10 +9,10 @@
 
 namespace binosplat::reference {
 
-enum class DepthChoice { kSum, kMean, kInverse };                          // D, D/A, A/I
-enum class StereoMethod { kReproject, kPaper, kPredicted };                // which tiles are rendered again
-enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };            // what made a pixel
-enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted };  // why a tile is rendered again
+enum class DepthChoice { kSum, kMean, kInverse };                                   // D, D/A, A/I
+enum class StereoMethod { kReproject, kPaper, kPredicted };                         // which tiles are rendered again
+enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };                     // what made a pixel
+enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden };  // why a tile is rendered again; kHidden: nobody sees it
 
 struct StereoSettings {
     StereoMethod method = StereoMethod::kPredicted;
@@ -22,8 +22,10 @@ struct StereoSettings {
     int edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.15;  // share of the tiles
+    double budget = 0.15;  // share of the tiles that are not hidden
     double hole_error = 1.0, newcomer_error = 0.3;
+    // Tiles that nobody sees: a byte a tile, 1 for these; empty: there is none. The source has no picture there.
+    std::vector<std::uint8_t> source_hidden = {}, target_hidden = {};
 };
 
 // Two eyes of one size: the picture is the source's and goes to the target.
@@ -49,7 +51,7 @@ struct Resolved {
     double inverse_depth;
 };
 std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
-// Likewise 8b: the expected squared error of each tile, by holes and by pixels that blend several depths.
+// Likewise 8b: the expected squared error of each tile that is not hidden, by holes and by pixels that blend several depths.
 std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, const EyePair& eyes,
                                  const StereoSettings& settings);
 
@@ -81,19 +83,28 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
                          std::span<const TilePair> source_pairs, std::span<const Resolved> resolved, glm::uvec2 size_px,
                          double newcomer_error);
 
+// Hidden tiles of the target, whatever they were.
+void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
+
 // 8g: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge); and of the others
 // those of the greatest errors, at most `budget_tiles` and none without an error, the first of equals.
 std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
+// Likewise 8g: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
+void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
 void select(std::vector<TileKind>& kinds, std::span<const double> errors, std::size_t budget_tiles);
 
-// 9: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles.
+// 9: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                 const EyePair& eyes);
+                                 const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
+// Likewise 9: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
+std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                   glm::uvec2 size_px);
 
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {
     Picture dominant;
     std::vector<glm::dvec4> affiliated;
+    std::vector<double> affiliated_depth;  // D
     std::vector<TileKind> tile_kinds;
     std::vector<double> tile_errors;  // of kPredicted
     std::vector<Resolved> resolved;

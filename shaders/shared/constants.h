@@ -71,6 +71,12 @@ BINOSPLAT_CONSTANT uint kNoComponent = 0xffffffffu;
 BINOSPLAT_CONSTANT uint kTileEdge = 1;
 BINOSPLAT_CONSTANT uint kTileCenter = 2;
 BINOSPLAT_CONSTANT uint kTilePredicted = 3;
+// No reason but the opposite: no lens shows it, so that it stays the background, without splats and without errors.
+BINOSPLAT_CONSTANT uint kTileHidden = 4;
+
+// Pixels of the dominant eye that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
+// two pixels beside them, and the place is up to one off.
+BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 
 // Expected squared errors are summed in fixed point, so that the sum does not depend on the order: steps of 2^-20; a pixel's
 // is at most kMaxPixelError (more than black and white differ in three channels), so that a tile's sum stays under 2^31.

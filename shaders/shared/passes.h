@@ -91,6 +91,7 @@ struct ReprojectPass {
     Vec4s colours;  // dominant
     Floats depths;
     StereoPixels pixels;  // in: moments of the dominant pixel; out: `nearest` of the affiliated one
+    Uints shown_before;   // where the dominant eye has hidden tiles: how many shown ones there are before each, and one more for all
 };
 
 // 8b_resolve: every pixel of the affiliated eye gets a place in the dominant picture, and tiles their expected error.
@@ -99,6 +100,7 @@ struct ResolvePass {
     Vec4s colours;  // dominant
     StereoPixels pixels;
     Uints tile_errors;  // out, where errors are predicted
+    Uints tile_kinds;   // where the affiliated eye has hidden tiles: these are neither counted nor wrong
     StereoCounterss counters;
 };
 
@@ -115,7 +117,7 @@ struct DepthBoundsPass {
 struct EdgeRoisPass {
     StereoViews stereo;
     Uints bins;
-    Uints tile_kinds;  // out
+    Uints tile_kinds;  // out, but where it is kTileHidden
     StereoCounterss counters;
 };
 
@@ -149,13 +151,14 @@ struct NewcomersPass {
 struct SelectPass {
     StereoViews stereo;
     Uints tile_errors;
-    Uints tile_kinds;    // in or, where errors are predicted, out
+    Uints tile_kinds;    // in or, where errors are predicted, out but for kTileHidden
     Uints tile_list;     // out
     Uints tiles_before;  // out
     ListStates visible;
     ListStates masked_tiles;    // out
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
     StereoCounterss counters;
+    Uints shown_before;  // as in ReprojectPass
 };
 
 // 9_resample: the colour of each pixel of the affiliated eye that no tile will render again.
@@ -164,8 +167,10 @@ struct ResamplePass {
     Vec4s dominant;
     StereoPixels pixels;  // in
     Vec4s affiliated;     // out, in the same place
+    Floats depths;        // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
     Uints pixel_classes;  // out: 2 bits a pixel, kCovered, kGap or kHole
+    vec3 background;      // of tiles that are hidden
 };
 
 // Exclusive prefix sums of `values` in place, in three steps: sums of blocks, their sums, and the blocks again.

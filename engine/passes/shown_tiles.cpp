@@ -1,0 +1,40 @@
+// Bringing the mask to the device when it changes.
+#include "engine/passes/shown_tiles.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+void ShownTiles::set(std::span<const std::uint8_t> hidden) {
+    if (std::ranges::equal(hidden, hidden_)) { return; }
+    hidden_.assign(hidden.begin(), hidden.end());
+    hidden_count_ = static_cast<std::uint32_t>(std::ranges::count_if(hidden_, [](std::uint8_t tile) { return tile != 0; }));
+    words_ = {};
+    upload_ = {};
+    if (!hideAny()) { return; }
+    std::vector<gpu::uint> before, list, kinds;
+    for (std::size_t tile = 0; tile < hidden_.size(); ++tile) {
+        before.push_back(static_cast<gpu::uint>(list.size()));
+        if (hidden_[tile] == 0) { list.push_back(static_cast<gpu::uint>(tile)); }
+        kinds.push_back(hidden_[tile] == 0 ? 0 : gpu::kTileHidden);
+    }
+    before.push_back(static_cast<gpu::uint>(list.size()));
+    list.resize(hidden_.size());
+    const std::uint64_t bytes = (before.size() + list.size() + kinds.size()) * sizeof(gpu::uint);
+    words_ = Buffer(context_, "shown tiles", bytes);
+    upload_ = Buffer(context_, "shown tiles on their way", bytes, MemoryKind::kUpload);
+    auto at = upload_.mapped<gpu::uint>().begin();
+    for (const auto* part : {&before, &list, &kinds}) { at = std::ranges::copy(*part, at).out; }
+}
+
+void ShownTiles::record(Commands& commands) {
+    if (upload_.bytes() > 0) { commands.copy(upload_, words_, upload_.bytes()); }
+}
+
+void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
+    if (!hideAny()) { return; }
+    const std::uint64_t tiles = hidden_.size();
+    commands.copy(words_, kinds, tiles * sizeof(gpu::uint), (2 * tiles + 1) * sizeof(gpu::uint), offset_bytes);
+}
+
+}  // namespace binosplat

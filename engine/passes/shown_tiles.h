@@ -1,0 +1,38 @@
+// The tiles of an eye's picture that its lens shows, as the passes take them: a mask for binning, and marks for the other eye's pixels.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+class ShownTiles {
+public:
+    explicit ShownTiles(const Context& context) : context_(context) {}
+
+    // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. What changed is on its way with the next record().
+    void set(std::span<const std::uint8_t> hidden);
+    // Before the passes that read the mask. Records nothing where the device has it already.
+    void record(Commands& commands);
+    // Once what was recorded has run.
+    void forgetUpload() { upload_ = {}; }
+
+    [[nodiscard]] bool hideAny() const { return hidden_count_ > 0; }
+    [[nodiscard]] std::uint32_t hiddenCount() const { return hidden_count_; }
+    // How many shown tiles there are before each tile, and one more for all; and the shown tiles. Null where none is hidden.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> before() const { return words_.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> list() const { return hideAny() ? before().at(hidden_.size() + 1) : before(); }
+    // Puts kTileHidden, or 0, into an array of tile kinds that begins `offset_bytes` into `kinds`.
+    void recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const;
+
+private:
+    const Context& context_;
+    std::vector<std::uint8_t> hidden_;
+    std::uint32_t hidden_count_ = 0;
+    Buffer words_, upload_;  // before, list, kinds
+};
+
+}  // namespace binosplat
