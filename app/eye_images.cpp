@@ -26,30 +26,26 @@ EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Forma
     }
 }
 
+void EyeImages::acquire(int eye, bool with_depth) {
+    const auto e = static_cast<std::size_t>(eye);
+    colour_now_[e] = colour_[e].acquire();
+    shows_depth_[e] = with_depth && takesDepth();
+    if (shows_depth_[e]) { depth_now_[e] = depth_[e].acquire(); }
+}
+
 void EyeImages::present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near) {
     const auto e = static_cast<std::size_t>(eye);
-    PresentedEye presented{&image, size_px_, tinted_by, colour_[e].acquire(), {}};
-    colour_taken_[e] = true;
-    shows_depth_[e] = takesDepth() && image.depths.bytes() > 0;
-    if (shows_depth_[e]) {
-        presented.depth = depth_[e].acquire();
-        depth_taken_[e] = true;
-    }
-    presenter_.record(commands, presented, near);
+    presenter_.record(commands, {&image, size_px_, tinted_by, colour_now_[e], depth_now_[e]}, near);
 }
 
 void EyeImages::clear(Commands& commands, int eye, const glm::vec3& colour) {
-    const auto e = static_cast<std::size_t>(eye);
-    commands.clearImage(colour_[e].acquire(), glm::vec4(colour, 1.0f));
-    colour_taken_[e] = true;
-    shows_depth_[e] = false;
+    commands.clearImage(colour_now_[static_cast<std::size_t>(eye)], glm::vec4(colour, 1.0f));
 }
 
 void EyeImages::release() {
     for (std::size_t e = 0; e < 2; ++e) {
-        if (colour_taken_[e]) { colour_[e].release(); }
-        if (depth_taken_[e]) { depth_[e].release(); }
-        colour_taken_[e] = depth_taken_[e] = false;
+        if (std::exchange(colour_now_[e], nullptr)) { colour_[e].release(); }
+        if (std::exchange(depth_now_[e], nullptr)) { depth_[e].release(); }
     }
 }
 

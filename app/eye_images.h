@@ -19,10 +19,12 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
-    // Between begin and submitAndWait of `commands`. `near` in scene units; the depth goes along where the eye has one.
+    // Before anything is recorded: the images of a frame, with that of the eye's depth where it will have one and the runtime takes it.
+    void acquire(int eye, bool with_depth);
+    // Between begin and submitAndWait of `commands`, with what acquire() took, also more than once. `near` in scene units.
     void present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near);
     void clear(Commands& commands, int eye, const glm::vec3& colour);
-    // After submitAndWait: gives back what present and clear took.
+    // After submitAndWait: gives back what acquire() took.
     void release();
 
     // What of `eye` was presented in this frame, as a layer shows it.
@@ -32,7 +34,7 @@ private:
     Presenter& presenter_;
     glm::uvec2 size_px_;
     std::array<xr::Swapchain, 2> colour_, depth_;
-    std::array<bool, 2> colour_taken_{}, depth_taken_{};  // and not given back
+    std::array<vk::Image, 2> colour_now_{}, depth_now_{};  // of this frame; null: not taken
     std::array<bool, 2> shows_depth_{};
 };
 

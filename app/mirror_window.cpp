@@ -63,6 +63,7 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : conte
     const int panel_width = kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
     window_ = glfwCreateWindow(kHeightPx + panel_width, kHeightPx, "binosplat", nullptr, nullptr);
     check(window_ != nullptr, "the window does not open");
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // a key that was let go before the next frame still counts once
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
     check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
@@ -113,6 +114,9 @@ WindowInput MirrorWindow::poll() {
     const bool tab = pressed(GLFW_KEY_TAB) > 0.0;
     input.toggle_panel = tab && !tab_;
     tab_ = tab;
+    const bool reload = pressed(GLFW_KEY_F5) > 0.0;
+    input.reload_shaders = reload && !reload_;
+    reload_ = reload;
     input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
                   pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
@@ -153,7 +157,7 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
     changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
 }
 
-void MirrorWindow::record(Commands& commands) {
+void MirrorWindow::acquire() {
     acquired_ = false;
     try {
         const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
@@ -164,6 +168,10 @@ void MirrorWindow::record(Commands& commands) {
     check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
     context_.device().resetFences(*acquired_fence_);
     acquired_ = true;
+}
+
+void MirrorWindow::record(Commands& commands) {
+    if (!acquired_) { return; }
     const vk::Image target = images_[index_];
     const int width = static_cast<int>(extent_.width), height = static_cast<int>(extent_.height);
     changeLayout(commands, target, Layout::eUndefined, Layout::eTransferDstOptimal);

@@ -34,6 +34,7 @@ struct WindowInput {
     double turn_rad = 0.0;   // to the right
     double turn_rate = 0.0;  // by keys, -1 to 1
     bool toggle_panel = false;
+    bool reload_shaders = false;
     bool quit = false;
 };
 
@@ -46,9 +47,11 @@ public:
     ~MirrorWindow();
 
     [[nodiscard]] WindowInput poll();
+    // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
+    void acquire();
     // Between begin and submitAndWait: keeps an eye's presented pixels, of an image of `format`.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
-    // Between begin and submitAndWait, once the canvas is drawn.
+    // Between begin and submitAndWait, once the canvas is drawn; also more than once.
     void record(Commands& commands);
     // After submitAndWait.
     void show();
@@ -68,7 +71,7 @@ private:
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
-    bool acquired_ = false, tab_ = false;
+    bool acquired_ = false, tab_ = false, reload_ = false;
     std::uint32_t index_ = 0;
     glm::dvec2 cursor_{0.0};
 };

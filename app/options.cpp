@@ -195,6 +195,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::Option* frames_option = view_command->add_option("--frames", frames, "stop after N frames")->type_name("N");
     view_command->add_flag("--load-first", view.load_first, "load the scene before the session starts, not meanwhile");
     view_command->add_flag("--hide-panel", view.hide_panel, "start without the panel");
+    view_command->add_option("--shaders", view.shaders, "folder that the panel's Shaders button reloads from")->type_name("DIR");
 
     InfoOptions info;
     CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");

@@ -74,11 +74,12 @@ struct ViewOptions {
     RunOptions run;                     // of the camera: where the wearer starts, near, background
     std::vector<SettingsTable> tables;  // the config's [view], see view_settings.h
     bool simulate = false;
-    std::string script;         // of the simulated headset; empty: it rests
-    std::filesystem::path out;  // where the simulated headset writes what its wearer sees; empty: chosen by the command
-    std::uint64_t frames = 0;   // stop after so many; 0: never
-    bool load_first = false;    // before the session starts, so that runs repeat
-    bool hide_panel = false;    // at the start
+    std::string script;             // of the simulated headset; empty: it rests
+    std::filesystem::path out;      // where the simulated headset writes what its wearer sees; empty: chosen by the command
+    std::uint64_t frames = 0;       // stop after so many; 0: never
+    bool load_first = false;        // before the session starts, so that runs repeat
+    bool hide_panel = false;        // at the start
+    std::filesystem::path shaders;  // folder to reload them from; empty: see shaderFolder
 };
 
 struct InfoOptions {

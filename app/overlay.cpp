@@ -75,10 +75,17 @@ void drawTimes(const OverlayStatus& status) {
         const auto found = status.frame->counters.find(name);
         return found == status.frame->counters.end() ? 0.0 : static_cast<double>(found->second);
     };
-    const double tiles = std::max({count("tiles_left"), count("tiles_right"), 1.0});
+    const double tiles = std::max(count("tiles_left"), count("tiles_right"));
+    const double hidden = count("tiles_hidden_left") + count("tiles_hidden_right");
+    const double made = count("pixels_covered") + count("pixels_gap") + count("pixels_hole");
     text(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
-                     100.0 * count("tiles_patched") / tiles, 100.0 * count("pixels_hole") / std::max(count("pixels_left"), 1.0),
+                     100.0 * count("tiles_patched") / std::max(tiles - 0.5 * hidden, 1.0),
+                     100.0 * count("pixels_hole") / std::max(made, 1.0),
                      std::max({count("splats_visible"), count("splats_visible_left"), count("splats_visible_right")}) / 1000.0));
+    if (hidden > 0.0) {
+        text(fmt::format("the lenses hide {:.0f} and {:.0f} of {:.0f} tiles", count("tiles_hidden_left"), count("tiles_hidden_right"),
+                         tiles));
+    }
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);
     for (const auto& [name, ms] : addUp(status.frame->gpu_ms)) {
@@ -110,7 +117,10 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         actions.reset_scene = ImGui::Button("Scene back to its place");
         ImGui::SameLine();
         actions.quit = ImGui::Button("Quit");
-        text(status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message);
+        ImGui::SameLine();
+        actions.reload_shaders = ImGui::Button("Shaders");
+        ImGui::TextWrapped("%s",
+                           status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
         drawTimes(status);
     }
     ImGui::PopItemWidth();

@@ -3,6 +3,7 @@
 
 #include "app/interrupt.h"
 #include "app/modes.h"
+#include "app/shader_reload.h"
 #include "app/view_eyes.h"
 #include "app/view_files.h"
 #include "engine/error.h"
@@ -103,18 +104,21 @@ void Viewer::drawFrame() {
     obeyWindow(room_from_head);
     fitResolution();
 
-    xr::Layers layers(session_);
-    drawEyes(*views, room_from_eyes);
-    if (settings_.panel || window_) { drawPanel(); }
-    commands_.submitAndWait();
+    if (settings_.panel || window_) { layOutPanel(); }
+    if (window_) { window_->acquire(); }
+    if (scene_) {
+        renderScene(*views, room_from_eyes);
+    } else {
+        renderWaiting();
+    }
     if (window_) { window_->show(); }
     images_->release();
+    xr::Layers layers(session_);
     addEyes(layers, *views);
-    if (panel_taken_) {
+    if (std::exchange(panel_now_, nullptr)) {
         panel_images_.release();
         addPanel(layers, room_from_head);
     }
-    panel_taken_ = false;
     session_.endFrame(layers.list());
 
     const std::string change = describeChange(before, settings_);
@@ -146,34 +150,56 @@ void Viewer::fitResolution() {
     images_ = std::make_unique<EyeImages>(session_, presenter_, format_, size_px);
 }
 
-void Viewer::drawEyes(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes) {
-    if (!scene_) {
-        commands_.begin();
-        const glm::dvec3& background = options_.run.camera.background;
-        const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
-        for (const int e : {kLeft, kRight}) { images_->clear(commands_, e, colour); }
-        return;
-    }
+void Viewer::renderWaiting() {
+    for (const int e : {kLeft, kRight}) { images_->acquire(e, false); }
+    commands_.begin();
+    const glm::dvec3& background = options_.run.camera.background;
+    const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    for (const int e : {kLeft, kRight}) { images_->clear(commands_, e, colour); }
+    recordPanel(commands_);
+    commands_.submitAndWait();
+}
+
+void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes) {
     std::array<Eye, 2> eyes;
     for (std::size_t e = 0; e < 2; ++e) { eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, images_->sizePx()); }
     FrameSettings frame = frameSettings(options_.run.camera, settings_.stereo);
-    frame.keep_depth = images_->takesDepth() && !reprojects(frame.mode);
-    frame.keep_both_depths = frame.keep_depth;
-    const Side dominant = settings_.stereo.dominant;
-    last_ = scene_->frame.render(showsOneEye() ? std::span<const Eye>(&eyes[dominant], 1) : std::span<const Eye>(eyes), frame);
-
-    commands_.begin();
-    if (showsOneEye()) {
-        images_->present(commands_, dominant, scene_->frame.image(0), nullptr, frame.near);
-        if (window_) { window_->keepEye(commands_, presenter_.pixels(), images_->sizePx(), format_); }
-        return;
-    }
+    frame.dominant = settings_.stereo.dominant;
+    frame.keep_depth = frame.keep_both_depths = images_->takesDepth();
+    // One eye's picture for both is seen through either lens.
+    if (!showsOneEye()) { frame.hidden_tiles = lens_mask_.update(session_, views, images_->sizePx()); }
     for (const int e : {kLeft, kRight}) {
-        const bool tinted = settings_.tint && reprojects(frame.mode) && e != dominant;
-        images_->present(commands_, e, scene_->frame.image(e), tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
-        // The window shows the dominant eye, or what is made of it where that is the point.
-        if (window_ && (e == dominant) != settings_.tint) { window_->keepEye(commands_, presenter_.pixels(), images_->sizePx(), format_); }
+        if (!showsOneEye() || e == frame.dominant) { images_->acquire(e, true); }
     }
+    last_ = scene_->frame.render(showsOneEye() ? std::span<const Eye>(&eyes[frame.dominant], 1) : std::span<const Eye>(eyes), frame,
+                                 [&](Commands& commands) {
+                                     recordEyes(commands, frame);
+                                     recordPanel(commands);
+                                 });
+    sayHidden();
+}
+
+void Viewer::recordEyes(Commands& commands, const FrameSettings& frame) {
+    for (const int e : {kLeft, kRight}) {
+        const bool dominant = e == frame.dominant;
+        if (frame.mode == Mode::kMono && !dominant) { continue; }
+        const bool tinted = settings_.tint && reprojects(frame.mode) && !dominant;
+        const EyeImage& image = scene_->frame.image(frame.mode == Mode::kMono ? 0 : e);
+        images_->present(commands, e, image, tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
+        // The window shows the dominant eye, or what is made of it where that is the point.
+        const bool shown = frame.mode == Mode::kMono || dominant != settings_.tint;
+        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), images_->sizePx(), format_); }
+    }
+}
+
+void Viewer::sayHidden() {
+    const auto count = [&](const char* name) {
+        const auto found = last_.counters.find(name);
+        return found == last_.counters.end() ? 0 : found->second;
+    };
+    const std::array<std::uint64_t, 2> hidden{count("tiles_hidden_left"), count("tiles_hidden_right")};
+    if (showsOneEye() || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
+    fmt::print("frame {}: the lenses hide {} and {} of {} tiles\n", frames_, hidden[kLeft], hidden[kRight], count("tiles_left"));
 }
 
 void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const {
@@ -186,25 +212,27 @@ void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views
     layers.addEyes({layerEye(kLeft), layerEye(kRight)});
 }
 
-void Viewer::drawPanel() {
+void Viewer::layOutPanel() {
     status_.loading = scene_ ? std::nullopt : std::optional(loader_.progress());
-    status_.frame = scene_ ? &last_ : nullptr;
-    const bool shown = settings_.panel;
+    status_.frame = last_.counters.empty() ? nullptr : &last_;
+    if (settings_.panel) { panel_now_ = panel_images_.acquire(); }
     canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), session_.stepSeconds());
-    const OverlayActions actions = drawOverlay(kCanvasPx, settings_, status_);
-    canvas_.record(commands_);
-    if (shown) {
-        commands_.copyImage(canvas_.image(), panel_images_.acquire(), kCanvasPx);
-        panel_taken_ = true;
-    }
-    if (window_) { window_->record(commands_); }
-    obey(actions);
+    obey(drawOverlay(kCanvasPx, settings_, status_));
+}
+
+void Viewer::recordPanel(Commands& commands) {
+    if (!panel_now_ && !window_) { return; }
+    commands.beginPass("panel");
+    canvas_.record(commands);
+    if (panel_now_) { commands.copyImage(canvas_.image(), panel_now_, kCanvasPx); }
+    if (window_) { window_->record(commands); }
 }
 
 void Viewer::obeyWindow(const Pose& room_from_head) {
     if (!window_) { return; }
     window_input_ = window_->poll();
     if (window_input_.quit) { session_.requestExit(); }
+    if (window_input_.reload_shaders) { reloadShaders(); }
     if (window_input_.toggle_panel) {
         settings_.panel = !settings_.panel;
         panel_.hangBefore(room_from_head);
@@ -232,9 +260,19 @@ void Viewer::obey(const OverlayActions& actions) {
         scene_from_room_ = settings_.scene_from_room.value_or(scene_from_room_);
         settings_.panel = true;  // it was just pressed
     }
+    if (actions.reload_shaders) { reloadShaders(); }
     if (actions.reset_scene) { scene_from_room_ = scene_->start; }
     if (actions.save || actions.load) { fmt::print("frame {}: {}\n", frames_, status_.message); }
     if (actions.quit) { session_.requestExit(); }
+}
+
+void Viewer::reloadShaders() {
+    if (!scene_) { return; }  // kernels are being made elsewhere
+    status_.message = binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
+        scene_->frame.rebuildKernels();
+        presenter_.rebuildKernels();
+    });
+    fmt::print("frame {}: {}\n", frames_, status_.message);
 }
 
 void Viewer::fillRay() {

@@ -3,6 +3,7 @@
 
 #include "app/canvas.h"
 #include "app/eye_images.h"
+#include "app/lens_mask.h"
 #include "app/mirror_window.h"
 #include "app/overlay.h"
 #include "app/overlay_panel.h"
@@ -32,13 +33,19 @@ private:
     // The headset does not need it: where it does not open, a line says why.
     void openWindow();
     void fitResolution();
-    // What goes behind the panel; the scene if it is there.
-    void drawEyes(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes);
+    // Renders and shows, in one submission: the scene if it is there, and the panel.
+    void renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes);
+    void renderWaiting();
+    void recordEyes(Commands& commands, const FrameSettings& frame);
+    void recordPanel(Commands& commands);
+    void sayHidden();
     void addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const;
-    void drawPanel();
+    // The widgets; takes the panel's image where it is shown.
+    void layOutPanel();
     void obeyWindow(const Pose& room_from_head);
     void addPanel(xr::Layers& layers, const Pose& room_from_head) const;
     void obey(const OverlayActions& actions);
+    void reloadShaders();
     void fillRay();
     [[nodiscard]] bool showsOneEye() const { return settings_.stereo.mode == "mono"; }
 
@@ -53,7 +60,9 @@ private:
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
     xr::Swapchain panel_images_, ray_image_;
-    bool panel_taken_ = false;  // its image, in this frame
+    vk::Image panel_now_;  // of this frame, where the panel is shown
+    LensMask lens_mask_;
+    std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
     OverlayPanel panel_;
     WearerControls controls_;
     Commands commands_;

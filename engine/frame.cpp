@@ -76,7 +76,12 @@ void StereoFrame::show(const GpuScene& scene) {
     growFrameBuffers(context_, buffers_, {std::min(first_capacity_.visible, std::max(scene.splatCount(), 1u)), first_capacity_.pairs});
 }
 
-FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings) {
+void StereoFrame::rebuildKernels() {
+    passes_.rebuildKernels(context_);
+    stereo_passes_.rebuildKernels();
+}
+
+FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& show) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
     check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px,
           "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
@@ -86,6 +91,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     prepareImages(eyes, settings);
     do {
         recordFrame(eyes, settings);
+        if (show) { show(commands_); }
         commands_.submitAndWait();
         for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
         state_ = state_readback_.mapped<FrameState>()[0];
@@ -105,7 +111,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
         EyeTarget target{
             eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
         target.kept.depth = images_[eye].depths.bytes() > 0;
-        target.shown = {shown_[eye].before(), shown_[eye].list()};
+        target.shown = {shown_[eye].before(), {}};
         return target;
     };
     const auto dominantOf = [&](int list) {

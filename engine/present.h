@@ -23,6 +23,8 @@ public:
 
     // Records pass 10. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
+    // Makes its kernels anew, see Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    void rebuildKernels() { kernels_.rebuild(); }
     // The bytes of the eye that was recorded last, rows top to bottom, for whoever shows them elsewhere.
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 

@@ -19,7 +19,7 @@ const std::string kScene = "builtin:fence --load-first";
 
 // Widgets by their place on the panel, in shares of its width and height.
 const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
-    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477);
+    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.75, 0.477);
 
 // Where the panel hangs, as the runtime was told, in STAGE and OpenXR's axes.
 struct Panel {
@@ -61,6 +61,74 @@ std::string clickOn(const Panel& panel, const std::vector<glm::dvec2>& places) {
 const Panel& startPanel(const Workplace& work) {
     static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", kScene), 8);
     return panel;
+}
+
+// Pose and tangents of an eye in the log, in STAGE and OpenXR's axes.
+struct LoggedEye {
+    glm::dvec3 position;
+    glm::dquat orientation;
+    double left, right, up, down;
+};
+LoggedEye loggedEye(const nlohmann::json& frame, std::size_t side) {
+    const nlohmann::json& eye = frame.at("eyes").at(side);
+    const auto p = eye.at("pose").at("position").get<std::array<double, 3>>();
+    const auto q = eye.at("pose").at("orientation").get<std::array<double, 4>>();
+    const auto tangent = [&](const char* name) { return std::tan(eye.at("fov").at(name).get<double>()); };
+    return {{p[0], p[1], p[2]}, {q[3], q[0], q[1], q[2]}, tangent("left"), tangent("right"), tangent("up"), tangent("down")};
+}
+
+// Makes what lies under the frame's panels black: all pixels of the box about the corners of each, and two more.
+void maskPanels(Image& picture, const ViewRun& run, std::size_t frame, std::size_t side) {
+    const LoggedEye eye = loggedEye(run.frames.at(frame), side);
+    const glm::dvec2 size(picture.size_px);
+    for (const nlohmann::json& quad : run.layers(frame, "quad")) {
+        const auto p = quad.at("pose").at("position").get<std::array<double, 3>>();
+        const auto q = quad.at("pose").at("orientation").get<std::array<double, 4>>();
+        const auto extent = quad.at("size").get<std::array<double, 2>>();
+        glm::dvec2 low = size, high(0.0);
+        for (const glm::dvec2& corner : {glm::dvec2(-0.5, -0.5), glm::dvec2(0.5, -0.5), glm::dvec2(-0.5, 0.5), glm::dvec2(0.5, 0.5)}) {
+            const glm::dvec3 on_quad(corner.x * extent[0], corner.y * extent[1], 0.0);
+            const glm::dvec3 in_stage = glm::dvec3(p[0], p[1] + 1.6, p[2]) + glm::dquat(q[3], q[0], q[1], q[2]) * on_quad;
+            const glm::dvec3 seen = glm::conjugate(eye.orientation) * (in_stage - eye.position);
+            // A ray begins in a hand that may be beside the eye: from there on to the border.
+            const double depth = std::max(-seen.z, 0.05);
+            const glm::dvec2 at((seen.x / depth - eye.left) / (eye.right - eye.left), (seen.y / depth - eye.up) / (eye.down - eye.up));
+            low = glm::min(low, at * size);
+            high = glm::max(high, at * size);
+        }
+        for (std::uint32_t y = 0; y < picture.size_px.y; ++y) {
+            for (std::uint32_t x = 0; x < picture.size_px.x; ++x) {
+                if (x + 2.5 < low.x || y + 2.5 < low.y || x - 1.5 > high.x || y - 1.5 > high.y) { continue; }
+                const std::size_t at = (std::size_t{y} * picture.size_px.x + x) * static_cast<std::size_t>(picture.channels);
+                std::fill_n(picture.values.begin() + static_cast<std::ptrdiff_t>(at), picture.channels, 0.0f);
+            }
+        }
+    }
+}
+
+// Both eyes of a frame, but for the panel and the ray, against what `binosplat render` makes of the logged poses. The wearer stood at the
+// scene's origin, looking along its z, when the head was at (0, 1.6, 0).
+void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_t frame, const std::string& stereo) {
+    CAPTURE(frame);
+    const LoggedEye left = loggedEye(run.frames.at(frame), 0), right = loggedEye(run.frames.at(frame), 1);
+    const auto inScene = [](const glm::dvec3& v) { return glm::dvec3(v.x, -v.y, -v.z); };
+    const glm::dvec3 eye = inScene(0.5 * (left.position + right.position) - glm::dvec3(0.0, 1.6, 0.0));
+    const glm::dvec3 look = eye + inScene(left.orientation * glm::dvec3(0, 0, -1)), up = inScene(left.orientation * glm::dvec3(0, 1, 0));
+    const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
+    const Outcome rendered =
+        work.run(fmt::format("render builtin:fence --out expected --size 160x160 --fov-x 90 --ipd 0.063 --eye {} --look {} --up {} {}",
+                             numbers(eye), numbers(look), numbers(up), stereo));
+    INFO(rendered.errors);
+    REQUIRE(rendered.exit_code == 0);
+    for (const int side : {kLeft, kRight}) {
+        CAPTURE(side);
+        Image seen = run.eye(frame, side), expected = readPicture(work.path / "expected" / (side == kLeft ? "left.png" : "right.png"));
+        maskPanels(seen, run, frame, static_cast<std::size_t>(side));
+        maskPanels(expected, run, frame, static_cast<std::size_t>(side));
+        const std::size_t black = static_cast<std::size_t>(std::count(expected.values.begin(), expected.values.end(), 0.0f));
+        CHECK(black < expected.values.size() / 2);
+        CHECK(compare(seen, expected).psnrDb() > 50.0);
+    }
 }
 
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
@@ -123,8 +191,10 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
         script += fmt::format("press right trigger {} {}\n", time_s + 0.1, time_s + 0.15);
         time_s += 0.3;
     }
-    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kScene);
+    const std::string start = " --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
+    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kScene + start);
     checkClean(run);
+    CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
     CHECK(run.frames.size() >= 200);
     const std::string& output = run.outcome.output;
     std::size_t from = 0;
@@ -134,6 +204,9 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
         REQUIRE(found != std::string::npos);
         from = found;
     }
+    // Before the first click, and after the last one.
+    checkAgreesWithRender(work, run, 40, "");
+    checkAgreesWithRender(work, run, 196, "--dominant right --center-roi");
     // The head walked, and every frame was shown as the eyes were.
     for (const std::size_t frame : {60, 120, 180}) {
         const nlohmann::json scene = run.layers(frame, "projection").at(0);
@@ -171,6 +244,57 @@ TEST_CASE("settings and placement are saved as a config, and come back") {
     CHECK(work.run("render builtin:fence --out rendered --size 32x32 --config fence.view.toml").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
     CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
+}
+
+TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    // The sources as they are; then a copy in which one line is broken, another that draws nothing, and a folder that is not there.
+    const std::filesystem::path sources = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders";
+    const auto copyOf = [&](const std::string& name, const std::string& line, const std::string& replacement) {
+        std::filesystem::copy(sources, work.path / name, std::filesystem::copy_options::recursive);
+        const std::filesystem::path file = work.path / name / "10_present.comp";
+        std::ifstream in(file);
+        const std::string text(std::istreambuf_iterator<char>(in), {});
+        const std::size_t at = text.find(line);
+        REQUIRE(at != std::string::npos);
+        std::ofstream(file) << text.substr(0, at) + replacement + text.substr(at + line.size());
+    };
+    const std::string line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
+    copyOf("broken", line, "    const uvec3 bytes = nonsense;");
+    copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
+    const std::string script = kSmall + clickOn(panel, {kShaders, {0.9, 0.95}});
+    const auto click = [&](const std::string& name, const std::string& folder) {
+        const ViewRun run = runView(work, name, script, kScene + " --mode shared --shaders '" + folder + "'");
+        checkClean(run);
+        return run;
+    };
+    // Away from the panel and the ray: the upper third of the right half.
+    const auto sameAfterwards = [&](const ViewRun& run) {
+        const Image before = run.eye(16, kRight), after = run.eye(36, kRight);
+        std::size_t other = 0;
+        for (std::size_t i = 0; i < before.pixelCount() / 3; ++i) {
+            const std::size_t at = i * static_cast<std::size_t>(before.channels);
+            other +=
+                i % before.size_px.x > before.size_px.x / 2 && !std::equal(&before.values[at], &before.values[at] + 3, &after.values[at])
+                    ? 1
+                    : 0;
+        }
+        return other == 0;
+    };
+    const ViewRun good = click("good", sources.string());
+    std::size_t count = 0;
+    for (const auto& file : std::filesystem::directory_iterator(sources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
+    CHECK(says(good, fmt::format("{} shaders reloaded in ", count)));
+    CHECK(sameAfterwards(good));
+    const ViewRun bad = click("bad", "broken");
+    CHECK(says(bad, "shaders stay as they were: broken/10_present.comp:"));
+    CHECK(says(bad, "nonsense"));
+    CHECK(sameAfterwards(bad));
+    const ViewRun black = click("black-run", "black");
+    CHECK(says(black, " shaders reloaded in "));
+    CHECK_FALSE(sameAfterwards(black));
+    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/1_cull.comp is not there"));
 }
 
 TEST_CASE("the menu button hides the panel and brings it before the eyes") {

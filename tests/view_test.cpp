@@ -116,7 +116,7 @@ TEST_CASE("two runs with the virtual clock write the same files") {
     CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);
 }
 
-TEST_CASE("depth goes along where both eyes are rendered, if the runtime takes it") {
+TEST_CASE("depth goes along in every mode, if the runtime takes it") {
     const Workplace work;
     const auto depths = [&](const std::string& name, const std::string& script, const std::string& mode) {
         const ViewRun run = runView(work, name, kSmall + script + "at 0.1 exit\n", kScene + " --mode " + mode);
@@ -128,7 +128,8 @@ TEST_CASE("depth goes along where both eyes are rendered, if the runtime takes i
     };
     CHECK(depths("both", "", "shared") == 2);
     CHECK(depths("mono", "", "mono") == 2);
-    CHECK(depths("made", "", "predicted") == 0);
+    CHECK(depths("made", "", "predicted") == 2);
+    CHECK(depths("moved", "", "reproject") == 2);
     CHECK(depths("refused", "extension XR_KHR_composition_layer_depth off\n", "shared") == 0);
 }
 

@@ -1,4 +1,5 @@
 // Facts about `binosplat view` when the headset misbehaves: it carries on or ends cleanly, within the frames of the script.
+#include "engine/geometry.h"
 #include "tests/view_runs.h"
 
 #include <doctest/doctest.h>
@@ -77,6 +78,43 @@ TEST_CASE("it is hidden, loses the input, and comes back") {
     const ViewRun run = runTrouble(work, "at 0.1 visible off\nat 0.15 visible on\nat 0.2 focused off\nat 0.25 focused on\nat 0.35 exit\n");
     CHECK(countFramesWithLayers(run) > 15);
     CHECK(run.frames.at(run.frames.size() - 3).at("session_state") == "FOCUSED");
+}
+
+TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
+    const Workplace work;
+    // 13 x 13 tiles of which the corners lie outside the lens; wider on one side from 0.12 s on, with another mask.
+    const std::string script = "rate 90\nsize 200 200\nframes every 4\n", end = "at 0.12 eye left angles -45 60 45 -45\nat 0.25 exit\n";
+    for (const std::string mode : {"shared", "predicted", "mono"}) {
+        CAPTURE(mode);
+        const std::string arguments = "builtin:fence --load-first --hide-panel --mode " + mode;
+        const ViewRun without = runView(work, "without-" + mode, script + end, arguments);
+        const ViewRun with = runView(work, "with-" + mode, script + "visibility-mask on\n" + end, arguments);
+        checkClean(with);
+        CHECK(without.outcome.output.find("the lenses hide") == std::string::npos);
+        const std::string& output = with.outcome.output;
+        const std::size_t first = output.find(": the lenses hide 23 and 23 of 169 tiles");
+        // Seen with either eye, one picture has no tile that both lenses hide.
+        CHECK((first == std::string::npos) == (mode == "mono"));
+        CHECK((output.find(": the lenses hide ", first + 1) == std::string::npos) == (mode == "mono"));
+        for (const int side : {kLeft, kRight}) {
+            const Image a = without.eye(12, side), b = with.eye(12, side);
+            std::size_t black = 0, other = 0;
+            for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+                const float* before = &a.values[i * static_cast<std::size_t>(a.channels)];
+                const float* after = &b.values[i * static_cast<std::size_t>(b.channels)];
+                const bool is_black = after[0] == 0.0f && after[1] == 0.0f && after[2] == 0.0f;
+                black += is_black ? 1 : 0;
+                other += !is_black && !std::equal(before, before + 3, after) ? 1 : 0;
+            }
+            if (mode == "mono") {
+                CHECK(a.values == b.values);
+                continue;
+            }
+            CHECK(black > 20 * 120);
+            // Made from the other eye, another choice of tiles is rendered again.
+            if (mode != "predicted" || side == kLeft) { CHECK(other == 0); }
+        }
+    }
 }
 
 TEST_CASE("lost controllers, a visibility mask and missing extensions are no trouble") {

@@ -160,6 +160,7 @@ void Session::readHiddenMesh(int eye) {
     if (!instance_.hasVisibilityMask() || eye < 0 || eye > 1) { return; }
     HiddenMesh& mesh = hidden_meshes_[static_cast<std::size_t>(eye)];
     mesh = {};
+    ++hidden_mesh_version_;
     // Some runtimes list the extension and have not its function.
     PFN_xrVoidFunction found = nullptr;
     if (XR_FAILED(xrGetInstanceProcAddr(instance_.handle(), "xrGetVisibilityMaskKHR", &found)) || found == nullptr) { return; }

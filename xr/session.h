@@ -63,6 +63,8 @@ public:
     [[nodiscard]] XrSpace space() const { return space_; }
     // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
     [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
+    // Another number whenever they were read.
+    [[nodiscard]] int hiddenMeshVersion() const { return hidden_mesh_version_; }
 
 private:
     void pollEvents();
@@ -81,6 +83,7 @@ private:
     bool running_ = false, ended_ = false;
     std::string why_ended_;
     std::array<HiddenMesh, 2> hidden_meshes_;
+    int hidden_mesh_version_ = 0;
 };
 
 }  // namespace binosplat::xr

@@ -2,6 +2,7 @@
 #include "engine/gpu/context.h"
 
 #include "engine/error.h"
+#include "shaders/embedded_shaders.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -219,6 +220,11 @@ void Context::createDevice(const ContextOptions& options) {
     const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
     timestamp_mask_ = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
     if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }
+}
+
+std::span<const std::uint32_t> Context::shaderWords(std::string_view name) const {
+    const auto found = replaced_shaders_.find(name);
+    return found == replaced_shaders_.end() ? embeddedShader(name) : std::span<const std::uint32_t>(found->second);
 }
 
 void Context::requireNoValidationMessages() const {

@@ -4,10 +4,13 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -29,6 +32,9 @@ struct ContextOptions {
     std::vector<const char*> instance_extensions = {};  // beside those that the passes need; literals
     std::vector<const char*> device_extensions = {};    // likewise, where the device has them
 };
+
+// Shaders by name, as SPIR-V.
+using ShaderWords = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
 
 // Bytes of device memory in use and the most there ever were.
 struct MemoryUse {
@@ -69,6 +75,11 @@ public:
     void requireNoValidationMessages() const;
     // What they said; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
+
+    // The words of shaders/NAME.comp for kernels that are made from now on: those put in their place, or those the program carries.
+    [[nodiscard]] std::span<const std::uint32_t> shaderWords(std::string_view name) const;
+    // For whoever works on the shaders while the program runs; empty otherwise. Kernels that are there stay as they are.
+    [[nodiscard]] ShaderWords& replacedShaders() const { return replaced_shaders_; }
 
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
@@ -115,6 +126,7 @@ private:
     std::uint64_t timestamp_mask_ = 0;
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
     mutable MemoryUse memory_use_;
+    mutable ShaderWords replaced_shaders_;
 };
 
 }  // namespace binosplat

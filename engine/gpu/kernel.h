@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,7 +19,9 @@ public:
     Kernel() = default;
     // `shader` names shaders/NAME.comp; `constants` are the values of constant_id 0, 1, 2 ... ; `push_bytes` is the size of the
     // pass struct it takes.
-    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {})
+        : Kernel(context, shader, push_bytes, std::span(constants.begin(), constants.size())) {}
+    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::span<const std::uint32_t> constants);
 
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
@@ -34,8 +37,10 @@ private:
 class KernelCache {
 public:
     explicit KernelCache(const Context& context) : context_(context) {}
-    // The kernel of a shader and its specialization constants; the reference stays valid.
+    // The kernel of a shader and its specialization constants; the reference stays valid until rebuild().
     const Kernel& get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+    // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and keeps the old ones then.
+    void rebuild();
 
 private:
     const Context& context_;

@@ -12,6 +12,14 @@ Passes::Passes(const Context& context, std::uint32_t threads_per_cell)
       sort_(context),
       kernels_(context) {}
 
+void Passes::rebuildKernels(const Context& context) {
+    Scan scan(context);
+    Sort sort(context);
+    kernels_.rebuild();
+    scan_ = std::move(scan);
+    sort_ = std::move(sort);
+}
+
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count,
                            int order_eye, int list, const std::string& role) {
     commands.beginPass(role + "1_cull");

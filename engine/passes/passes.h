@@ -25,7 +25,7 @@ struct Kept {
     bool inverse_depth_moments = false;  // with I and J in it
 };
 
-// The tiles that are rendered; see 8g_select, and ShownTiles.
+// The tiles that are rendered; see 8g_select, and ShownTiles, which needs no list.
 struct TileMask {
     gpu::DeviceAddress<gpu::uint> tiles_before, tile_list;
 };
@@ -47,6 +47,8 @@ class Passes {
 public:
     // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's subgroups.
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
+    // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    void rebuildKernels(const Context& context);
 
     // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
     // the depths of `order_eye`. `role` goes before the passes' names.

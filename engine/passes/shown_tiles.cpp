@@ -12,19 +12,16 @@ void ShownTiles::set(std::span<const std::uint8_t> hidden) {
     words_ = {};
     upload_ = {};
     if (!hideAny()) { return; }
-    std::vector<gpu::uint> before, list, kinds;
-    for (std::size_t tile = 0; tile < hidden_.size(); ++tile) {
-        before.push_back(static_cast<gpu::uint>(list.size()));
-        if (hidden_[tile] == 0) { list.push_back(static_cast<gpu::uint>(tile)); }
-        kinds.push_back(hidden_[tile] == 0 ? 0 : gpu::kTileHidden);
+    std::vector<gpu::uint> words{0}, kinds;
+    for (const std::uint8_t tile : hidden_) {
+        words.push_back(words.back() + (tile == 0 ? 1 : 0));
+        kinds.push_back(tile == 0 ? 0 : gpu::kTileHidden);
     }
-    before.push_back(static_cast<gpu::uint>(list.size()));
-    list.resize(hidden_.size());
-    const std::uint64_t bytes = (before.size() + list.size() + kinds.size()) * sizeof(gpu::uint);
+    words.insert(words.end(), kinds.begin(), kinds.end());
+    const std::uint64_t bytes = words.size() * sizeof(gpu::uint);
     words_ = Buffer(context_, "shown tiles", bytes);
     upload_ = Buffer(context_, "shown tiles on their way", bytes, MemoryKind::kUpload);
-    auto at = upload_.mapped<gpu::uint>().begin();
-    for (const auto* part : {&before, &list, &kinds}) { at = std::ranges::copy(*part, at).out; }
+    std::ranges::copy(words, upload_.mapped<gpu::uint>().begin());
 }
 
 void ShownTiles::record(Commands& commands) {
@@ -34,7 +31,7 @@ void ShownTiles::record(Commands& commands) {
 void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
     if (!hideAny()) { return; }
     const std::uint64_t tiles = hidden_.size();
-    commands.copy(words_, kinds, tiles * sizeof(gpu::uint), (2 * tiles + 1) * sizeof(gpu::uint), offset_bytes);
+    commands.copy(words_, kinds, tiles * sizeof(gpu::uint), (tiles + 1) * sizeof(gpu::uint), offset_bytes);
 }
 
 }  // namespace binosplat

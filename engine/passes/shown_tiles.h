@@ -22,9 +22,8 @@ public:
 
     [[nodiscard]] bool hideAny() const { return hidden_count_ > 0; }
     [[nodiscard]] std::uint32_t hiddenCount() const { return hidden_count_; }
-    // How many shown tiles there are before each tile, and one more for all; and the shown tiles. Null where none is hidden.
+    // How many shown tiles there are before each tile, and one more for all. Null where none is hidden.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> before() const { return words_.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> list() const { return hideAny() ? before().at(hidden_.size() + 1) : before(); }
     // Puts kTileHidden, or 0, into an array of tile kinds that begins `offset_bytes` into `kinds`.
     void recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const;
 
@@ -32,7 +31,7 @@ private:
     const Context& context_;
     std::vector<std::uint8_t> hidden_;
     std::uint32_t hidden_count_ = 0;
-    Buffer words_, upload_;  // before, list, kinds
+    Buffer words_, upload_;  // before, kinds
 };
 
 }  // namespace binosplat

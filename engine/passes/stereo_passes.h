@@ -52,6 +52,8 @@ bool isShifted(const gpu::StereoView& view);
 class StereoPasses {
 public:
     explicit StereoPasses(const Context& context) : kernels_(context) {}
+    // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    void rebuildKernels() { kernels_.rebuild(); }
 
     // Passes 8. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo pixels;
     // `shown` what the lenses show, by eye.

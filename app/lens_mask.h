@@ -1,0 +1,30 @@
+// The tiles of both eyes' pictures that the headset's lenses hide.
+#pragma once
+
+#include "xr/session.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+class LensMask {
+public:
+    // By eye, as FrameSettings takes them, and valid until the next call; empty where nothing is hidden. Looks at the meshes' pixels anew
+    // only where a mesh, the angles or the size have changed.
+    std::array<std::span<const std::uint8_t>, 2> update(const xr::Session& session, const std::array<xr::EyeView, 2>& views,
+                                                        glm::uvec2 size_px);
+
+private:
+    struct Eye {
+        int mesh_version = -1;
+        XrFovf fov{};
+        glm::uvec2 size_px{0, 0};
+        std::vector<std::uint8_t> hidden;
+    };
+    std::array<Eye, 2> eyes_;
+};
+
+}  // namespace binosplat

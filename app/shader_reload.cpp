@@ -1,0 +1,134 @@
+// Running glslang's command line tool as the build does.
+#include "app/shader_reload.h"
+
+#include "engine/error.h"
+#include "shaders/embedded_shaders.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <future>
+#include <sstream>
+
+extern char** environ;
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own, gone with this.
+struct Workshop {
+    Workshop() {
+        std::string name = (fs::temp_directory_path() / "binosplat-shaders-XXXXXX").string();
+        check(mkdtemp(name.data()) != nullptr, "{} cannot be made", name);
+        path = name;
+    }
+    Workshop(const Workshop&) = delete;
+    Workshop& operator=(const Workshop&) = delete;
+    ~Workshop() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+    fs::path path;
+};
+
+template <typename T>
+std::vector<T> readAll(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::stringstream bytes;
+    bytes << stream.rdbuf();
+    const std::string text = bytes.str();
+    std::vector<T> values(text.size() / sizeof(T));
+    std::copy_n(text.data(), values.size() * sizeof(T), reinterpret_cast<char*>(values.data()));
+    return values;
+}
+
+// Runs a program with what it prints going to `log`; whether it did and returned 0.
+bool runProgram(std::vector<std::string> words, const fs::path& log) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) { arguments.push_back(word.data()); }
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+    pid_t child = 0;
+    const int failed = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    check(failed == 0, "{} does not run; it comes with the package glslang-tools", words[0]);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// The first complaint in what glslang printed, "ERROR: FILE:LINE: REASON".
+std::string firstError(const fs::path& log, const fs::path& source) {
+    const std::vector<char> text = readAll<char>(log);
+    std::istringstream lines(std::string(text.begin(), text.end()));
+    const std::string mark = "ERROR: ";
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(mark)) { return line.substr(mark.size()); }
+    }
+    return source.string() + " does not compile";
+}
+
+std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& name, const fs::path& workshop) {
+    const fs::path source = folder / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
+    check(fs::exists(source), "{} is not there", source.string());
+    // As shaders/CMakeLists.txt has it.
+    const bool ok = runProgram({BINOSPLAT_GLSLANG, "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
+                                "-I" + folder.string(), "-o", words.string(), source.string()},
+                               log);
+    check(ok, "{}", firstError(log, source));
+    return readAll<std::uint32_t>(words);
+}
+
+}  // namespace
+
+fs::path shaderFolder(const fs::path& folder) {
+    if (!folder.empty()) { return folder; }
+    const char* chosen = std::getenv("BINOSPLAT_SHADERS");
+    return chosen != nullptr && *chosen != '\0' ? chosen : BINOSPLAT_SHADER_SOURCES;
+}
+
+ShaderWords compileShaders(const fs::path& folder) {
+    const Workshop workshop;
+    std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
+    for (const std::string_view name : embeddedShaderNames()) {
+        results.emplace_back(name, std::async(std::launch::async, compileShader, folder, std::string(name), workshop.path));
+    }
+    ShaderWords shaders;
+    for (auto& [name, words] : results) { shaders[name] = words.get(); }
+    return shaders;
+}
+
+std::string reloadShaders(const Context& context, const fs::path& folder, const std::function<void()>& rebuild) {
+    const auto start = std::chrono::steady_clock::now();
+    ShaderWords before;
+    bool replaced = false;
+    try {
+        ShaderWords shaders = compileShaders(folder);
+        const std::size_t count = shaders.size();
+        before = std::exchange(context.replacedShaders(), std::move(shaders));
+        replaced = true;
+        rebuild();
+        const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+        return fmt::format("{} shaders reloaded in {:.0f} ms", count, taken.count());
+    } catch (const Error& error) {
+        if (replaced) {
+            context.replacedShaders() = std::move(before);
+            rebuild();
+        }
+        return fmt::format("shaders stay as they were: {}", error.what());
+    }
+}
+
+}  // namespace binosplat

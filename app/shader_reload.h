@@ -1,0 +1,22 @@
+// Working on the shaders while the viewer runs: compiled from their sources, and only if all of them compile.
+#pragma once
+
+#include "engine/gpu/context.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace binosplat {
+
+// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment, else those this program was built from.
+std::filesystem::path shaderFolder(const std::filesystem::path& folder);
+
+// Every shader of `folder` by glslang. Throws Error with file, line and reason of the first that does not compile.
+ShaderWords compileShaders(const std::filesystem::path& folder);
+
+// Compiles them, puts them in the place of the context's and calls `rebuild`, which makes all kernels anew. Where either fails, all
+// stays as it was. What became of it, as one line. Structs that shaders share with C++ (shaders/shared) must be those of the build.
+std::string reloadShaders(const Context& context, const std::filesystem::path& folder, const std::function<void()>& rebuild);
+
+}  // namespace binosplat
