@@ -70,10 +70,9 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
 
 void StereoFrame::show(const GpuScene& scene) {
     scene_ = &scene;
-    regrowths_ = 0;
+    first_frame_ = true;
     buffers_ = {};
     buffers_ = makeFrameBuffers(context_, scene.splatCount());
-    growFrameBuffers(context_, buffers_, {std::min(first_capacity_.visible, std::max(scene.splatCount(), 1u)), first_capacity_.pairs});
 }
 
 void StereoFrame::rebuildKernels() {
@@ -89,6 +88,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     mode_ = settings.mode;
     dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
     prepareImages(eyes, settings);
+    prepareLists();
     do {
         recordFrame(eyes, settings);
         if (show) { show(commands_); }
@@ -108,8 +108,14 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     if (reprojects(settings.mode)) { state.stereo = stereoViewOf(eyes[first], eyes[second], stereo); }
 
     const auto targetOf = [&](int eye, int list) {
-        EyeTarget target{
-            eye, list, tilesOf(eyes[eye].size_px), &images_[eye], moments_.address<gpu::StereoPixel>(), glm::vec3(settings.background), {}};
+        EyeTarget target{eye,
+                         list,
+                         tilesOf(eyes[eye].size_px),
+                         buffers_.pairs.arrays(),
+                         &images_[eye],
+                         moments_.address<gpu::StereoPixel>(),
+                         glm::vec3(settings.background),
+                         {}};
         target.kept.depth = images_[eye].depths.bytes() > 0;
         target.shown = {shown_[eye].before(), {}};
         return target;
@@ -145,6 +151,10 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
         case Mode::kPredicted: {
             passes_.recordVisible(commands_, *scene_, buffers_, 0, 2, first, 0, "both ");
             EyeTarget dominant = dominantOf(0);
+            // Until the dominant eye is blended nothing is in the other one's picture.
+            if (buffers_.pairs.lentCapacity() > buffers_.pairs.capacity()) {
+                dominant.pairs = buffers_.pairs.arraysWith(images_[second].colours, tileBits(dominant.size_tiles));
+            }
             dominant.stereo_pixels = images_[second].colours.address<gpu::StereoPixel>();
             dominant.kept.stereo_pixels = true;
             dominant.kept.inverse_depth_moments = settings.mode == Mode::kPredicted || stereo.depth_choice == gpu::kDepthInverse;
@@ -159,7 +169,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
 
 void StereoFrame::recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target) {
     const bool rectified = isRectified(stereoViewOf(eyes[dominant_], eyes[1 - dominant_], stereo));
-    stereo_buffers_.borrow(buffers_.pairs.pairs().keys);
+    stereo_buffers_.borrow(buffers_.pairs.buffer().address<gpu::uint>());
     stereo_passes_.record(commands_, *scene_, buffers_, stereo_buffers_, stereo, rectified, dominant_, images_[dominant_],
                           images_[target.eye], shown_);
     if (stereo.patching != Patching::kNone) { recordPatches(eyes, stereo, target); }
@@ -204,28 +214,56 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         stereo_buffers_ = {};
         if (stereo_px.x > 0) { stereo_buffers_ = StereoBuffers(context_, stereo_px, boxes); }
     }
+}
+
+std::uint32_t StereoFrame::mostLentPairs() const {
+    if (!reprojects(mode_)) { return 0; }
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(images_[1 - dominant_].colours.bytes() / PairBuffers::kLentBytesPerPair, UINT32_MAX));
+}
+
+void StereoFrame::prepareLists() {
+    FrameCapacity capacity = buffers_.capacity();
+    if (capacity == FrameCapacity{}) {
+        capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0};
+        if (reprojects(mode_)) {
+            // What is rendered again has far fewer pairs.
+            capacity.lent_pairs = capacity.pairs;
+            capacity.pairs = (capacity.pairs + 3) / 4;
+        }
+    }
+    capacity.lent_pairs = std::min(capacity.lent_pairs, mostLentPairs());
     const auto borrowed_pairs = static_cast<std::uint32_t>(stereo_buffers_.borrowedBytes() / PairBuffers::kBytesPerPair + 1);
-    if (borrowed_pairs > buffers_.pairs.capacity()) { growFrameBuffers(context_, buffers_, {buffers_.visible.capacity(), borrowed_pairs}); }
+    capacity.pairs = std::max(capacity.pairs, borrowed_pairs);
+    growFrameBuffers(context_, buffers_, capacity);
 }
 
 bool StereoFrame::growIfNeeded() {
-    std::uint32_t visible = 0, pairs = 0;
-    for (int e = 0; e < 2; ++e) {
-        visible = std::max(visible, state_.visible[e].needed);
-        pairs = std::max(pairs, state_.pairs[e].needed);
-    }
-    check(pairs != UINT32_MAX, "the eyes see more than 4,294,967,295 pairs of tile and splat: fewer splats or pixels are needed");
-    if (visible <= buffers_.visible.capacity() && pairs <= buffers_.pairs.capacity()) { return true; }
     // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
-    const double slack = regrowths_ < 2 ? 1.0 : 1.25;
-    ++regrowths_;
+    const double slack = first_frame_ ? 1.0 : 1.25;
     const auto enough = [&](std::uint32_t needed, std::uint32_t capacity) {
         if (needed <= capacity) { return capacity; }
         const double roomy = std::min(std::ceil(needed * slack / 1024.0) * 1024.0, 4294966272.0);
         return std::max(needed, static_cast<std::uint32_t>(roomy));
     };
-    const std::uint32_t visible_room = std::min(enough(visible, buffers_.visible.capacity()), std::max(scene_->splatCount(), 1u));
-    growFrameBuffers(context_, buffers_, {visible_room, enough(pairs, buffers_.pairs.capacity())});
+    const FrameCapacity now = buffers_.capacity();
+    FrameCapacity wanted = now;
+    for (int e = 0; e < 2; ++e) {
+        const std::uint32_t visible = state_.visible[e].needed, pairs = state_.pairs[e].needed;
+        check(pairs != UINT32_MAX, "the eyes see more than 4,294,967,295 pairs of tile and splat: fewer splats or pixels are needed");
+        wanted.visible = std::max(wanted.visible, std::min(enough(visible, now.visible), std::max(scene_->splatCount(), 1u)));
+        const bool lends = e == dominant_ && pairs <= mostLentPairs();
+        if (!lends) {
+            wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs));
+        } else if (pairs > now.pairs) {
+            wanted.lent_pairs = std::min(enough(pairs, now.lent_pairs), mostLentPairs());
+        }
+    }
+    if (wanted == now) {
+        first_frame_ = false;
+        return true;
+    }
+    growFrameBuffers(context_, buffers_, wanted);
     return false;
 }
 

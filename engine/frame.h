@@ -90,6 +90,9 @@ private:
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
     void recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
+    void prepareLists();
+    // Pairs that the dominant eye's sort finds room for in the picture of the other eye, while nothing is in it.
+    [[nodiscard]] std::uint32_t mostLentPairs() const;
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
     [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -113,7 +116,7 @@ private:
     Mode mode_ = Mode::kMono;  // of the last frame
     int dominant_ = 0;
     FrameCapacity first_capacity_;
-    int regrowths_ = 0;
+    bool first_frame_ = true;
 };
 
 }  // namespace binosplat

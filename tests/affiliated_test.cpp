@@ -203,7 +203,7 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the other eye's 
     }
 }
 
-TEST_CASE("making one eye from the other takes hardly more memory than rendering both") {
+TEST_CASE("making one eye from the other takes less memory than rendering both") {
     const ViewedScene view = viewAtelier({384, 384});
     for (const FrameCapacity& first : {FrameCapacity{1, 1}, FrameOptions{}.first_capacity}) {
         std::map<Mode, std::uint64_t> peak_bytes;
@@ -218,9 +218,9 @@ TEST_CASE("making one eye from the other takes hardly more memory than rendering
                                       << 100.0 * static_cast<double>(peak_bytes[mode]) / static_cast<double>(peak_bytes[Mode::kTwoPass])
                                       << " %");
         }
-        // Measured: 1.2 % more with the boxes of centre ROIs, 0.5 % without; the classes of pixels are most of that.
+        // Measured: 3 to 25 % less; most of the dominant eye's pairs lie where the other eye's picture will be.
         for (const Mode mode : kReprojectingModes) {
-            CHECK(static_cast<double>(peak_bytes[mode]) <= 1.015 * static_cast<double>(peak_bytes[Mode::kTwoPass]));
+            CHECK(peak_bytes[mode] < peak_bytes[Mode::kTwoPass]);
         }
     }
 }

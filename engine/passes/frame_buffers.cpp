@@ -2,14 +2,30 @@
 #include "engine/passes/frame_buffers.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace binosplat {
 
 VisibleBuffers::VisibleBuffers(const Context& context, std::uint32_t capacity)
     : capacity_(capacity), buffer_(context, "visible splats", kBytesPerSplat * capacity) {}
 
-PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity)
-    : capacity_(capacity), buffer_(context, "tile pairs", kBytesPerPair * capacity) {}
+PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity, std::uint32_t lent_capacity)
+    : capacity_(capacity),
+      lent_capacity_(lent_capacity),
+      buffer_(context, "tile pairs", std::max(kBytesPerPair * capacity, (kBytesPerPair - kLentBytesPerPair) * lent_capacity)) {}
+
+PairArrays PairBuffers::arrays() const {
+    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>(i * sizeof(gpu::uint) * capacity_); };
+    return {{array(0), array(1)}, {array(2), array(3)}, capacity_};
+}
+
+PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const {
+    assert(idle.bytes() >= kLentBytesPerPair * lent_capacity_);
+    const auto lent = [&](std::uint64_t i) { return idle.address<gpu::uint>(i * sizeof(gpu::uint) * lent_capacity_); };
+    PairArrays arrays{{lent(0), lent(2)}, {lent(1), lent(2)}, lent_capacity_};
+    (Sort::endsInSpare(key_bits) ? arrays.spare : arrays.pairs).values = buffer_.address<gpu::uint>();
+    return arrays;
+}
 
 glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
 
@@ -32,12 +48,12 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.visible = {};
         buffers.visible = VisibleBuffers(context, capacity.visible);
     }
-    if (buffers.pairs.capacity() != capacity.pairs) {
+    if (buffers.pairs.capacity() != capacity.pairs || buffers.pairs.lentCapacity() != capacity.lent_pairs) {
         buffers.pairs = {};
-        buffers.pairs = PairBuffers(context, capacity.pairs);
+        buffers.pairs = PairBuffers(context, capacity.pairs, capacity.lent_pairs);
     }
-    const std::uint64_t scratch_bytes =
-        std::max({Scan::blockSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible), Sort::histogramBytes(capacity.pairs)});
+    const std::uint64_t scratch_bytes = std::max({Scan::blockSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
+                                                  Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
         buffers.scratch = Buffer(context, "scan and sort scratch", scratch_bytes);

@@ -30,6 +30,7 @@ glm::uvec2 tilesOf(glm::uvec2 size_px);
 struct FrameCapacity {
     std::uint32_t visible = 0;
     std::uint32_t pairs = 0;
+    std::uint32_t lent_pairs = 0;  // of an eye that sorts with lent memory, see PairBuffers
     bool operator==(const FrameCapacity&) const = default;
 };
 
@@ -65,25 +66,32 @@ private:
     Buffer buffer_;
 };
 
-// Likewise over the (tile, splat) pairs, twice for sorting.
+// Where the (tile, splat) pairs of an eye lie: a sort goes from one to the other and back, and what is left is in either.
+struct PairArrays {
+    KeyValues pairs, spare;
+    std::uint32_t capacity = 0;
+};
+
+// Four words a pair. Of these one alone outlives the sort, the splats by tile; where memory lies idle meanwhile, the other three are lent
+// and a word a pair is enough.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
+    static constexpr std::uint64_t kLentBytesPerPair = 3 * sizeof(gpu::uint);
 
     PairBuffers() = default;
-    PairBuffers(const Context& context, std::uint32_t capacity);
+    PairBuffers(const Context& context, std::uint32_t capacity, std::uint32_t lent_capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    [[nodiscard]] KeyValues pairs() const { return {at(0), at(4)}; }
-    [[nodiscard]] KeyValues spare() const { return {at(8), at(12)}; }
+    [[nodiscard]] std::uint32_t lentCapacity() const { return lent_capacity_; }
+    [[nodiscard]] PairArrays arrays() const;
+    // With all but what remains of a sort by `key_bits` in `idle`, which must hold lentCapacity().
+    [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     [[nodiscard]] const Buffer& buffer() const { return buffer_; }
 
 private:
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> at(std::uint64_t bytes_before_per_pair) const {
-        return buffer_.address<gpu::uint>(bytes_before_per_pair * capacity_);
-    }
-    std::uint32_t capacity_ = 0;
+    std::uint32_t capacity_ = 0, lent_capacity_ = 0;
     Buffer buffer_;
 };
 
@@ -97,6 +105,7 @@ struct FrameBuffers {
     Buffer scratch;      // block sums or histograms of the list at hand
     Buffer tile_ranges;  // uvec2 a tile
 
+    [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {

@@ -5,6 +5,9 @@
 #include <bit>
 
 namespace binosplat {
+
+unsigned tileBits(glm::uvec2 size_tiles) { return static_cast<unsigned>(std::bit_width(size_tiles.x * size_tiles.y)); }
+
 Passes::Passes(const Context& context, std::uint32_t threads_per_cell)
     :  // A cell is one subgroup's where a subgroup has 8 to 64 invocations.
       threads_per_cell_(threads_per_cell != 0 ? threads_per_cell : std::clamp(context.subgroupSize(), 8u, 64u)),
@@ -86,17 +89,24 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
                          buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)), scene.chunkBits(), eye},
         buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
-    scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, buffers.pairs.capacity());
-    const gpu::BinPass bin{
-        buffers.visible.splats(),   buffers.visible.tileSets(),   buffers.visible.tileCounts(), visible,  pairs,
-        buffers.pairs.pairs().keys, buffers.pairs.pairs().values, buffers.pairs.spare().keys,   counters, tiles.tiles_before,
-        target.size_tiles};
+    scan_.overList(commands, buffers.visible.tileCounts(), scratch, buffers.state, visible_list, pairs, target.pairs.capacity);
+    const KeyValues& unsorted = target.pairs.pairs;
+    const gpu::BinPass bin{buffers.visible.splats(),
+                           buffers.visible.tileSets(),
+                           buffers.visible.tileCounts(),
+                           visible,
+                           pairs,
+                           unsorted.keys,
+                           unsorted.values,
+                           target.pairs.spare.keys,
+                           counters,
+                           tiles.tiles_before,
+                           target.size_tiles};
     commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}), bin, buffers.state, per_visible);
     commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked}), bin, gpu::kBinLargeGroups);
     commands.beginPass(role + "6_sort_tiles");
-    const unsigned tile_bits = static_cast<unsigned>(std::bit_width(target.size_tiles.x * target.size_tiles.y));
     const KeyValues sorted =
-        sort_.record(commands, buffers.pairs.pairs(), buffers.pairs.spare(), scratch, buffers.state, pair_list, tile_bits);
+        sort_.record(commands, unsorted, target.pairs.spare, scratch, buffers.state, pair_list, tileBits(target.size_tiles));
     const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
     commands.fillZero(buffers.tile_ranges);
     commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges},

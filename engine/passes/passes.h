@@ -35,6 +35,7 @@ struct EyeTarget {
     int eye = 0;   // index into FrameState::eyes
     int list = 0;  // of the visible splats
     glm::uvec2 size_tiles{0, 0};
+    PairArrays pairs;
     const EyeImage* image = nullptr;
     gpu::DeviceAddress<gpu::StereoPixel> stereo_pixels;
     glm::vec3 background{0.0f};
@@ -42,6 +43,9 @@ struct EyeTarget {
     TileMask shown = {};   // what the lens shows, if it hides anything; the other tiles become background
     bool shifted = false;  // for some tiles alone: the splats were last projected for the dominant eye, and isShifted
 };
+
+// How many bits tell the tiles of a picture and no tile apart.
+unsigned tileBits(glm::uvec2 size_tiles);
 
 class Passes {
 public:

@@ -31,8 +31,8 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
     const auto totals = histograms;
     const auto counts = histograms.at(gpu::kMaxDigits);
-    // As few rounds as 8 bits allow, and then as few bits a round as will do.
-    const unsigned rounds = (key_bits + 7) / 8;
+    // As few bits a round as will do.
+    const unsigned rounds = roundsOf(key_bits);
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;

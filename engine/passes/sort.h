@@ -18,12 +18,18 @@ public:
     // Bytes of `histograms` for lists of up to `items`: half a byte a key, and a kilobyte of totals.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
+    // Whether the result of `record` lies in `spare`.
+    static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
+
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
     // holds the result. The length is that of the list at `list_bytes` of `lists`.
     KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
                      std::uint64_t list_bytes, unsigned key_bits) const;
 
 private:
+    // As few rounds as 8 bits allow.
+    static unsigned roundsOf(unsigned key_bits) { return (key_bits + 7) / 8; }
+
     Kernel count_, spine_, scatter_;
     gpu::uint digits_per_spine_group_;
 };
