@@ -80,7 +80,7 @@ void StereoFrame::rebuildKernels() {
     stereo_passes_.rebuildKernels();
 }
 
-FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& show) {
+FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
     check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px,
           "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
@@ -91,7 +91,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     prepareLists();
     do {
         recordFrame(eyes, settings);
-        if (show) { show(commands_); }
+        if (append) { append(commands_); }
         commands_.submitAndWait();
         for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
         state_ = state_readback_.mapped<FrameState>()[0];

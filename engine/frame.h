@@ -63,8 +63,8 @@ public:
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
     // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.
-    // `show` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
-    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& show = {});
+    // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
+    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
     void rebuildKernels();
 
