@@ -218,24 +218,28 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
 
 std::uint32_t StereoFrame::mostLentPairs() const {
     if (!reprojects(mode_)) { return 0; }
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(images_[1 - dominant_].colours.bytes() / PairBuffers::kLentBytesPerPair, UINT32_MAX));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(images_[1 - dominant_].colours.bytes() / sizeof(gpu::uint), UINT32_MAX));
+}
+
+FrameCapacity StereoFrame::lendWhatFits(FrameCapacity capacity) const {
+    capacity.lent_pairs = std::min(capacity.lent_pairs, mostLentPairs());
+    capacity.lent_words = capacity.lent_pairs == 0 ? 0 : std::min(mostLentPairs() / capacity.lent_pairs, PairBuffers::kMostLentWords);
+    return capacity;
 }
 
 void StereoFrame::prepareLists() {
     FrameCapacity capacity = buffers_.capacity();
     if (capacity == FrameCapacity{}) {
-        capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0};
+        capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0, 0};
         if (reprojects(mode_)) {
             // What is rendered again has far fewer pairs.
             capacity.lent_pairs = capacity.pairs;
             capacity.pairs = (capacity.pairs + 3) / 4;
         }
     }
-    capacity.lent_pairs = std::min(capacity.lent_pairs, mostLentPairs());
     const auto borrowed_pairs = static_cast<std::uint32_t>(stereo_buffers_.borrowedBytes() / PairBuffers::kBytesPerPair + 1);
     capacity.pairs = std::max(capacity.pairs, borrowed_pairs);
-    growFrameBuffers(context_, buffers_, capacity);
+    growFrameBuffers(context_, buffers_, lendWhatFits(capacity));
 }
 
 bool StereoFrame::growIfNeeded() {
@@ -256,9 +260,10 @@ bool StereoFrame::growIfNeeded() {
         if (!lends) {
             wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs));
         } else if (pairs > now.pairs) {
-            wanted.lent_pairs = std::min(enough(pairs, now.lent_pairs), mostLentPairs());
+            wanted.lent_pairs = enough(pairs, now.lent_pairs);
         }
     }
+    wanted = lendWhatFits(wanted);
     if (wanted == now) {
         first_frame_ = false;
         return true;

@@ -93,6 +93,7 @@ private:
     void prepareLists();
     // Pairs that the dominant eye's sort finds room for in the picture of the other eye, while nothing is in it.
     [[nodiscard]] std::uint32_t mostLentPairs() const;
+    [[nodiscard]] FrameCapacity lendWhatFits(FrameCapacity capacity) const;
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
     [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;

@@ -2,6 +2,7 @@
 #include "engine/passes/frame_buffers.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace binosplat {
@@ -9,10 +10,14 @@ namespace binosplat {
 VisibleBuffers::VisibleBuffers(const Context& context, std::uint32_t capacity)
     : capacity_(capacity), buffer_(context, "visible splats", kBytesPerSplat * capacity) {}
 
-PairBuffers::PairBuffers(const Context& context, std::uint32_t capacity, std::uint32_t lent_capacity)
-    : capacity_(capacity),
-      lent_capacity_(lent_capacity),
-      buffer_(context, "tile pairs", std::max(kBytesPerPair * capacity, (kBytesPerPair - kLentBytesPerPair) * lent_capacity)) {}
+PairBuffers::PairBuffers(const Context& context, const FrameCapacity& capacity)
+    : capacity_(capacity.pairs),
+      lent_capacity_(capacity.lent_pairs),
+      lent_words_(capacity.lent_words),
+      buffer_(context, "tile pairs",
+              std::max(kBytesPerPair * capacity_, (kBytesPerPair - lent_words_ * sizeof(gpu::uint)) * lent_capacity_)) {
+    assert(lent_words_ <= kMostLentWords);
+}
 
 PairArrays PairBuffers::arrays() const {
     const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>(i * sizeof(gpu::uint) * capacity_); };
@@ -20,10 +25,16 @@ PairArrays PairBuffers::arrays() const {
 }
 
 PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const {
-    assert(idle.bytes() >= kLentBytesPerPair * lent_capacity_);
-    const auto lent = [&](std::uint64_t i) { return idle.address<gpu::uint>(i * sizeof(gpu::uint) * lent_capacity_); };
-    PairArrays arrays{{lent(0), lent(2)}, {lent(1), lent(2)}, lent_capacity_};
-    (Sort::endsInSpare(key_bits) ? arrays.spare : arrays.pairs).values = buffer_.address<gpu::uint>();
+    const std::uint64_t array_bytes = sizeof(gpu::uint) * lent_capacity_;
+    assert(idle.bytes() >= lent_words_ * array_bytes);
+    PairArrays arrays{{}, {}, lent_capacity_};
+    KeyValues &last = Sort::endsInSpare(key_bits) ? arrays.spare : arrays.pairs,
+              &other = Sort::endsInSpare(key_bits) ? arrays.pairs : arrays.spare;
+    const std::array kept_first{&last.values, &last.keys, &other.values, &other.keys};
+    const std::size_t kept = kept_first.size() - lent_words_;
+    for (std::size_t i = 0; i < kept_first.size(); ++i) {
+        *kept_first[i] = i < kept ? buffer_.address<gpu::uint>(i * array_bytes) : idle.address<gpu::uint>((i - kept) * array_bytes);
+    }
     return arrays;
 }
 
@@ -48,9 +59,10 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.visible = {};
         buffers.visible = VisibleBuffers(context, capacity.visible);
     }
-    if (buffers.pairs.capacity() != capacity.pairs || buffers.pairs.lentCapacity() != capacity.lent_pairs) {
+    if (buffers.pairs.capacity() != capacity.pairs || buffers.pairs.lentCapacity() != capacity.lent_pairs ||
+        buffers.pairs.lentWords() != capacity.lent_words) {
         buffers.pairs = {};
-        buffers.pairs = PairBuffers(context, capacity.pairs, capacity.lent_pairs);
+        buffers.pairs = PairBuffers(context, capacity);
     }
     const std::uint64_t scratch_bytes = std::max({Scan::blockSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
                                                   Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});

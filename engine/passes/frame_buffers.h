@@ -31,6 +31,7 @@ struct FrameCapacity {
     std::uint32_t visible = 0;
     std::uint32_t pairs = 0;
     std::uint32_t lent_pairs = 0;  // of an eye that sorts with lent memory, see PairBuffers
+    std::uint32_t lent_words = 0;  // of each of these
     bool operator==(const FrameCapacity&) const = default;
 };
 
@@ -72,26 +73,26 @@ struct PairArrays {
     std::uint32_t capacity = 0;
 };
 
-// Four words a pair. Of these one alone outlives the sort, the splats by tile; where memory lies idle meanwhile, the other three are lent
-// and a word a pair is enough.
+// Four words a pair. Of these one alone outlives the sort, the splats by tile; where memory lies idle meanwhile, up to three are lent.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
-    static constexpr std::uint64_t kLentBytesPerPair = 3 * sizeof(gpu::uint);
+    static constexpr std::uint32_t kMostLentWords = 3;
 
     PairBuffers() = default;
-    PairBuffers(const Context& context, std::uint32_t capacity, std::uint32_t lent_capacity);
+    PairBuffers(const Context& context, const FrameCapacity& capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     [[nodiscard]] std::uint32_t lentCapacity() const { return lent_capacity_; }
+    [[nodiscard]] std::uint32_t lentWords() const { return lent_words_; }
     [[nodiscard]] PairArrays arrays() const;
-    // With all but what remains of a sort by `key_bits` in `idle`, which must hold lentCapacity().
+    // With lentWords() of each pair in `idle`, none of which what remains of a sort by `key_bits`.
     [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     [[nodiscard]] const Buffer& buffer() const { return buffer_; }
 
 private:
-    std::uint32_t capacity_ = 0, lent_capacity_ = 0;
+    std::uint32_t capacity_ = 0, lent_capacity_ = 0, lent_words_ = 0;
     Buffer buffer_;
 };
 
@@ -105,7 +106,7 @@ struct FrameBuffers {
     Buffer scratch;      // block sums or histograms of the list at hand
     Buffer tile_ranges;  // uvec2 a tile
 
-    [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity()}; }
+    [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity(), pairs.lentWords()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {
