@@ -42,7 +42,7 @@ std::vector<std::string> writeFiles(const Folder& folder) {
     std::vector<std::string> paths{folder.write("ascii.ply", makePly(9, true).bytes()), folder.write("packed.ply", makeCompressedPly()),
                                    folder.write("a.splat", makeSplatFile()), folder.write("a.spz", gzip(makeSpz(3).bytes())),
                                    folder.file("large.ply")};
-    writePly(makeBuiltin("builtin:atelier", 20000), paths.back());
+    writePly(makeBuiltin("builtin:atelier", 5000), paths.back());
 #ifdef BINOSPLAT_OPENIMAGEIO
     paths.push_back(folder.write("a.sog", makeZip(makeSog())));
 #endif
