@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace binosplat {
 
@@ -63,7 +64,13 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : conte
     const int panel_width = kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
     window_ = glfwCreateWindow(kHeightPx + panel_width, kHeightPx, "binosplat", nullptr, nullptr);
     check(window_ != nullptr, "the window does not open");
-    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // a key that was let go before the next frame still counts once
+    // What was let go before the next frame still counts once.
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
+    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+        if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
+    });
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
     check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
@@ -110,13 +117,12 @@ WindowInput MirrorWindow::poll() {
     glfwPollEvents();
     const auto pressed = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
     WindowInput input;
-    input.quit = glfwWindowShouldClose(window_) == GLFW_TRUE || pressed(GLFW_KEY_ESCAPE) > 0.0;
-    const bool tab = pressed(GLFW_KEY_TAB) > 0.0;
-    input.toggle_panel = tab && !tab_;
-    tab_ = tab;
-    const bool reload = pressed(GLFW_KEY_F5) > 0.0;
-    input.reload_shaders = reload && !reload_;
-    reload_ = reload;
+    for (const int key : std::exchange(pressed_, {})) {
+        input.toggle_panel ^= key == GLFW_KEY_TAB;
+        input.reload_shaders |= key == GLFW_KEY_F5;
+        input.quit |= key == GLFW_KEY_ESCAPE;
+    }
+    input.quit |= glfwWindowShouldClose(window_) == GLFW_TRUE;
     input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
                   pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);

@@ -71,9 +71,10 @@ private:
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
-    bool acquired_ = false, tab_ = false, reload_ = false;
+    bool acquired_ = false;
     std::uint32_t index_ = 0;
     glm::dvec2 cursor_{0.0};
+    std::vector<int> pressed_;  // GLFW's keys, since the last poll
 };
 
 }  // namespace binosplat

@@ -9,7 +9,7 @@ packages=(
     libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
     libopenimageio-dev libzip-dev zlib1g-dev libzstd-dev
     libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libglfw3-dev
-    doctest-dev
+    doctest-dev xvfb xdotool
 )
 
 if ! command -v dpkg-query >/dev/null; then

@@ -1,0 +1,310 @@
+// Facts about the window beside the headset, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
+#include "engine/geometry.h"
+#include "engine/picture/metrics.h"
+#include "tests/view_runs.h"
+
+#include <doctest/doctest.h>
+#include <poll.h>
+#include <pty.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+constexpr int kPatienceMs = 60'000;  // until a program that is silent counts as hung
+constexpr glm::ivec2 kScreenPx(1400, 800);
+// The dominant eye is shown on the left, the panel beside it.
+constexpr int kEyePx = 720;
+constexpr glm::dvec2 kPanelPx(kEyePx * 768.0 / 896.0, kEyePx);
+// Widgets by their place on the panel, in shares of its width and height.
+constexpr glm::dvec2 kCentreRoi(0.034, 0.314), kSave(0.05, 0.477);
+
+bool haveScreen() {
+    const bool have = std::system("command -v Xvfb xdotool > /dev/null") == 0;
+    if (!have) { MESSAGE("skipped: Xvfb or xdotool is not installed"); }
+    return have;
+}
+
+// A program on a terminal of its own, since there it does not keep what it prints.
+class Program {
+public:
+    Program(const std::filesystem::path& folder, const std::vector<std::string>& command, const std::string& display) {
+        process_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+        if (process_ == 0) {
+            std::vector<char*> arguments;
+            for (const std::string& word : command) { arguments.push_back(const_cast<char*>(word.c_str())); }
+            arguments.push_back(nullptr);
+            const bool placed = chdir(folder.c_str()) == 0 && setenv("DISPLAY", display.c_str(), 1) == 0;
+            setenv("BINOSPLAT_VALIDATION", "1", 1);
+            unsetenv("WAYLAND_DISPLAY");
+            if (placed) { execvp(arguments[0], arguments.data()); }
+            _exit(127);
+        }
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    ~Program() {
+        kill(process_, SIGKILL);
+        if (!ended_) { static_cast<void>(exitCode()); }
+        close(terminal_);
+    }
+
+    // What it printed from the last line waited for to the end of the next that has `words` in it; empty if none comes.
+    std::string waitFor(const std::string& words) {
+        std::size_t found = said_.find(words, read_), end = std::string::npos;
+        while (found == std::string::npos || (end = said_.find('\n', found)) == std::string::npos) {
+            if (!readMore()) { return {}; }
+            found = said_.find(words, read_);
+        }
+        const std::string lines = said_.substr(read_, end - read_);
+        read_ = end;
+        return lines;
+    }
+    [[nodiscard]] int exitCode() {
+        while (readMore()) {}
+        int status = 0;
+        waitpid(process_, &status, 0);
+        ended_ = true;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    [[nodiscard]] const std::string& said() const { return said_; }
+
+private:
+    bool readMore() {
+        pollfd waits{terminal_, POLLIN, 0};
+        std::array<char, 4096> part{};
+        const ssize_t bytes = poll(&waits, 1, kPatienceMs) == 1 ? read(terminal_, part.data(), part.size()) : -1;
+        if (bytes > 0) { said_.append(part.data(), static_cast<std::size_t>(bytes)); }
+        return bytes > 0;
+    }
+
+    int terminal_ = -1;
+    pid_t process_ = -1;
+    std::string said_;
+    std::size_t read_ = 0;
+    bool ended_ = false;
+};
+
+// Xvfb keeps its picture in a file.
+class Screen {
+public:
+    explicit Screen(const std::filesystem::path& folder)
+        : folder_(folder),
+          server_(folder,
+                  {"Xvfb", "-displayfd", "1", "-screen", "0", fmt::format("{}x{}x24", kScreenPx.x, kScreenPx.y), "-fbdir", folder.string()},
+                  "") {
+        std::string line = server_.waitFor("\n");
+        line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c < '0' || c > '9'; }), line.end());
+        name = ":" + line;
+    }
+
+    // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
+    [[nodiscard]] Image picture() const {
+        std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+        const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(bytes.at(at)); };
+        const auto number = [&](std::size_t index) {
+            std::size_t value = 0;
+            for (std::size_t i = 0; i < 4; ++i) { value = value * 256 + byte(4 * index + i); }
+            return value;
+        };
+        constexpr std::size_t kBytesPerColour = 12;
+        const std::size_t start = number(0) + kBytesPerColour * number(19), row_bytes = number(12);
+        Image image{{number(4), number(5)}, 3, {}};
+        for (std::size_t y = 0; y < image.size_px.y; ++y) {
+            for (std::size_t x = 0; x < image.size_px.x; ++x) {
+                for (const std::size_t channel : {2, 1, 0}) {
+                    image.values.push_back(static_cast<float>(byte(start + y * row_bytes + 4 * x + channel)) / 255.0f);
+                }
+            }
+        }
+        return image;
+    }
+
+    std::string name;
+
+private:
+    std::filesystem::path folder_;
+    Program server_;
+};
+
+// The viewer beside its window, with a mouse and keys.
+class Viewer {
+public:
+    Viewer(const Workplace& work, const std::string& options)
+        : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
+          program_(work.path, {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:fence --load-first " + options}, screen_.name) {
+        REQUIRE(program_.waitFor("per eye, on ") != "");
+        // The keys go to the window that the mouse is in.
+        hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
+    }
+
+    void hands(const std::string& does) const {
+        const std::string command = "DISPLAY=" + screen_.name + " timeout 60 xdotool " + does + " >/dev/null";
+        INFO(command);
+        REQUIRE(std::system(command.c_str()) == 0);
+    }
+    static std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
+    static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelPx); }
+
+    // The panel goes or comes: by then everything before has reached the viewer.
+    std::string tab() {
+        hands("key Tab");
+        const std::string lines = program_.waitFor("panel = ");
+        CHECK(lines != "");
+        return lines;
+    }
+    void click(const glm::dvec2& share) {
+        hands(panel(share));
+        tab();
+        hands("mousedown 1");
+        tab();
+        hands("mouseup 1");
+    }
+    // Where the wearer's room lies now, as the viewer saves it.
+    Pose placement(const Workplace& work) {
+        click(kSave);
+        REQUIRE(program_.waitFor("saved as fence.view.toml") != "");
+        std::ifstream file(work.path / "fence.view.toml");
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        const auto numbers = [&](const std::string& key) {
+            const std::size_t at = text.find(key + " = [");
+            REQUIRE(at != std::string::npos);
+            std::string list = text.substr(at + key.size() + 4);
+            list = list.substr(0, list.find(']'));
+            std::ranges::replace(list, ',', ' ');
+            std::istringstream words(list);
+            return std::vector<double>(std::istream_iterator<double>(words), {});
+        };
+        const std::vector<double> p = numbers("scene-position"), q = numbers("scene-orientation");
+        return {{q.at(0), q.at(1), q.at(2), q.at(3)}, {p.at(0), p.at(1), p.at(2)}};
+    }
+
+    [[nodiscard]] Program& program() { return program_; }
+    [[nodiscard]] const Screen& screen() const { return screen_; }
+
+private:
+    Screen screen_;
+    Program program_;
+};
+
+std::array<float, 3> colourAt(const Image& image, glm::uvec2 at) {
+    const float* value = &image.values.at((std::size_t{at.y} * image.size_px.x + at.x) * static_cast<std::size_t>(image.channels));
+    return {value[0], value[1], value[2]};
+}
+
+// The pixels of the window next to the middles of the eye's, which it shows magnified.
+Image eyeInWindow(const Image& screen, glm::uvec2 eye_px) {
+    Image eye{eye_px, 3, {}};
+    const glm::dvec2 scale = glm::dvec2(kEyePx) / glm::dvec2(eye_px);
+    for (std::uint32_t y = 0; y < eye_px.y; ++y) {
+        for (std::uint32_t x = 0; x < eye_px.x; ++x) {
+            const auto colour = colourAt(screen, glm::uvec2(scale * (glm::dvec2(x, y) + 0.5)));
+            eye.values.insert(eye.values.end(), colour.begin(), colour.end());
+        }
+    }
+    return eye;
+}
+
+// Of the last composed picture.
+Image lastLeftEye(const std::filesystem::path& folder) {
+    std::size_t last = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder)) {
+        unsigned long frame = 0;
+        if (std::sscanf(file.path().filename().c_str(), "frame_%lu.png", &frame) == 1) { last = std::max<std::size_t>(last, frame); }
+    }
+    ViewRun run;
+    run.out = folder;
+    return run.eye(last, kLeft);
+}
+
+std::size_t coloursOfPanel(const Image& screen) {
+    std::set<std::array<float, 3>> colours;
+    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(kPanelPx.y); ++y) {
+        for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(kPanelPx.x); ++x) { colours.insert(colourAt(screen, {kEyePx + x, y})); }
+    }
+    return colours.size();
+}
+
+}  // namespace
+
+TEST_CASE("mouse and keys do in the window what hands do in the headset") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::ofstream(work.path / "rest.script") << "rate 90\nsize 192 192\nframes every 20\n";
+    Viewer viewer(work, "--simulate rest.script --out seen");
+    Program& program = viewer.program();
+
+    // The panel by mouse: a click on a switch, and the same again.
+    viewer.click(kCentreRoi);
+    CHECK(program.waitFor("center-roi = true") != "");
+    viewer.click(kCentreRoi);
+    CHECK(program.waitFor("center-roi = false") != "");
+
+    // A drag of 100 pixels to the left turns by 0.4 radians, however many frames it takes; the scene follows the mouse, to the left.
+    const Pose start = viewer.placement(work);
+    viewer.hands(Viewer::moveTo({400.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mousedown 1");
+    viewer.tab();
+    viewer.hands(Viewer::moveTo({300.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mouseup 1");
+    const Pose turned = viewer.placement(work);
+    const auto turnBetween = [](const Pose& a, const Pose& b) {
+        const glm::dquat turn = glm::conjugate(a.orientation) * b.orientation;
+        return 2.0 * std::atan2(turn.y, turn.w);
+    };
+    CHECK(turnBetween(start, turned) == doctest::Approx(0.4).epsilon(1e-6));
+
+    // Keys: forward is where the wearer now looks, arrows turn.
+    const auto hold = [&](const std::string& key) {
+        viewer.hands(Viewer::moveTo({300.0, 300.0}) + "keydown " + key);
+        viewer.tab();
+        viewer.tab();
+        viewer.hands("keyup " + key);
+        return viewer.placement(work);
+    };
+    const auto stepBetween = [](const Pose& a, const Pose& b) { return glm::conjugate(a.orientation) * (b.position - a.position); };
+    const Pose forward = hold("w"), sideways = hold("d"), sunk = hold("q");
+    CHECK(stepBetween(turned, forward).z > 0.01);
+    CHECK(std::abs(stepBetween(turned, forward).x) < 1e-6);
+    CHECK(stepBetween(forward, sideways).x > 0.01);
+    CHECK(std::abs(stepBetween(forward, sideways).z) < 1e-6);
+    CHECK(stepBetween(sideways, sunk).y > 0.01);
+    const Pose right = hold("Right");
+    CHECK(turnBetween(sunk, right) > 0.01);
+    const Pose back = hold("s"), left = hold("Left");
+    CHECK(stepBetween(right, back).z < -0.01);
+    CHECK(turnBetween(back, left) < -0.01);
+
+    // What stands in the window is what the dominant eye sees. Two reloads take long enough for it to get there.
+    if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
+    for (int i = 0; i < 2; ++i) {
+        viewer.hands("key F5");
+        CHECK(program.waitFor(" shaders reloaded in ") != "");
+    }
+    const Image screen = viewer.screen().picture();
+
+    // Escape ends the session as the wearer would.
+    viewer.hands("key Escape");
+    CHECK(program.exitCode() == 0);
+    INFO(program.said());
+    CHECK(program.said().find("frames; ") != std::string::npos);
+    CHECK(program.said().find("VUID") == std::string::npos);
+    CHECK(program.said().find("no window") == std::string::npos);
+    const Image seen = lastLeftEye(work.path / "seen");
+    REQUIRE(seen.channels == 3);
+    CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
+    // Beside it, the panel.
+    CHECK(coloursOfPanel(screen) > 10);
+}
