@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace binosplat {
 
@@ -61,7 +62,8 @@ void drawResolution(ViewSettings& settings) {
         storage->SetFloat(id, scale);
         return;
     }
-    if (ImGui::IsItemDeactivatedAfterEdit()) { settings.resolution_scale = static_cast<double>(std::clamp(scale, kLeast, kMost)); }
+    // As many digits as are shown.
+    if (ImGui::IsItemDeactivatedAfterEdit()) { settings.resolution_scale = std::round(100.0 * std::clamp(scale, kLeast, kMost)) / 100.0; }
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
 }
 

@@ -89,7 +89,16 @@ TEST_CASE("the library shows one function, which negotiates version 1") {
     CHECK(negotiate(&info, &request) == XR_SUCCESS);
     CHECK(request.interface == 1);
     CHECK(XR_VERSION_MAJOR(request.api) == 1);
-    CHECK((request.get_instance_proc_addr != nullptr));
+    REQUIRE((request.get_instance_proc_addr != nullptr));
+    // The loader answers for the layers by itself; a loader that asks is told of none.
+    PFN_xrVoidFunction found = nullptr;
+    CHECK(request.get_instance_proc_addr(XR_NULL_HANDLE, "xrEnumerateApiLayerProperties", &found) == XR_SUCCESS);
+    const auto enumerateLayers = reinterpret_cast<PFN_xrEnumerateApiLayerProperties>(found);
+    REQUIRE((enumerateLayers != nullptr));
+    std::uint32_t count = 9;
+    CHECK(enumerateLayers(0, &count, nullptr) == XR_SUCCESS);
+    CHECK(count == 0);
+    CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     dlclose(handle);
 }
 

@@ -116,5 +116,16 @@ TEST_CASE("the elder extension has functions of its own, and needs no extensions
         CHECK(std::string(text).empty());
         CHECK(getExtensions(instance, 2, 4, &count, text) == XR_ERROR_SYSTEM_INVALID);
     }
+    const auto getRequirements = reinterpret_cast<PFN_xrGetVulkanGraphicsRequirementsKHR>(find("xrGetVulkanGraphicsRequirementsKHR"));
+    REQUIRE((getRequirements != nullptr));
+    XrGraphicsRequirementsVulkanKHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR};
+    CHECK(getRequirements(instance, 1, &requirements) == XR_SUCCESS);
+    CHECK(requirements.minApiVersionSupported <= XR_MAKE_VERSION(1, 1, 0));
+    CHECK(requirements.maxApiVersionSupported >= XR_MAKE_VERSION(1, 2, 0));
+    CHECK(getRequirements(instance, 2, &requirements) == XR_ERROR_SYSTEM_INVALID);
+    CHECK(getRequirements(XR_NULL_HANDLE, 1, &requirements) == XR_ERROR_HANDLE_INVALID);
+    CHECK(getRequirements(instance, 1, nullptr) == XR_ERROR_VALIDATION_FAILURE);
+    requirements.type = XR_TYPE_UNKNOWN;
+    CHECK(getRequirements(instance, 1, &requirements) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
 }

@@ -19,7 +19,8 @@ const std::string kScene = "builtin:fence --load-first";
 
 // Widgets by their place on the panel, in shares of its width and height.
 const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
-    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.75, 0.477);
+    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.75, 0.477), kMargin(0.3, 0.355),
+    kBudget(0.3, 0.395), kResolution(0.3, 0.436);
 
 // Where the panel hangs, as the runtime was told, in STAGE and OpenXR's axes.
 struct Panel {
@@ -171,6 +172,32 @@ TEST_CASE("method and dominant eye are switched, and the wearer may quit from th
     CHECK(says(run, "dominant = \"right\""));
     // It quit before the script's end at 1 s.
     CHECK(run.frames.size() < 80);
+}
+
+TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const ViewRun run = runView(work, "slide", kSmall + clickOn(panel, {kMargin, kBudget, kResolution, {0.9, 0.95}}), kScene);
+    checkClean(run);
+    const auto valueOf = [&](const std::string& key) {
+        const std::size_t at = run.outcome.output.find(key + " = ");
+        INFO(key << " in " << run.outcome.output);
+        REQUIRE(at != std::string::npos);
+        return std::stod(run.outcome.output.substr(at + key.size() + 3));
+    };
+    // 0 to 128 pixels, 0 to 100 %, 0.25 to 1.5, all clicked at the same share of their length.
+    const double share = valueOf("budget");
+    CHECK(share > 0.4);
+    CHECK(share < 0.6);
+    CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
+    const double scale = valueOf("resolution-scale");
+    CHECK(scale == doctest::Approx(0.25 + 1.25 * share).epsilon(0.02));
+    const auto sizeIn = [&](std::size_t frame) {
+        const auto rect = run.layers(frame, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>();
+        return rect[2];
+    };
+    CHECK(sizeIn(40) == 160);
+    CHECK(sizeIn(70) == static_cast<int>(std::round(160.0 * scale)));
 }
 
 TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the wearer leaves") {
