@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace simulated {
@@ -22,7 +23,16 @@ namespace simulated {
 // One line: file:line: what is wrong, what was expected.
 class ScriptError : public std::runtime_error {
 public:
-    using std::runtime_error::runtime_error;
+    explicit ScriptError(std::string message) : std::runtime_error(oneLine(std::move(message))) {}
+
+private:
+    // What a message quotes comes from a file and may hold anything.
+    static std::string oneLine(std::string message) {
+        for (char& letter : message) {
+            if (static_cast<unsigned char>(letter) < ' ') { letter = ' '; }
+        }
+        return message;
+    }
 };
 
 // One controller at a time.

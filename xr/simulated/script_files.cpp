@@ -134,7 +134,7 @@ std::string readText(const fs::path& path, const std::string& place, const char*
     if (!fs::is_regular_file(status)) { refuse("not a regular file"); }
     std::ifstream stream(path, std::ios::binary);
     if (!stream) { refuse(std::strerror(errno)); }
-    std::string text(kMostBytes + 1, '\0');
+    std::string text(std::min<std::uintmax_t>(fs::file_size(path, error), kMostBytes) + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > kMostBytes) { refuse("longer than 16 MiB"); }
