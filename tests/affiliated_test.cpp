@@ -219,8 +219,6 @@ TEST_CASE("making one eye from the other takes less memory than rendering both")
                                       << " %");
         }
         // Measured: 3 to 25 % less; most of the dominant eye's pairs lie where the other eye's picture will be.
-        for (const Mode mode : kReprojectingModes) {
-            CHECK(peak_bytes[mode] < peak_bytes[Mode::kTwoPass]);
-        }
+        for (const Mode mode : kReprojectingModes) { CHECK(peak_bytes[mode] < peak_bytes[Mode::kTwoPass]); }
     }
 }

@@ -35,8 +35,8 @@ public:
     // It ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
     explicit HelloXr(const std::string& script, const std::string& options = "") : Headset(script) {
         const std::string pipe = (folder / "keys").string(), log = (folder / "output").string();
-        const std::string command =
-            "mkfifo " + pipe + " && timeout 60 hello_xr -g Vulkan2 " + options + " 0<>" + pipe + " > " + log + " 2>&1";
+        const std::string command = "mkfifo " + pipe + " && " BINOSPLAT_STRANGERS_ENVIRONMENT "timeout 60 hello_xr -g Vulkan2 " + options +
+                                    " 0<>" + pipe + " > " + log + " 2>&1";
         const int status = std::system(command.c_str());
         exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
         output = readFile(log);

@@ -47,7 +47,7 @@ TEST_CASE("every built-in scene is sound, repeats exactly and has a view") {
 
 TEST_CASE("the atelier has exactly the splats asked for, and its light is baked alike at any number") {
     glm::dvec3 colour_before(0.0);
-    for (const std::uint64_t splats : {1000u, 1001u, 4999u, 50'000u, 333'333u}) {
+    for (const std::uint64_t splats : {1000u, 1001u, 4999u, 33'333u, 100'000u}) {
         const Scene scene = makeBuiltin("builtin:atelier", splats);
         checkSound(scene, splats);
         CHECK(scene.sh_degree == 3);
@@ -61,10 +61,10 @@ TEST_CASE("the atelier has exactly the splats asked for, and its light is baked 
 }
 
 TEST_CASE("only the atelier's glazed vase shines") {
-    const SceneSummary summary = describeScene(makeBuiltin("builtin:atelier", 200'000));
+    const SceneSummary summary = describeScene(makeBuiltin("builtin:atelier", 50'000));
     for (const std::size_t band : {1u, 2u, 3u}) {
-        CHECK(summary.splats_using_band[band] > 200);
-        CHECK(summary.splats_using_band[band] < 20'000);
+        CHECK(summary.splats_using_band[band] > 50);
+        CHECK(summary.splats_using_band[band] < 5'000);
     }
     CHECK(summary.max_position.y < 50.0f);  // y is down: the feet of the hills lie a little below, the sky far above
     CHECK(summary.min_position.y < -100.0f);
