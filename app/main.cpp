@@ -22,6 +22,8 @@ template <typename... Handlers>
 struct Match : Handlers... {
     using Handlers::operator()...;
 };
+template <typename... Handlers>
+Match(Handlers...) -> Match<Handlers...>;  // clang needs it before its 17th version
 
 void run(int argument_count, const char* const* arguments) {
     std::visit(

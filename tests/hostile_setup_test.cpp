@@ -5,6 +5,7 @@
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/hostile.h"
+#include "third_party/toml_guard.h"
 
 #include <unistd.h>
 
@@ -111,6 +112,14 @@ TEST_CASE("broken settings") {
             attempts.attempt("not ASCII", fmt::format(fmt::runtime(around), letter, letter));
         }
     }
+    // Quotes that toml++ does not take for quotes: more of a word that is already wrong.
+    for (const char* letter : {"\u00e9", "\ufbd0", "\ufef7"}) {
+        for (const char* around :
+             {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n", "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n",
+              "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n", "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"}) {
+            attempts.attempt("quotes that are none", fmt::format(fmt::runtime(around), letter));
+        }
+    }
     attempts.attempt("several lines", "a = \"\"\"\nb\n\"\"\"\n");
     attempts.attempt("a line break in a key", "\"a\\nb\" = 1\n[c]\n[c.d]\n");
     attempts.attempt("a line break in a table's name", "[\"a\\nb\"]\nc = {d = 1}\n");
@@ -127,6 +136,10 @@ TEST_CASE("letters outside of ASCII are read in quotes and comments and refused 
         return std::string();
     };
     CHECK(messageOf("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n").empty());
+    // Wherever TOML takes quotes for a text or a key.
+    CHECK_FALSE(third_party::findUnreadableToml(
+        "a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", d.e=[\"\u00e9\"], f = '\u00e9'}\n"
+        "[\"\u00e9\"]\n[[g]]\n\"\u00e9\" = 1\n"));
     CHECK(messageOf("a = 1\nb = \u00e9\n").find("letters.toml:2: a letter that is neither ASCII") != std::string::npos);
     CHECK(messageOf("a = 1\n\nb = '''x'''\n").find("letters.toml:3: a text over several lines") != std::string::npos);
     CHECK(messageOf("a = 1\nb = 2\"\u00e9\"\n").find("letters.toml:2: quotes within a word") != std::string::npos);

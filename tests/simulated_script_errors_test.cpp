@@ -182,8 +182,8 @@ TEST_CASE("headsetFilesWithMistakesAreRefusedWithTheirOwnLine") {
     refusesHeadset(replaced(kHeadset, "[right]", "[middle]"), "middle is not a key of a headset");
     refusesHeadset(kHeadset + "\xc3\xa9 = 1\n", "h.toml:16: a letter that is neither ASCII nor in quotes nor in a comment");
     refusesHeadset(kHeadset + "a = 2\"\xc3\xa9\"\n", "h.toml:16: quotes within a word, must be around it");
-    refusesHeadset(kHeadset + "a = \"\"\"b\"\"\"\n", "h.toml:16: quotes within a word");
-    refusesHeadset(kHeadset + "a = " + std::string(65, '.') + "\n", "h.toml:16: more than 64 dots outside of quotes");
+    refusesHeadset(kHeadset + "a = \"\"\"b\"\"\"\n", "h.toml:16: a text over several lines, must be on one");
+    refusesHeadset(kHeadset + "a = " + std::string(65, '.') + "\n", "h.toml:16: a key of more than 64 parts");
     refusesHeadset(replaced(kHeadset, "canting_deg", "kanting"), "h.toml:4: kanting is not a key of a headset, must be name, source");
 }
 

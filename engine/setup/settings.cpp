@@ -2,7 +2,7 @@
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
-#include "engine/setup/settings_guard.h"
+#include "third_party/toml_guard.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -91,7 +91,7 @@ std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
           std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
     std::stringstream content;
     content << stream.rdbuf();
-    refuseUnreadableSettings(file, content.str());
+    if (const auto found = third_party::findUnreadableToml(content.str())) { fail("{}:{}: {}", file, found->line, found->problem); }
 
     toml::table root;
     try {

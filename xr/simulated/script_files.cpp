@@ -1,6 +1,7 @@
 // Script files from disk, and headset files; the only place here that knows toml++.
 #include "xr/simulated/script_files.h"
 
+#include "third_party/toml_guard.h"
 #include "xr/simulated/script_words.h"
 
 #include <glm/trigonometric.hpp>
@@ -82,31 +83,6 @@ glm::uvec2 sizeOf(const Table& table) {
     return {static_cast<std::uint32_t>(sides[0]), static_cast<std::uint32_t>(sides[1])};
 }
 
-// toml++ 3.1 takes some letters beyond ASCII for impossible where a blank could stand, be it between quotes that begin within a number, and
-// frees a key of many parts by recursion.
-void refuseUnreadable(std::string_view text, const std::string& name) {
-    constexpr std::ptrdiff_t kMostDots = 64;
-    if (text.starts_with("\xef\xbb\xbf")) { text.remove_prefix(3); }
-    for (int line = 1; !text.empty(); ++line) {
-        const std::size_t length = std::min(text.find('\n'), text.size());
-        const std::string place = fmt::format("{}:{}", name, line);
-        std::string bare;  // the line without what stands in quotes, and without a comment
-        for (std::size_t i = 0; i < length && text[i] != '#'; ++i) {
-            bare += text[i];
-            if (text[i] != '"' && text[i] != '\'') { continue; }
-            const bool begins = i == 0 || std::string_view(" \t=,[{").find(text[i - 1]) != std::string_view::npos;
-            if (!begins) { failAt(place, "quotes within a word, must be around it"); }
-            const char quote = text[i++];
-            while (i < length && text[i] != quote) { i += text[i] == '\\' && quote == '"' ? 2 : 1; }
-            bare += quote;
-        }
-        const bool is_ascii = std::ranges::all_of(bare, [](char letter) { return static_cast<unsigned char>(letter) < 128; });
-        if (!is_ascii) { failAt(place, "a letter that is neither ASCII nor in quotes nor in a comment"); }
-        if (std::ranges::count(bare, '.') > kMostDots) { failAt(place, "more than {} dots outside of quotes", kMostDots); }
-        text.remove_prefix(std::min(length + 1, text.size()));
-    }
-}
-
 Fov fovOf(const Table& root, std::string_view side) {
     const toml::node& node = root.require(side);
     if (!node.is_table()) { failAt(placeOf(root.file, node), "{} must be a table", side); }
@@ -142,7 +118,7 @@ std::string readText(const fs::path& path, const std::string& place, const char*
 }
 
 HeadsetFile parseHeadset(const std::string& text, const std::string& name) {
-    refuseUnreadable(text, name);
+    if (const auto found = third_party::findUnreadableToml(text)) { failAt(fmt::format("{}:{}", name, found->line), "{}", found->problem); }
     toml::table root;
     try {
         root = toml::parse(text, name);
