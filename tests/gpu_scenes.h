@@ -6,6 +6,7 @@
 #include "engine/scene/procedural.h"
 #include "tests/reference_scenes.h"
 
+#include <map>
 #include <string>
 #include <utility>
 
@@ -21,8 +22,12 @@ inline Eye eyeOf(const View& view, glm::uvec2 size_px) {
     return {lookAt(view.eye, view.look, view.up), intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
 }
 
+// Each is made once: the atelier's light takes longer to bake than many a test.
 inline ViewedScene viewBuiltin(const std::string& name, glm::uvec2 size_px, std::uint64_t splats = 0) {
-    return {name, makeBuiltin(name, splats), eyeOf(*builtinView(name), size_px)};
+    static std::map<std::pair<std::string, std::uint64_t>, Scene> made;
+    auto found = made.find({name, splats});
+    if (found == made.end()) { found = made.emplace(std::pair(name, splats), makeBuiltin(name, splats)).first; }
+    return {name, found->second, eyeOf(*builtinView(name), size_px)};
 }
 
 // A cloud that holds the eye: near and far, through the near plane, thin and long, huge, tiny, and edge-on to 1e-7 rad.
