@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string_view>
 
 namespace binosplat {
 namespace {
@@ -313,8 +314,8 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
 }
 
 void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const {
-    const auto leaveOut = [&](bool condition, std::string sentence) {
-        if (condition) { result.left_out.push_back(std::move(sentence)); }
+    const auto leaveOut = [&](bool condition, std::string_view sentence) {
+        if (condition) { result.left_out.emplace_back(sentence); }
     };
     const bool reprojected = reprojects(settings.mode);
     const bool patched = settings.mode == Mode::kPaper || settings.mode == Mode::kPredicted;
