@@ -94,7 +94,11 @@ void decodeChannels(std::span<const std::byte> stream, bool with_alpha, const st
                       spec.format == OIIO::TypeDesc::UINT8;
     check(fits, "{}: decodes to {} x {} with {} channels, expected {} x {} with {} of 8 bits", name, spec.width, spec.height,
           spec.nchannels, expected_px.x, expected_px.y, channels);
-    const bool read = input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, rgba.data(), 4);
+    // Row by row: for several at once OpenImageIO takes room for 64 MiB of them, however small the picture.
+    bool read = true;
+    for (int y = 0; read && y < spec.height; ++y) {
+        read = input->read_scanline(y, 0, OIIO::TypeDesc::UINT8, rgba.data() + 4 * static_cast<std::size_t>(spec.width) * y, 4);
+    }
     check(read, "{}: cannot be decoded ({})", name, oneLine(input->geterror()));
 }
 

@@ -1,10 +1,9 @@
-// Buffered reading of one file. The buffer is 1 MiB: large enough for full disk speed, small beside any scene.
+// Buffered reading of one file. The buffer is 1 MiB, large enough for full disk speed and small beside any scene, or what a smaller file needs.
 #include "engine/scene/input_file.h"
 
 #include "engine/error.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,7 +15,7 @@
 namespace binosplat {
 
 namespace {
-constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostBufferBytes = std::size_t{1} << 20, kLeastBufferBytes = 4096;
 }
 
 InputFile::InputFile(const std::string& path) : name_(path) {
@@ -31,7 +30,8 @@ InputFile::InputFile(const std::string& path) : name_(path) {
     check(file_ != nullptr, "{}: cannot be opened: {}", path, std::strerror(errno));
     opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
-    buffer_ = std::make_unique_for_overwrite<char[]>(kBufferBytes);  // most files are smaller: their memory is never touched
+    // One more than a small file has: its last line is not too long only because it fills the buffer.
+    buffer_.resize(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
 }
 
 InputFile::Stamp InputFile::stamp() const {
@@ -45,14 +45,14 @@ void InputFile::requireUnchanged() const {
 }
 
 void InputFile::fillTo(std::size_t count) {
-    assert(count <= kBufferBytes);
+    count = std::min(count, buffer_.size());
     if (end_ - begin_ >= count) { return; }
-    std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     end_ -= begin_;
     begin_ = 0;
     while (end_ < count) {
         errno = 0;
-        const std::size_t got = std::fread(buffer_.get() + end_, 1, kBufferBytes - end_, file_.get());
+        const std::size_t got = std::fread(buffer_.data() + end_, 1, buffer_.size() - end_, file_.get());
         check(std::ferror(file_.get()) == 0, "{}: reading failed at byte {}: {}", name_, position_bytes_ + end_, std::strerror(errno));
         if (got == 0) { return; }
         end_ += got;
@@ -61,14 +61,14 @@ void InputFile::fillTo(std::size_t count) {
 
 std::string_view InputFile::peek(std::size_t count) {
     fillTo(count);
-    return {buffer_.get() + begin_, std::min(count, end_ - begin_)};
+    return {buffer_.data() + begin_, std::min(count, end_ - begin_)};
 }
 
 InputFile::LineEnd InputFile::readLine(std::string_view& line) {
     // Most lines are short, so the search starts small and widens to the whole buffer only if no break is there.
-    for (const std::size_t reach : {std::size_t{4096}, kBufferBytes}) {
+    for (const std::size_t reach : {kLeastBufferBytes, buffer_.size()}) {
         fillTo(reach);
-        const char* start = buffer_.get() + begin_;
+        const char* start = buffer_.data() + begin_;
         const void* found = std::memchr(start, '\n', end_ - begin_);
         if (found == nullptr) { continue; }
         const auto length = static_cast<std::size_t>(static_cast<const char*>(found) - start);
@@ -77,8 +77,8 @@ InputFile::LineEnd InputFile::readLine(std::string_view& line) {
         line = {start, length > 0 && start[length - 1] == '\r' ? length - 1 : length};
         return LineEnd::kBreak;
     }
-    check(end_ - begin_ < kBufferBytes, "{}: byte {}: a line is longer than {} bytes", name_, position_bytes_, kBufferBytes);
-    line = {buffer_.get() + begin_, end_ - begin_};
+    check(end_ - begin_ < buffer_.size(), "{}: byte {}: a line is longer than {} bytes", name_, position_bytes_, buffer_.size());
+    line = {buffer_.data() + begin_, end_ - begin_};
     position_bytes_ += line.size();
     begin_ = end_;
     return line.empty() ? LineEnd::kNoLine : LineEnd::kFileEnd;
@@ -86,7 +86,7 @@ InputFile::LineEnd InputFile::readLine(std::string_view& line) {
 
 std::span<const std::byte> InputFile::readBlock(std::size_t count) {
     fillTo(count);
-    const std::span<const char> block(buffer_.get() + begin_, std::min(count, end_ - begin_));
+    const std::span<const char> block(buffer_.data() + begin_, std::min(count, end_ - begin_));
     begin_ += block.size();
     position_bytes_ += block.size();
     return std::as_bytes(block);
@@ -100,7 +100,7 @@ std::size_t InputFile::readAt(std::uint64_t offset, std::span<std::byte> target)
 
 void InputFile::skip(std::uint64_t count) {
     while (count > 0) {
-        const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, kBufferBytes))).size();
+        const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
         check(got > 0, "{}: ends at byte {}, {} more were expected", name_, position_bytes_, count);
         count -= got;
     }

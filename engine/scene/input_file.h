@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -58,7 +59,7 @@ private:
     std::unique_ptr<std::FILE, Closer> file_;
     Stamp opened_{};
     std::uint64_t position_bytes_ = 0;
-    std::unique_ptr<char[]> buffer_;
+    std::vector<char> buffer_;
     std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer
 };
 
