@@ -8,6 +8,12 @@
 
 namespace binosplat {
 
+namespace {
+
+constexpr double kMostDecades = 9.0;  // with a label each
+
+}  // namespace
+
 bool PlotAxis::shows(double value) const { return std::isfinite(value) && (scale_ == Scale::kLinear || value > 0.0); }
 
 void PlotAxis::include(double value) {
@@ -24,9 +30,14 @@ void PlotAxis::round() {
         roundLinear();
     }
     low_ = ticks_.front(), high_ = ticks_.back();
-    // Over three decades, powers of ten are enough.
-    if (scale_ == Scale::kLog && std::log10(high_ / low_) > 3.0) {
-        std::erase_if(ticks_, [](double tick) { return std::abs(std::log10(tick) - std::round(std::log10(tick))) > 1e-6; });
+    // Over three decades, powers of ten are enough; over nine, every second, third ... of them.
+    const double decades = scale_ == Scale::kLog ? std::log10(high_ / low_) : 0.0;
+    if (decades > 3.0) {
+        const double step = std::ceil(decades / kMostDecades);
+        std::erase_if(ticks_, [&](double tick) {
+            const double steps = std::log10(tick) / step;
+            return std::abs(steps - std::round(steps)) * step > 1e-6;
+        });
     }
 }
 
@@ -61,6 +72,7 @@ double PlotAxis::share(double value) const {
 }
 
 std::string shortNumber(double value) {
+    if (value >= 1e12) { return fmt::format("{:.3g}", value); }
     if (value >= 1e9) { return fmt::format("{:.3g}G", value / 1e9); }
     if (value >= 1e6) { return fmt::format("{:.3g}M", value / 1e6); }
     if (value >= 1e3) { return fmt::format("{:.3g}k", value / 1e3); }

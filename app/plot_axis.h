@@ -33,7 +33,7 @@ private:
     std::vector<double> ticks_;
 };
 
-// 1500 as 1.5k, 3000000 as 3M.
+// 1500 as 1.5k, 3000000 as 3M; from 1e12 on with an exponent.
 std::string shortNumber(double value);
 
 }  // namespace binosplat
