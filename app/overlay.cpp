@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace binosplat {
 
@@ -71,7 +72,12 @@ void drawTimes(const OverlayStatus& status) {
     const std::vector<float>& times = status.frame_ms;
     const float last = times.empty() ? 0.0f : times.back();
     const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
-    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, 50.0f, ImVec2(0.0f, 60.0f));
+    // A first frame that makes its kernels does not press the others flat.
+    std::vector<float> sorted = times;
+    std::ranges::sort(sorted);
+    const float highest = sorted.empty() ? 0.0f : 2.0f * sorted[sorted.size() / 2];
+    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, std::max(highest, 33.3f),
+                     ImVec2(0.0f, 60.0f));
     if (status.frame == nullptr) { return; }
     const auto count = [&](const std::string& name) {
         const auto found = status.frame->counters.find(name);
@@ -91,7 +97,7 @@ void drawTimes(const OverlayStatus& status) {
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);
     for (const auto& [name, ms] : addUp(status.frame->gpu_ms)) {
-        text(fmt::format("{:>7.3f} {}", ms, name));
+        text(fmt::format("{:>6.2f} {}", ms, name));
         ImGui::NextColumn();
     }
     ImGui::Columns(1);
