@@ -83,10 +83,13 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
 
 }  // namespace
 
-MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
+MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo,
+                                            bool compared) {
     stopIfInterrupted();
     FrameSettings settings = frameSettings(camera, stereo);
-    settings.keep_depth = false;  // nobody reads it here, so no mode pays for it unless it needs it itself
+    settings.keep_classes = compared;
+    settings.half_floats = !compared;  // as a viewer has it
+    settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
     const bool reprojected = reprojects(settings.mode);
     auto& frame = frames_[{settings.mode, reprojected && stereo.depth != "inverse", reprojected && stereo.center_roi}];
     if (frame == nullptr) { frame = std::make_unique<StereoFrame>(context_, scene_); }
@@ -98,14 +101,14 @@ MethodFrames::Rendered MethodFrames::renderAlone(const Cameras& cameras, const C
     frames_.clear();
     MemoryUse& use = context_.memoryUse();
     use.peak_bytes = use.current_bytes.load();
-    return render(cameras, camera, stereo);
+    return render(cameras, camera, stereo, true);
 }
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
     MethodFrames frames(context, point.gpu_scene);
     const BenchMethod shared = plainMethod("shared", point.run);
-    const Image full = frames.render(point.cameras, camera, shared.stereo).frame->readPicture(1 - shared.stereo.dominant);
+    const Image full = frames.render(point.cameras, camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
 
     std::vector<Runner> runners;
     for (const BenchMethod& method : plan.methods) { runners.push_back(prepare(method, point, plan, frames, full)); }

@@ -25,7 +25,8 @@ public:
         FrameResult result;
         StereoFrame* frame;
     };
-    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
+    // `compared`: the pictures are read and compared, with what made each pixel; otherwise they are as a viewer has them.
+    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false);
 
     // The most memory that the program holds while nothing but this method's buffers are there. Lets go of all others.
     Rendered renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);

@@ -23,8 +23,6 @@ Mode frameMode(const std::string& name) {
     return found->second;
 }
 
-bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
-
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo) {
     FrameSettings settings;
     settings.mode = frameMode(stereo.mode);
@@ -38,6 +36,7 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.stereo.tight_edges = stereo.edge_bounds == "tight";
     settings.stereo.center_rois = stereo.center_roi;
     settings.stereo.budget = stereo.budget;
+    settings.stereo.move_cost = stereo.move_cost;
     settings.stereo.hole_error = stereo.hole_error;
     settings.stereo.newcomer_error = stereo.newcomer_error;
     return settings;

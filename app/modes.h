@@ -11,9 +11,6 @@ namespace binosplat {
 // Throws Error (bad input) for a name that is no mode.
 Mode frameMode(const std::string& name);
 
-// Whether the mode makes one eye out of the other.
-bool reprojects(Mode mode);
-
 // The settings of a frame as the options say.
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo);
 

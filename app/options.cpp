@@ -20,6 +20,7 @@ namespace {
 
 // A gap is filled pixel by pixel from its two ends; beyond this it is no crack in a surface but something hidden.
 constexpr std::uint64_t kMaxGapPx = 64;
+constexpr std::uint64_t kMaxMoveCost = 1'000'000;
 // Values lie between 0 and a few; the passes hold a pixel's squared error under 64.
 constexpr double kMaxExpectedError = 8.0;
 constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
@@ -146,6 +147,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("center-roi", [&](const Setting& s) { stereo.center_roi = readFlag(s); });
     read("margin", [&](const Setting& s) { stereo.margin_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxSide)); });
     read("budget", [&](const Setting& s) { stereo.budget = readNumber(s, 0.0, 1.0); });
+    read("move-cost", [&](const Setting& s) { stereo.move_cost = static_cast<std::uint32_t>(readCount(s, 0, kMaxMoveCost)); });
     read("depth", [&](const Setting& s) { stereo.depth = readChoice(s, {"sum", "mean", "inverse"}); });
     read("gap-px", [&](const Setting& s) { stereo.gap_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxGapPx)); });
     read("edge-samples", [&](const Setting& s) { stereo.edge_samples = static_cast<std::uint32_t>(readCount(s, 1, kMaxSide)); });
@@ -163,7 +165,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
-    CommandLine render_line, bench_line, view_line, stability_line;
+    CommandLine render_line, bench_line, view_line, stability_line, kernels_line;
     RenderOptions render;
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
@@ -221,6 +223,11 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         ->type_name("DIR");
     addRows(*stability_command, stability_line, std::span(kRunRows).last(1), "Run");
 
+    KernelsOptions kernels;
+    CLI::App* kernels_command = app.add_subcommand("kernels", "Make every GPU kernel and say what the driver makes of it");
+    kernels_command->add_option("--out", kernels.out, "directory for kernels.json")->type_name("DIR");
+    addRows(*kernels_command, kernels_line, std::span(kRunRows).last(1), "Run");
+
     try {
         app.parse(readableArguments(argument_count, arguments));
     } catch (const CLI::CallForHelp&) {
@@ -251,6 +258,10 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     if (stability_command->parsed()) {
         stability.device = runOptions(commandLineLayer(stability_line)).device;
         return stability;
+    }
+    if (kernels_command->parsed()) {
+        kernels.device = runOptions(commandLineLayer(kernels_line)).device;
+        return kernels;
     }
     if (info_command->parsed()) { return info; }
     if (convert_command->parsed()) { return convert; }

@@ -25,13 +25,17 @@ struct CameraOptions {
     glm::dvec3 background{0.0};
 };
 
+// What moving a tile costs, in pairs of tile and splat, where nobody has measured it.
+inline constexpr std::uint32_t kDefaultMoveCost = 48;
+
 struct StereoOptions {
     std::string mode = "predicted";
     Side dominant = kLeft;
     std::optional<double> ipd_m;
     bool center_roi = false;
     std::uint32_t margin_px = 32;
-    double budget = 0.15;
+    double budget = 0.22;
+    std::uint32_t move_cost = kDefaultMoveCost;
     std::string depth = "inverse";
     std::uint32_t gap_px = 2;
     std::uint32_t edge_samples = 64;
@@ -102,12 +106,17 @@ struct StabilityOptions {
     std::string device;
 };
 
+struct KernelsOptions {
+    std::filesystem::path out;  // empty: printed only
+    std::string device;
+};
+
 struct HelpText {
     std::string text;
 };
 
-using Options =
-    std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, StabilityOptions, HelpText>;
+using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, StabilityOptions,
+                             KernelsOptions, HelpText>;
 
 // Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);

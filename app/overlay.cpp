@@ -47,7 +47,7 @@ void drawMethod(ViewSettings& settings) {
         stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, 0, 128));
     }
     auto budget = static_cast<float>(100.0 * stereo.budget);
-    if (ImGui::SliderFloat("budget (predicted)", &budget, 0.0f, 100.0f, "%.0f %% of tiles")) {
+    if (ImGui::SliderFloat("budget (predicted)", &budget, 0.0f, 100.0f, "%.0f %% of an eye")) {
         stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, 0.0, 1.0);
     }
 }

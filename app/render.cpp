@@ -59,7 +59,8 @@ void runRender(const RenderOptions& options) {
 
     StereoFrame frame(context, gpu_scene);
     const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    const FrameSettings settings = frameSettings(options.run.camera, stereo);
+    FrameSettings settings = frameSettings(options.run.camera, stereo);
+    settings.keep_classes = true;
     stopIfInterrupted();
     FrameResult result = frame.render(eyes, settings);
     stopIfInterrupted();

@@ -54,6 +54,7 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["center-roi"] = stereo.center_roi;
     json["margin"] = stereo.margin_px;
     json["budget"] = stereo.budget;
+    json["move-cost"] = stereo.move_cost;
     json["depth"] = stereo.depth;
     json["gap-px"] = stereo.gap_px;
     json["edge-samples"] = stereo.edge_samples;

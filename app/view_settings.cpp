@@ -32,6 +32,7 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
             {"center-roi", stereo.center_roi ? "true" : "false"},
             {"margin", fmt::format("{}", stereo.margin_px)},
             {"budget", fmt::format("{}", stereo.budget)},
+            {"move-cost", fmt::format("{}", stereo.move_cost)},
             {"depth", quoted(stereo.depth)},
             {"gap-px", fmt::format("{}", stereo.gap_px)},
             {"edge-samples", fmt::format("{}", stereo.edge_samples)},

@@ -166,6 +166,8 @@ void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::arr
     FrameSettings frame = frameSettings(options_.run.camera, settings_.stereo);
     frame.dominant = settings_.stereo.dominant;
     frame.keep_depth = frame.keep_both_depths = images_->takesDepth();
+    frame.half_floats = true;
+    frame.keep_classes = settings_.tint;
     // One eye's picture for both is seen through either lens.
     if (!showsOneEye()) { frame.hidden_tiles = lens_mask_.update(session_, views, images_->sizePx()); }
     for (const int e : {kLeft, kRight}) {

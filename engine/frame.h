@@ -26,15 +26,20 @@ enum class Mode {
     kPredicted,  // and the tiles with the greatest expected error rendered again
 };
 
+// Whether the affiliated eye is made from the dominant one.
+bool reprojects(Mode mode);
+
 struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
     double near = 0.2;  // scene units
     glm::dvec3 background{0.0};
     StereoSettings stereo;          // how one eye is made from the other; `patching` follows from the mode
+    bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
     bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
+    bool keep_classes = false;      // what made each pixel of the affiliated eye, for readPixelClasses and the report's counters
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
     // pairs and take no part in the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
@@ -74,11 +79,12 @@ public:
     [[nodiscard]] Image readDominantDepth() { return readDepth(dominant_); }
     // The same of any eye, where it was kept.
     [[nodiscard]] Image readDepth(int eye);
-    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; only of a mode that renders every eye in full.
+    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; where they were kept.
     [[nodiscard]] Image readInverseDepthMoments();
     // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
-    // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; likewise.
+    // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; where they
+    // were kept.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for whoever shows them.
@@ -88,12 +94,15 @@ public:
 private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
-    void recordAffiliated(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
-    void recordPatches(std::span<const Eye> eyes, const StereoSettings& stereo, EyeTarget target);
+    void recordOrderOfAffiliated();
+    [[nodiscard]] FrameState firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const;
+    [[nodiscard]] EyeTarget targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const;
     void prepareLists();
     // Pairs that the dominant eye's sort finds room for in the picture of the other eye, while nothing is in it.
     [[nodiscard]] std::uint32_t mostLentPairs() const;
     [[nodiscard]] FrameCapacity lendWhatFits(FrameCapacity capacity) const;
+    // Whether the dominant eye's lists had no room, so that its picture shows nothing.
+    [[nodiscard]] bool dominantIsVoid() const;
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
     [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -110,12 +119,14 @@ private:
     StereoBuffers stereo_buffers_;
     std::array<ShownTiles, 2> shown_;
     std::array<EyeImage, 2> images_;
-    Buffer moments_;  // StereoPixels of the dominant eye, where keep_moments asks for them
+    Buffer moments_;  // I and J of the dominant eye, where keep_moments asks for them
     std::array<glm::uvec2, 2> sizes_px_{};
     Buffer state_readback_;
     FrameState state_{};
-    Mode mode_ = Mode::kMono;  // of the last frame
+    // Of the last frame.
+    Mode mode_ = Mode::kMono;
     int dominant_ = 0;
+    EyeRelation relation_;
     FrameCapacity first_capacity_;
     bool first_frame_ = true;
 };

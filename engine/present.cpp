@@ -7,6 +7,11 @@
 
 namespace binosplat {
 
+KernelTable presentKernels() {
+    return everyVariant("10_present", sizeof(gpu::PresentPass),
+                        {{"kBlueFirst", 2}, {"kLinear", 2}, {"kTint", 2}, {"kDepth", 2}, {"kHalfColours", 2}});
+}
+
 bool Presenter::takes(vk::Format format) {
     using Format = vk::Format;
     return format == Format::eR8G8B8A8Srgb || format == Format::eB8G8R8A8Srgb || format == Format::eR8G8B8A8Unorm ||
@@ -15,7 +20,7 @@ bool Presenter::takes(vk::Format format) {
 
 Presenter::Presenter(const Context& context, vk::Format format)
     : context_(context),
-      kernels_(context),
+      kernels_(context, presentKernels()),
       blue_first_(format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm),
       linear_(format == vk::Format::eR8G8B8A8Unorm || format == vk::Format::eB8G8R8A8Unorm) {
     check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
@@ -32,6 +37,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     makeRoom(depths_, "presented depths", with_depth ? pixel_count * sizeof(float) : 0);
     gpu::PresentPass pass{};
     pass.colours = eye.image->colours.address<gpu::vec4>();
+    pass.half_colours = eye.image->colours.address<gpu::uvec2>();
     pass.depths = eye.image->depths.address<float>();
     if (tinted) {
         pass.tile_kinds = eye.tinted_by->tileKinds();
@@ -42,8 +48,8 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
     commands.beginPass("10_present");
-    commands.dispatch(kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth}), pass, (eye.size_px.x + 15) / 16,
-                      (eye.size_px.y + 15) / 16);
+    commands.dispatch(kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth, eye.image->half_floats}), pass,
+                      (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
 }

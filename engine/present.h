@@ -14,6 +14,9 @@ struct PresentedEye {
     vk::Image depth;                           // where its depth goes, D32: near / depth, 0 where nothing is; or null
 };
 
+// All kernels of pass 10.
+KernelTable presentKernels();
+
 class Presenter {
 public:
     // Of images of `colour_format`. Throws Error if it has not four channels of 8 bits.

@@ -8,7 +8,10 @@ layout(constant_id = 0) const bool kBlueFirst = false;  // BGRA in place of RGBA
 layout(constant_id = 1) const bool kLinear = false;     // the image is no sRGB one: its bytes count as light
 layout(constant_id = 2) const bool kTint = false;       // by what made each pixel
 layout(constant_id = 3) const bool kDepth = false;
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(constant_id = 4) const bool kHalfColours = false;
+layout(local_size_x = 16, local_size_y = 8) in;
+
+#include "lib/picture.glsl"
 
 layout(push_constant, scalar) uniform Push { PresentPass pass; };
 
@@ -29,6 +32,8 @@ vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
         shade = vec3(0, 0.8, 0.2);
     } else if (kind == kTilePredicted) {
         shade = vec3(0.9, 0, 0.9);
+    } else if (kind == kTileCheap) {
+        shade = vec3(0, 0.8, 0.9);
     } else if (pixel_class == kGap) {
         shade = vec3(1, 0.85, 0);
     } else if (pixel_class == kHole) {
@@ -43,7 +48,7 @@ void main() {
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, pass.size_px))) { return; }
     const uint i = at.y * pass.size_px.x + at.x;
-    const vec4 pixel = pass.colours.at[i];
+    const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
     if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
     if (kLinear) { colour = decode(colour); }

@@ -1,15 +1,21 @@
 // 1: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
-// the planes of the view by its support function, and its low-pass by the projected centre.
+// the planes of the view by its support function, and its low-pass by the projected centre. The last workgroup states the list of them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
+#include "lib/group.glsl"
+#include "lib/last_group.glsl"
+#include "lib/list.glsl"
+#include "lib/sums.glsl"
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
 
-shared uint visible_words[kGroupSize / 32];
+const uint kBlockWords = kCullBlock / 32;
+shared uint visible_words[kBlockWords];
 shared uint visible_count;
 
 // How far the disc reaches along `normal`, beyond its centre.
@@ -39,27 +45,30 @@ bool isVisible(CameraSplat splat, EyeView eye) {
 }
 
 void main() {
-    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint i = group * kGroupSize + gl_LocalInvocationIndex;
-    if (gl_LocalInvocationIndex < kGroupSize / 32) { visible_words[gl_LocalInvocationIndex] = 0; }
+    const uint group = groupIndex();
+    if (gl_LocalInvocationIndex < kBlockWords) { visible_words[gl_LocalInvocationIndex] = 0; }
     if (gl_LocalInvocationIndex == 0) { visible_count = 0; }
     const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);
     const EyeView last_eye = shareEye(pass.eyes, pass.first_eye + pass.eye_count - 1);
-    if (i < pass.splat_count) {
+    [[dont_unroll]] for (uint in_block = gl_LocalInvocationIndex; in_block < kCullBlock; in_block += kGroupSize) {
+        const uint i = group * kCullBlock + in_block;
+        if (i >= pass.splat_count) { break; }
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-        const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
-        const CameraSplat splat = loadWorldSplat(chunk, in_chunk);
+        const CameraSplat splat = loadWorldSplat(chunk, i & ((1u << pass.chunk_bits) - 1));
         const bool visible = isVisible(cameraFromWorld(first_eye, splat), first_eye) ||
                              (pass.eye_count > 1 && isVisible(cameraFromWorld(last_eye, splat), last_eye));
         if (visible) {
-            atomicOr(visible_words[gl_LocalInvocationIndex / 32], 1u << (gl_LocalInvocationIndex & 31));
+            atomicOr(visible_words[in_block / 32], 1u << (in_block & 31));
             atomicAdd(visible_count, 1);
         }
     }
     barrier();
-    if (group * kGroupSize >= pass.splat_count) { return; }
-    if (gl_LocalInvocationIndex < kGroupSize / 32) {
-        pass.visible_bits.at[group * (kGroupSize / 32) + gl_LocalInvocationIndex] = visible_words[gl_LocalInvocationIndex];
+    const uint groups = groupsOver(pass.splat_count, kCullBlock);
+    if (group < groups) {  // the last row of a dispatch may have more
+        if (gl_LocalInvocationIndex < kBlockWords) {
+            pass.visible_bits.at[group * kBlockWords + gl_LocalInvocationIndex] = visible_words[gl_LocalInvocationIndex];
+        }
+        if (gl_LocalInvocationIndex == 0) { pass.group_counts.at[group] = visible_count; }
     }
-    if (gl_LocalInvocationIndex == 0) { pass.group_counts.at[group] = visible_count; }
+    if (isLastGroup(pass.visible)) { sumUp(pass.group_counts, groups, pass.visible, pass.capacity); }
 }

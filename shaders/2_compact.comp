@@ -2,11 +2,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
+#include "lib/group.glsl"
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CompactPass pass; };
+
+const uint kBlockWords = kCullBlock / 32;
+shared uint visible_words[kBlockWords];
+shared uint visible_before[kBlockWords];  // how many of the block's splats come before each word's
 
 // Floats as integers of the same order; depths of centres behind the eye are negative.
 uint sortableBits(float value) {
@@ -15,18 +20,26 @@ uint sortableBits(float value) {
 }
 
 void main() {
-    const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    const uint i = group * kGroupSize + gl_LocalInvocationIndex;
+    if (pass.visible.at[0].count == 0) { return; }
+    const uint group = groupIndex();
+    const uint first = group * kCullBlock;
+    const uint own_word = gl_LocalInvocationIndex;
+    if (own_word < kBlockWords) { visible_words[own_word] = first < pass.splat_count ? pass.visible_bits.at[group * kBlockWords + own_word] : 0; }
+    barrier();
+    if (own_word < kBlockWords) {
+        uint before = 0;
+        for (uint word = 0; word < own_word; ++word) { before += bitCount(visible_words[word]); }
+        visible_before[own_word] = before;
+    }
     const EyeView eye = shareEye(pass.eyes, pass.order_eye);
-    if (i >= pass.splat_count || pass.visible.at[0].count == 0) { return; }
-    const uint word = i / 32, bit = i & 31;
-    const uint bits = pass.visible_bits.at[word];
-    if ((bits & (1u << bit)) == 0) { return; }
-    uint place = pass.group_offsets.at[group] + bitCount(bits & ((1u << bit) - 1));
-    for (uint w = group * (kGroupSize / 32); w < word; ++w) { place += bitCount(pass.visible_bits.at[w]); }
-
-    SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-    const vec3 from_eye = fromEye(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]);
-    pass.keys.at[place] = sortableBits(dot(eye.camera_from_world_z, from_eye));
-    pass.splats.at[place] = i;
+    for (uint in_block = gl_LocalInvocationIndex; in_block < kCullBlock; in_block += kGroupSize) {
+        const uint bits = visible_words[in_block / 32], bit = 1u << (in_block & 31);
+        if ((bits & bit) == 0) { continue; }
+        const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
+        const uint i = first + in_block;
+        SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
+        const vec3 from_eye = fromEye(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]);
+        pass.keys.at[place] = sortableBits(dot(eye.camera_from_world_z, from_eye));
+        pass.splats.at[place] = i;
+    }
 }

@@ -1,28 +1,32 @@
-// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
+// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup states the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
+#include "lib/last_group.glsl"
+#include "lib/list.glsl"
+#include "lib/sums.glsl"
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
 #include "lib/tile_set.glsl"
+#include "lib/tile_mask.glsl"
 #include "lib/sh.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
-// The eyes differ by a shift along x alone (see isShifted): pass.splats holds them as the other eye saw them, and most follow from
-// that without a look at the scene.
-layout(constant_id = 2) const bool kShifted = false;
+
+shared uint group_tiles;
 
 // The tiles of a row, of those from x to y (exclusive), that count.
-uint countInRow(uint row, ivec2 in_row, uint row_tiles) {
+uint countInRow(uint row, ivec2 in_row, uvec2 size_tiles) {
     if (in_row.y <= in_row.x) { return 0; }
     if (!kMasked) { return uint(in_row.y - in_row.x); }
-    return pass.tiles_before.at[row * row_tiles + in_row.y] - pass.tiles_before.at[row * row_tiles + in_row.x];
+    return countInMask(pass.tile_mask, size_tiles, row, uint(in_row.x), uint(in_row.y));
 }
 
 // How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
@@ -47,65 +51,69 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
 }
 
 // How many tiles the splat meets; `small` has a bit for each where the box is small enough.
-uint countTiles(Outline outline, ivec4 box, uint row_tiles, out uint small) {
+uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     uint tiles = 0;
     small = 0;
     for (int row = box.y; row < box.w; ++row) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        tiles += countInRow(uint(row), in_row, row_tiles);
+        tiles += countInRow(uint(row), in_row, size_tiles);
         small |= smallRow(in_row - box.x, row - box.y);
     }
     return tiles;
 }
 
-// From what the other eye saw; false if that does not suffice.
-bool projectShifted(uint rank, uvec2 size_tiles, out ProjectedSplat p, out Outline outline, out ivec4 box) {
-    p = pass.splats.at[rank];
-    const uvec2 seen = pass.tile_sets.at[rank];
-    PixelMap map = pass.stereo.at[0].affiliated_from_dominant;
-    if (seen.x == seen.y || !hasReference(p) || !shiftAlongRow(p, map.shift.x, map.excess_x.z)) { return false; }
-    outline = outlineOfProjected(p);
-    box = tilesWithin(ellipseBounds(outline), size_tiles);
-    return outline.ellipse;
+// What a visible splat is to this eye: the tiles it meets, and for the report those of the customary bound.
+uint project(uint rank, EyeView eye, out uint square_tiles) {
+    const uint i = pass.order.at[rank];
+    SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
+    const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
+    const uvec2 size_tiles = eye.size_tiles;
+
+    const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
+    bool has_reference;
+    ProjectedSplat p = projectGeometry(splat, eye, has_reference);
+    if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
+    const Outline outline = outlineOfProjected(p);
+    const ivec4 box = tileBox(splat, eye, outline);
+    square_tiles = kMasked ? 0 : squareBoxTiles(splat, eye);
+    uint small;
+    const uint tiles = countTiles(outline, box, size_tiles, small);
+    if (tiles > 0) {
+        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(fromEye(eye, chunk.positions.at[in_chunk]))));
+        pass.splats.at[rank] = p;
+    }
+    // Empty where the splat meets no tile: then there is no splat either.
+    pass.tile_sets.at[rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
+    return tiles;
+}
+
+void addSquareTiles(uint square_tiles) {
+    const uint of_subgroup = subgroupAdd(square_tiles);
+    if (subgroupElect() && of_subgroup > 0) {
+        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, of_subgroup);
+        if (low + of_subgroup < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
+    }
 }
 
 void main() {
     const uint count = pass.visible.at[0].count;
-    const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
-    uint square_tiles = 0;
+    const uint group = groupIndex();
+    if (gl_LocalInvocationIndex == 0) { group_tiles = 0; }
     const EyeView eye = shareEye(pass.eyes, pass.eye);
-    if (rank < count) {
-        const uint i = pass.order.at[rank];
-        SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-        const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
-        const uvec2 size_tiles = eye.size_tiles;
-
-        ProjectedSplat p;
-        Outline outline;
-        ivec4 box;
-        if (!kShifted || !projectShifted(rank, size_tiles, p, outline, box)) {
-            const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
-            bool has_reference;
-            p = projectGeometry(splat, eye, has_reference);
-            if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
-            outline = outlineOfProjected(p);
-            box = tileBox(splat, eye, outline);
-            if (!kMasked) { square_tiles = squareBoxTiles(splat, eye); }
-        }
-        uint small;
-        const uint tiles = countTiles(outline, box, size_tiles.x, small);
+    uint own_tiles = 0, own_square_tiles = 0;
+    [[dont_unroll]] for (uint in_block = gl_LocalInvocationIndex; in_block < kListBlock; in_block += kGroupSize) {
+        const uint rank = group * kListBlock + in_block;
+        if (rank >= count) { break; }
+        uint square_tiles;
+        const uint tiles = project(rank, eye, square_tiles);
         pass.tile_counts.at[rank] = tiles;
-        if (tiles > 0) {
-            p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(fromEye(eye, chunk.positions.at[in_chunk]))));
-            pass.splats.at[rank] = p;
-        }
-        // Empty where the splat meets no tile: then there is no splat either.
-        pass.tile_sets.at[rank] = tiles > 0 ? packTileSet(box, small) : uvec2(0);
+        own_tiles += tiles;
+        own_square_tiles += square_tiles;
     }
-    if (kMasked) { return; }
-    const uint subgroup_square_tiles = subgroupAdd(square_tiles);
-    if (subgroupElect() && subgroup_square_tiles > 0) {
-        const uint low = atomicAdd(pass.counters.at[0].square_box_pairs_low, subgroup_square_tiles);
-        if (low + subgroup_square_tiles < low) { atomicAdd(pass.counters.at[0].square_box_pairs_high, 1); }
-    }
+    if (!kMasked) { addSquareTiles(own_square_tiles); }
+    const uint subgroup_tiles = subgroupAdd(own_tiles);
+    if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
+    barrier();
+    if (gl_LocalInvocationIndex == 0 && group * kListBlock < count) { pass.group_sums.at[group] = group_tiles; }
+    if (isLastGroup(pass.pairs)) { sumUp(pass.group_sums, groupsOver(count, kListBlock), pass.pairs, pass.capacity); }
 }

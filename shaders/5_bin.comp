@@ -1,10 +1,12 @@
-// 5: a (tile, splat) pair for each tile a splat meets, front to back. A thread a splat, where the splat's tiles are a bit each; the few
+// 5: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are a bit each; the few
 // larger splats are listed for 5_bin_large, so that one over the whole screen stalls nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
+#include "lib/tile_mask.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
@@ -12,20 +14,45 @@ layout(constant_id = 0) const bool kMasked = false;  // pairs in tiles of the ma
 
 #include "lib/pair.glsl"
 
-void main() {
-    const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
-    uvec2 pairs = pairsOf(rank);
-    bool is_large = false;
-    if (pairs.x < pairs.y) {
-        const uvec2 tile_set = pass.tile_sets.at[rank];
-        is_large = !isSmall(tile_set);
-        for (uint bits = smallTiles(tile_set); bits != 0; bits &= bits - 1) { putPair(pairs, tileIndex(tileOfBit(tile_set, findLSB(bits))), rank); }
-    }
+// By every lane of a subgroup.
+void listLarge(bool is_large, uint rank, uint begin) {
     const uvec4 large_lanes = subgroupBallot(is_large);
     const uint large = subgroupBallotBitCount(large_lanes);
     if (large == 0) { return; }
     uint place = 0;
     if (subgroupElect()) { place = atomicAdd(pass.counters.at[0].large_splats, large); }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(large_lanes);
-    if (is_large) { pass.large_splats.at[place] = rank; }
+    if (is_large) {
+        pass.large_splats.at[place] = rank;
+        pass.large_begins.at[place] = begin;
+    }
+}
+
+const uint kPerThread = kListBlock / kGroupSize;
+
+void main() {
+    const uint splats = pass.visible.at[0].count;
+    const uint group = groupIndex();
+    const uint first = group * kListBlock + threadIndex() * kPerThread;
+    uint counts[kPerThread];
+    uint own = 0;
+    [[unroll]] for (uint i = 0; i < kPerThread; ++i) {
+        counts[i] = first + i < splats ? pass.tile_counts.at[first + i] : 0;
+        own += counts[i];
+    }
+    uint of_group;
+    uint begin = scanGroup(own, of_group);
+    if (group * kListBlock < splats) { begin += pass.group_sums.at[group]; }
+    [[unroll]] for (uint i = 0; i < kPerThread; ++i) {
+        const uint rank = first + i;
+        uvec2 pairs = pairsFrom(begin, counts[i]);
+        bool is_large = false;
+        if (pairs.x < pairs.y) {
+            const uvec2 tile_set = pass.tile_sets.at[rank];
+            is_large = !isSmall(tile_set);
+            for (uint bits = smallTiles(tile_set); bits != 0; bits &= bits - 1) { putPair(pairs, uvec2(tileOfBit(tile_set, findLSB(bits))), rank); }
+        }
+        listLarge(is_large, rank, begin);
+        begin += counts[i];
+    }
 }

@@ -10,15 +10,26 @@
 #include "lib/group.glsl"
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
+#include "lib/moving_pixel.glsl"
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
 layout(constant_id = 1) const bool kDepth = true;
-layout(constant_id = 2) const bool kStereoPixels = false;         // start the affiliated eye's pixels, too
-layout(constant_id = 3) const bool kInverseDepthMoments = false;  // with the moments of the inverse depth
-layout(constant_id = 4) const bool kMasked = false;               // the tiles of pass.tile_list alone
-layout(local_size_x_id = 5) in;  // kCellsPerTile * kThreadsPerCell
+layout(constant_id = 2) const bool kMoments = false;  // of the inverse depth
+layout(constant_id = 3) const bool kMoving = false;   // the picture is going to be moved
+layout(constant_id = 4) const bool kSpread = false;   // and how far its pixels' depths spread
+layout(constant_id = 5) const bool kMasked = false;   // the tiles of pass.tile_list alone
+layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // what a moving pixel's depth is
+layout(constant_id = 7) const bool kHalfColours = false;
+layout(local_size_x_id = 8) in;  // kCellsPerTile * kThreadsPerCell
+
+#include "lib/picture.glsl"
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
+
+// What the loop sums up.
+const bool kSumDepth = kDepth || (kMoving && kDepthChoice != kDepthInverse);
+const bool kSumInverseDepth = kMoments || kSpread || (kMoving && kDepthChoice == kDepthInverse);
+const bool kSumInverseDepthSquare = kMoments || kSpread;
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread, in a column
@@ -71,6 +82,18 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
             }
         }
     }
+}
+
+// The pixel as it is going to be moved: at the depth that stands for it, infinitely far where nothing was blended.
+uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
+    const float mean = inverse_depth_sums.x / alpha;
+    const float inverse_depth = !(alpha > 0)                   ? 0
+                                : kDepthChoice == kDepthInverse ? mean
+                                : kDepthChoice == kDepthMean    ? alpha / depth_sum
+                                                                : 1 / depth_sum;
+    if (!(inverse_depth >= 0 && inverse_depth < 1e30)) { return 0; }
+    const float variance = max(inverse_depth_sums.y / alpha - mean * mean, 0);
+    return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(sqrt(variance) / inverse_depth) : 0);
 }
 
 // Even rows of tiles first, then the odd ones: pictures are often full below and empty above, and a device that deals out
@@ -165,10 +188,12 @@ void main() {
                     transmittance[p] = closes ? -transmittance[p] : after;
                     most_open = max(most_open, transmittance[p]);
                     colour[p] += weight * splat_colour;
-                    if (kDepth) { depth[p] += weight * (on_disc ? z : centre_z); }
-                    if (kInverseDepthMoments) {
+                    if (kSumDepth) { depth[p] += weight * (on_disc ? z : centre_z); }
+                    if (kSumInverseDepth) {
                         const float inverse_z = on_disc ? q_p : depth_form.x;
-                        moments[p] += weight * inverse_z * vec2(1, inverse_z);
+                        const float weighted = weight * inverse_z;
+                        moments[p].x += weighted;
+                        if (kSumInverseDepthSquare) { moments[p].y += weighted * inverse_z; }
                     }
                 }
                 any_open = most_open > 0;
@@ -182,9 +207,13 @@ void main() {
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
-            pass.colours.at[at] = vec4(colour[p] + left * pass.background, 1 - left);
+            putColour(pass.colours, pass.half_colours, at, vec4(colour[p] + left * pass.background, 1 - left));
             if (kDepth) { pass.depths.at[at] = depth[p]; }
-            if (kStereoPixels) { pass.moments.at[at] = StereoPixel(moments[p].x, moments[p].y, 0, 0); }
+            if (kMoments) { pass.moments.at[at] = moments[p]; }
+            if (kMoving) {
+                pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
+                pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0;
+            }
         }
     }
 }

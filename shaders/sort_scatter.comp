@@ -1,6 +1,6 @@
-// Radix sort, third step of a round: every pair goes to its place. Stable: within a block a subgroup ranks a contiguous run of
-// keys, a subgroup's width at a time, by comparing digits with ballots (Adinets and Merrill 2022, section 4.3, without the
-// chained scan).
+// Radix sort, second step of a round: every pair goes to its place. Stable: a subgroup takes a contiguous run of a block's keys, counts
+// its digits, and then walks the run once more, a subgroup's width at a time, ranking equal digits by comparing them across the lanes
+// (Adinets and Merrill 2022, section 4.3, without the chained scan). Keys are read twice, so that a thread holds but one of them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -8,87 +8,91 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
+#include "lib/list.glsl"
 
 layout(constant_id = 0) const uint kThreads = 128;
-layout(constant_id = 1) const uint kMaxSubgroups = 16;
-layout(constant_id = 2) const bool kNarrowSubgroups = false;  // all have at most 8 invocations
+layout(constant_id = 1) const uint kMaxSubgroups = 8;
+layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: subgroups are just so wide, and a comparison a lane is cheaper than a ballot a bit
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 
-const uint kKeysPerThread = kSortBlock / kThreads;
+const uint kDigitBits = 8;
 
-shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where a subgroup's run of a digit begins
+shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where the next key of a subgroup's digit goes
 
-// The lanes of this subgroup whose digit equals this lane's.
-uvec4 matchDigit(uint digit) {
-    if (kNarrowSubgroups) {  // a comparison a lane is then cheaper than a ballot a bit
+uint digitOf(uint key) { return (key >> pass.shift) & (pass.digits - 1); }
+
+// The lanes among `valid` whose digit equals this lane's.
+uvec4 matchDigit(uint digit, uvec4 valid) {
+    if (kComparedLanes > 0) {
         uint peers = 0;
-        [[unroll]] for (uint lane = 0; lane < 8; ++lane) {
+        [[unroll]] for (uint lane = 0; lane < kComparedLanes; ++lane) {
             if (subgroupBroadcast(digit, lane) == digit) { peers |= 1u << lane; }
         }
-        return uvec4(peers, 0, 0, 0);
+        return uvec4(peers & valid.x, 0, 0, 0);
     }
-    uvec4 peers = subgroupBallot(true);
-    for (uint bit = 1; bit < pass.digits; bit <<= 1) {
-        const bool set = (digit & bit) != 0;
+    uvec4 peers = valid;
+    [[unroll]] for (uint bit = 0; bit < kDigitBits; ++bit) {
+        const bool set = (digit & (1u << bit)) != 0;
         const uvec4 lanes = subgroupBallot(set);
         peers &= set ? lanes : ~lanes;
     }
     return peers;
 }
 
-void main() {
-    const uint count = pass.list.at[0].count;
-    const uint blocks = (count + kSortBlock - 1) / kSortBlock;
-    const uint block = groupIndex();
-    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) { subgroup_digits[i] = 0; }
-    barrier();
+// Word by word: not every compiler knows subgroupBallotFindLSB of 64 lanes.
+uint firstLane(uvec4 lanes) {
+    if (lanes.x != 0) { return uint(findLSB(lanes.x)); }
+    if (lanes.y != 0) { return 32 + uint(findLSB(lanes.y)); }
+    return lanes.z != 0 ? 64 + uint(findLSB(lanes.z)) : 96 + uint(findLSB(lanes.w));
+}
 
-    // Rank: how many keys of the subgroup's run have the same digit and come before.
-    const uint lanes = laneCount();
-    const uint run_begin = block * kSortBlock + gl_SubgroupID * lanes * kKeysPerThread + gl_SubgroupInvocationID;
-    uint keys[kKeysPerThread];
-    uint ranks[kKeysPerThread];
-    for (uint i = 0; i < kKeysPerThread; ++i) {
-        const uint item = run_begin + i * lanes;
-        // Past the end stand keys of the last digit; they come after all others and are not written.
-        keys[i] = item < count ? pass.keys_in.at[item] : 0xffffffffu;
-        const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
-        const uvec4 peers = matchDigit(digit);
-        const uint before = subgroupBallotExclusiveBitCount(peers);
-        uint run_before = 0;
-        if (before == 0) { run_before = atomicAdd(subgroup_digits[gl_SubgroupID * pass.digits + digit], subgroupBallotBitCount(peers)); }
-        subgroupMemoryBarrierShared();
-        ranks[i] = before + subgroupShuffle(run_before, subgroupBallotFindLSB(peers));
-    }
-    barrier();
-
-    // Where each digit begins, in all and in this block, and each subgroup's share of it.
-    const uint digits_per_thread = (pass.digits + kThreads - 1) / kThreads;
-    const uint first_digit = min(threadIndex() * digits_per_thread, pass.digits);
-    const uint end_digit = min(first_digit + digits_per_thread, pass.digits);
-    uint own = 0;
-    for (uint digit = first_digit; digit < end_digit; ++digit) { own += pass.totals.at[digit]; }
-    uint total;
-    uint before = scanGroup(own, total);
-    for (uint digit = first_digit; digit < end_digit; ++digit) {
-        uint place = before + (block < blocks ? pass.histograms.at[digit * blocks + block] : 0);
-        before += pass.totals.at[digit];
+// Turns counts into places: where each digit begins, in all and in this block, and each subgroup's share of it.
+void placeDigits(uint block) {
+    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
+        uint place = pass.digit_begins.at[digit] + pass.histograms.at[block * pass.digits + digit];
         for (uint s = 0; s < gl_NumSubgroups; ++s) {
             const uint in_run = subgroup_digits[s * pass.digits + digit];
             subgroup_digits[s * pass.digits + digit] = place;
             place += in_run;
         }
     }
+}
+
+void main() {
+    const uint count = pass.list.at[0].count;
+    const uint block = gl_WorkGroupID.x;
+    for (uint i = gl_LocalInvocationIndex; i < gl_NumSubgroups * pass.digits; i += kThreads) { subgroup_digits[i] = 0; }
     barrier();
 
-    for (uint i = 0; i < kKeysPerThread; ++i) {
-        const uint item = run_begin + i * lanes;
-        if (item < count) {
-            const uint digit = (keys[i] >> pass.shift) & (pass.digits - 1);
-            const uint place = subgroup_digits[gl_SubgroupID * pass.digits + digit] + ranks[i];
-            pass.keys_out.at[place] = keys[i];
-            pass.values_out.at[place] = pass.values_in.at[item];
+    const uint lanes = laneCount();
+    const uint own_digits = gl_SubgroupID * pass.digits;
+    const uint block_keys = sortBlockKeys(count), run_keys = block_keys / gl_NumSubgroups;
+    const uint block_begin = min(block * block_keys, count);
+    const uint run_begin = block_begin + min(gl_SubgroupID * run_keys, count - block_begin), run_end = run_begin + min(run_keys, count - run_begin);
+    for (uint item = run_begin + gl_SubgroupInvocationID; item < run_end; item += lanes) {
+        atomicAdd(subgroup_digits[own_digits + digitOf(pass.keys_in.at[item])], 1);
+    }
+    barrier();
+    placeDigits(block);
+    barrier();
+
+    for (uint step_begin = run_begin; step_begin < run_end; step_begin += lanes) {
+        const uint item = step_begin + gl_SubgroupInvocationID;
+        const bool valid = item < run_end;
+        const uint key = valid ? pass.keys_in.at[item] : 0;
+        const uint value = valid ? pass.values_in.at[item] : 0;
+        const uint digit = digitOf(key);
+        const uvec4 peers = matchDigit(digit, subgroupBallot(valid));
+        const uint before = subgroupBallotExclusiveBitCount(peers);
+        // The first of equal digits takes places for all of them and tells the others.
+        uint place = 0;
+        if (valid && before == 0) { place = atomicAdd(subgroup_digits[own_digits + digit], subgroupBallotBitCount(peers)); }
+        place = subgroupShuffle(place, firstLane(peers) & (lanes - 1)) + before;
+        if (valid) {
+            pass.keys_out.at[place] = key;
+            pass.values_out.at[place] = value;
         }
+        subgroupBarrier();  // the next step's first of a digit is another lane
     }
 }

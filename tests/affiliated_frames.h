@@ -19,7 +19,8 @@ struct AffiliatedFrame {
     std::vector<std::uint8_t> pixel_classes;
 };
 
-inline AffiliatedFrame makeAffiliated(StereoFrame& frame, const std::array<Eye, 2>& eyes, const FrameSettings& settings) {
+inline AffiliatedFrame makeAffiliated(StereoFrame& frame, const std::array<Eye, 2>& eyes, FrameSettings settings) {
+    settings.keep_classes = true;
     FrameResult result = frame.render(eyes, settings);
     return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}, frame.readTileKinds(), frame.readPixelClasses()};
 }
@@ -34,6 +35,17 @@ inline std::array<Eye, 2> headsetEyes(const Eye& middle, double canting_rad, dou
         eyes[e].world_from_camera.orientation = eyes[e].world_from_camera.orientation * glm::angleAxis(turn, glm::dvec3(0, 1, 0));
     }
     return eyes;
+}
+
+// Makes splats invisible that either eye's near plane may cut: of such the device's bounds, and so the tiles it counts, are rougher than
+// the twin's.
+inline void hideWhatMeetsTheNearPlane(Scene& scene, const std::array<Eye, 2>& eyes) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        for (const Eye& eye : eyes) {
+            const double depth = transform(inverse(eye.world_from_camera), glm::dvec3(scene.positions[i])).z;
+            if (depth - 3.4 * static_cast<double>(std::max(scene.scales[i].x, scene.scales[i].y)) < 0.2) { scene.opacities[i] = 0.0f; }
+        }
+    }
 }
 
 // The tiles that are marked, everything else black.

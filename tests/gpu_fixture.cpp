@@ -47,12 +47,14 @@ void Gpu::read(const Buffer& buffer, std::span<std::byte> bytes, std::uint64_t o
 }
 
 gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
+    constexpr std::uint64_t kMostAtOnce = std::uint64_t{gpu::kSortBlock} * gpu::kMaxSortBlocks;
     const std::uint32_t count = needed <= capacity ? needed : 0;
     return {needed,
             count,
+            0,
             dispatchOver(count, gpu::kGroupSize),
-            dispatchOver(count, gpu::kScanBlock),
-            dispatchOver(count, gpu::kSortBlock),
+            dispatchOver(count, gpu::kListBlock),
+            dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>((count + kMostAtOnce - 1) / kMostAtOnce))),
             dispatchOver(count, 1)};
 }
 

@@ -38,7 +38,6 @@ gpu::StereoView makeView(glm::uvec2 size_px, gpu::uint gap_px) {
     view.dominant_from_affiliated.shift = {1.0f, 0.0f, 0.0f};
     view.size_px = size_px;
     view.size_tiles = tilesOf(size_px);
-    view.depth_choice = gpu::kDepthInverse;
     view.gap_px = gap_px;
     return view;
 }
@@ -51,18 +50,17 @@ struct Reprojected {
 Reprojected reprojectLeft(Gpu& gpu, const StereoPair& pair, gpu::uint gap_px) {
     const auto channels = static_cast<std::size_t>(pair.left.channels);
     std::vector<gpu::vec4> colours;
-    std::vector<gpu::StereoPixel> pixels;
+    std::vector<gpu::uint> moving;
     for (std::size_t i = 0; i < pair.left.pixelCount(); ++i) {
         const float* rgb = &pair.left.values[i * channels];
         colours.emplace_back(rgb[0], rgb[1], rgb[2], 1.0f);
-        // A pixel that is infinitely near goes nowhere.
+        // A pixel whose disparity is not known goes nowhere.
         const double disparity = pair.left_disparity_px[i];
-        pixels.push_back({disparity > 0.0 ? static_cast<float>(disparity) : std::numeric_limits<float>::infinity(), 0.0f, 0, 0.0f});
+        moving.push_back(disparity > 0.0 ? test::packMoving(disparity, /*landed=*/true, /*spread=*/0) : 0);
     }
-    test::StereoOnDevice device(gpu, makeView(pair.left.size_px, gap_px), colours, {}, pixels);
+    test::StereoOnDevice device(gpu, makeView(pair.left.size_px, gap_px), colours, moving, test::Rows::kShared);
     device.reproject();
-    device.resolve(false);
-    device.resample();
+    device.resample({.classes = true});
     Reprojected result{{pair.left.size_px, 4, {}}, device.readClasses()};
     for (const gpu::vec4& value : device.readAffiliated()) {
         result.picture.values.insert(result.picture.values.end(), {value.x, value.y, value.z, value.w});

@@ -113,12 +113,14 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
 // What 4_project leaves for a list of splats, on the device.
 struct ProjectedOnDevice {
     std::uint32_t count;
-    Buffer list, order, splats, tile_sets, tile_counts, counters;
+    Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, counters;
 };
 
-inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order) {
+// `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
+inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
+                                         std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
     const Kernel kernel(gpu.context(), "4_project", sizeof(gpu::ProjectPass),
-                        {static_cast<std::uint32_t>(device.scene.shDegree()), /*masked=*/0});
+                        {static_cast<std::uint32_t>(device.scene.shDegree()), /*masked=*/tile_mask.value != 0 ? 1u : 0u});
     const std::size_t count = order.size();
     ProjectedOnDevice result{static_cast<std::uint32_t>(count),
                              gpu.upload("list", std::vector{makeList(count)}),
@@ -126,6 +128,8 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
                              gpu.allocate<gpu::ProjectedSplat>("splats", count),
                              gpu.allocate<glm::uvec2>("tile sets", count),
                              gpu.allocate<std::uint32_t>("tile counts", count),
+                             gpu.allocate<std::uint32_t>("group sums", (count + gpu::kListBlock - 1) / gpu::kListBlock),
+                             gpu.upload("pairs", std::vector{gpu::ListState{}}),
                              gpu.upload("counters", std::vector{gpu::EyeCounters{}})};
     gpu::ProjectPass pass{};
     pass.chunks = device.scene.chunks();
@@ -135,9 +139,13 @@ inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, 
     pass.splats = result.splats.address<gpu::ProjectedSplat>();
     pass.tile_sets = result.tile_sets.address<gpu::uvec2>();
     pass.tile_counts = result.tile_counts.address<gpu::uint>();
+    pass.group_sums = result.group_sums.address<gpu::uint>();
+    pass.pairs = result.pairs.address<gpu::ListState>();
+    pass.capacity = pair_capacity;
     pass.counters = result.counters.address<gpu::EyeCounters>();
+    pass.tile_mask = tile_mask;
     pass.chunk_bits = device.scene.chunkBits();
-    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_item)); });
+    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, result.list, offsetof(gpu::ListState, per_block)); });
     return result;
 }
 

@@ -15,6 +15,7 @@ using test::ViewedScene;
 
 namespace {
 
+constexpr std::size_t kGroupWords = gpu::kCullBlock / 32;
 constexpr double kEpsilon = 0x1p-24;  // of a float32 rounding
 
 const reference::Settings kSettings{};
@@ -34,25 +35,30 @@ std::vector<ViewedScene> allScenes() {
 double distanceToRound(const glm::dvec3& position, const Eye& eye) { return glm::length(position - eye.world_from_camera.position); }
 
 struct Culled {
-    std::vector<std::uint32_t> bits, group_counts;
+    std::vector<std::uint32_t> bits, group_offsets;
+    gpu::ListState visible;
     [[nodiscard]] bool has(std::size_t splat) const { return ((bits[splat / 32] >> (splat % 32)) & 1) != 0; }
 };
 
 Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_count) {
     const std::uint32_t count = device.scene.splatCount();
-    const std::size_t groups = (count + gpu::kGroupSize - 1) / gpu::kGroupSize;
+    const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
     const Kernel kernel(gpu.context(), "1_cull", sizeof(gpu::CullPass));
-    const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * 8), counts = gpu.allocate<std::uint32_t>("counts", groups);
+    const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
+    const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
     pass.visible_bits = bits.address<gpu::uint>();
     pass.group_counts = counts.address<gpu::uint>();
+    pass.visible = list.address<gpu::ListState>();
     pass.splat_count = count;
     pass.chunk_bits = device.scene.chunkBits();
     pass.eye_count = eye_count;
-    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count); });
-    return {gpu.readBack<std::uint32_t>(bits, groups * 8), gpu.readBack<std::uint32_t>(counts, groups)};
+    pass.capacity = count;
+    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
+    return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords), gpu.readBack<std::uint32_t>(counts, groups),
+            gpu.readBack<gpu::ListState>(list, 1)[0]};
 }
 
 // How far projected splats are from the twin's, in units of what rounding can do.
@@ -139,12 +145,14 @@ TEST_CASE_FIXTURE(Gpu, "1_cull misses no splat that the twin sees, and keeps har
         for (std::size_t i = 0; i < view.scene.size(); ++i) { kept += culled.has(i) ? 1 : 0; }
         CHECK(missed == 0);
         CHECK(static_cast<double>(kept) <= 1.02 * static_cast<double>(twin.order.size()));
-        std::size_t wrong_counts = 0;
-        for (std::size_t g = 0; g < culled.group_counts.size(); ++g) {
-            std::uint32_t ones = 0;
-            for (std::size_t w = 0; w < 8; ++w) { ones += static_cast<std::uint32_t>(std::popcount(culled.bits[8 * g + w])); }
-            wrong_counts += culled.group_counts[g] == ones ? 0 : 1;
+        std::size_t wrong_counts = 0, ones = 0;
+        for (std::size_t g = 0; g < culled.group_offsets.size(); ++g) {
+            wrong_counts += culled.group_offsets[g] == ones ? 0 : 1;
+            for (std::size_t w = 0; w < kGroupWords; ++w) {
+                ones += static_cast<std::size_t>(std::popcount(culled.bits[kGroupWords * g + w]));
+            }
         }
+        CHECK(culled.visible.count == ones);
         CHECK(wrong_counts == 0);
     }
 }
@@ -166,11 +174,11 @@ TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order 
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
         const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
-        const std::size_t groups = (view.scene.size() + gpu::kGroupSize - 1) / gpu::kGroupSize, visible = twin.compacted.splats.size();
-        std::vector<std::uint32_t> bits(groups * 8), offsets(groups + 1);
+        const std::size_t groups = (view.scene.size() + gpu::kCullBlock - 1) / gpu::kCullBlock, visible = twin.compacted.splats.size();
+        std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
         for (const std::uint32_t splat : twin.compacted.splats) {
             bits[splat / 32] |= 1u << (splat % 32);
-            ++offsets[splat / gpu::kGroupSize + 1];
+            ++offsets[splat / gpu::kCullBlock + 1];
         }
         for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
         const Buffer bit_buffer = upload("bits", bits), offset_buffer = upload("offsets", offsets),
@@ -186,7 +194,7 @@ TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order 
         pass.splats = splats.address<gpu::uint>();
         pass.splat_count = device.scene.splatCount();
         pass.chunk_bits = device.scene.chunkBits();
-        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, view.scene.size()); });
+        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, view.scene.size(), gpu::kCullBlock); });
         CHECK(readBack<std::uint32_t>(splats, visible) == twin.compacted.splats);
         // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance.
         const auto key_values = readBack<std::uint32_t>(keys, visible);

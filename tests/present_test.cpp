@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 using namespace binosplat;
@@ -20,19 +21,22 @@ struct Presented {
 
 // What the pass makes of `colours` (and of `depth_sums`, if there are any).
 Presented runPresent(Gpu& gpu, glm::uvec2 size_px, const std::vector<glm::vec4>& colours, const std::vector<float>& depth_sums,
-                     const reference::Presentation& how) {
-    const Buffer in = gpu.upload("colours", colours), sums = gpu.upload("depth sums", depth_sums);
+                     const reference::Presentation& how, bool halves = false) {
+    std::vector<glm::uvec2> packed;
+    for (const glm::vec4& c : colours) { packed.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
+    const Buffer in = halves ? gpu.upload("colours", packed) : gpu.upload("colours", colours), sums = gpu.upload("depth sums", depth_sums);
     const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", colours.size()), depths = gpu.allocate<float>("depths", colours.size());
     const bool with_depth = !depth_sums.empty();
     gpu::PresentPass pass{};
     pass.colours = in.address<gpu::vec4>();
+    pass.half_colours = in.address<gpu::uvec2>();
     pass.depths = sums.address<float>();
     pass.pixels = pixels.address<gpu::uint>();
     pass.device_depths = depths.address<float>();
     pass.size_px = size_px;
     pass.near = static_cast<float>(how.near);
-    const Kernel kernel(gpu.context(), "10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth});
-    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 15) / 16); });
+    const Kernel kernel(gpu.context(), "10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth, halves});
+    gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
     return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, with_depth ? colours.size() : 0)};
 }
 
@@ -62,6 +66,20 @@ std::size_t countOff(const std::vector<std::uint32_t>& actual, const std::vector
 std::vector<glm::dvec4> asDoubles(const std::vector<glm::vec4>& colours) { return {colours.begin(), colours.end()}; }
 
 }  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "10_present shows half floats as the floats that they stand for") {
+    for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 9), glm::uvec2(100, 70)}) {
+        std::vector<glm::vec4> colours = makeColours(size_px);
+        for (glm::vec4& c : colours) {
+            c = glm::vec4(glm::unpackHalf2x16(glm::packHalf2x16({c.x, c.y})), glm::unpackHalf2x16(glm::packHalf2x16({c.z, c.w})));
+        }
+        for (const bool linear : {false, true}) {
+            const reference::Presentation how{false, linear, 0.2};
+            CHECK(runPresent(*this, size_px, colours, {}, how, /*halves=*/true).pixels ==
+                  runPresent(*this, size_px, colours, {}, how).pixels);
+        }
+    }
+}
 
 TEST_CASE_FIXTURE(Gpu, "pictures become the bytes of their twin, at every order of channels and encoding") {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(15, 17), glm::uvec2(16, 16), glm::uvec2(33, 48)}) {
@@ -120,7 +138,7 @@ TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom") {
     image.bindMemory(*memory, 0);
 
     const std::vector<glm::vec4> colours = makeColours(size_px);
-    EyeImage eye{upload("colours", colours), {}};
+    const EyeImage eye{.colours = upload("colours", colours), .depths = {}};
     Presenter presenter(context(), vk::Format::eR8G8B8A8Srgb);
     const Buffer readback(context(), "read-back", colours.size() * 4, MemoryKind::kReadback);
     run([&](Commands& commands) {

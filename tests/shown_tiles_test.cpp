@@ -135,7 +135,9 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
     for (const Setting& setting :
          {Setting{&view, test::headsetEyes(view.eye, 0.0)}, Setting{&view, test::headsetEyes(view.eye, glm::radians(4.0))},
           Setting{&fence, stereoPair(fence.eye, 0.12)}}) {
-        const GpuScene scene(context(), setting.view->scene);
+        Scene host_scene = setting.view->scene;
+        test::hideWhatMeetsTheNearPlane(host_scene, setting.eyes);
+        const GpuScene scene(context(), host_scene);
         StereoFrame frame(context(), scene);
         for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
             const Side dominant = method == StereoMethod::kPaper ? kRight : kLeft, other = dominant == kLeft ? kRight : kLeft;
@@ -144,7 +146,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
                                                           .center_rois = true,
                                                           .source_hidden = lenses()[dominant],
                                                           .target_hidden = lenses()[other]};
-            const auto twin = reference::renderStereo(setting.view->scene, {setting.eyes[dominant], setting.eyes[other]}, twin_settings,
+            const auto twin = reference::renderStereo(host_scene, {setting.eyes[dominant], setting.eyes[other]}, twin_settings,
                                                       {.background = kBackground});
             const Mode mode = method == StereoMethod::kReproject ? Mode::kReproject
                               : method == StereoMethod::kPaper   ? Mode::kPaper
@@ -161,20 +163,31 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
                 hidden += made.tile_kinds[t] == gpu::kTileHidden ? 1 : 0;
                 again += made.tile_kinds[t] != 0 && made.tile_kinds[t] != gpu::kTileHidden ? 1 : 0;
             }
-            CHECK(std::ranges::count(same_kind, 0u) <= 2);
+            // Measured: five in one frame, where a splat that is large for its tiles is seen by the dominant eye within a hair, or is not.
+            CHECK(std::ranges::count(same_kind, 0u) <= (method == StereoMethod::kPredicted ? 6 : 0));
             CHECK(made.result.counters.at("tiles_patched") == again);
-            CHECK(made.result.counters.at("tiles_predicted") <= 0.15 * static_cast<double>(kTiles.x * kTiles.y - hidden));
-            // Only shown pixels are counted.
+            // The budget is a share of what is shown. The device's pairs are the twin's and few more.
             const auto& counters = made.result.counters;
-            std::uint64_t shown_px = 0;
-            for (std::size_t i = 0; i < depth.pixelCount(); ++i) { shown_px += lenses()[other][tileOf(i)] == 0 ? 1 : 0; }
-            CHECK(counters.at("pixels_covered") + counters.at("pixels_gap") + counters.at("pixels_hole") == shown_px);
+            std::uint64_t predicted_cost = 0;
+            for (std::size_t t = 0; t < twin.tile_costs.size(); ++t) {
+                predicted_cost += made.tile_kinds[t] == gpu::kTilePredicted ? twin.tile_costs[t] : 0;
+            }
+            if (method == StereoMethod::kPredicted) {
+                CHECK(static_cast<double>(predicted_cost) <= twin_settings.budget * static_cast<double>(counters.at("work_full")));
+            }
+            // Only pixels that were moved are counted, before any tile is rendered for what is wrong with them.
+            std::uint64_t moved_px = 0;
+            for (std::size_t i = 0; i < depth.pixelCount(); ++i) {
+                const std::uint32_t kind = made.tile_kinds[tileOf(i)];
+                moved_px += kind == 0 || kind == gpu::kTileCenter || kind == gpu::kTilePredicted ? 1 : 0;
+            }
+            CHECK(counters.at("pixels_covered") + counters.at("pixels_gap") + counters.at("pixels_hole") == moved_px);
 
             reference::Picture expected;
             expected.size_px = kSizePx;
             expected.rgba = twin.affiliated;
             CHECK(compare(test::keepTiles(made.pictures[other], same_kind), test::keepTiles(test::toImage(expected), same_kind), 4)
-                      .psnrDb() >= 70.0);
+                      .psnrDb() >= 80.0);
             std::size_t other_depth = 0;
             for (std::size_t i = 0; i < depth.pixelCount(); ++i) {
                 const double d = static_cast<double>(depth.values[i]), e = twin.affiliated_depth[i];

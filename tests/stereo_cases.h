@@ -6,6 +6,9 @@
 #include "tests/affiliated_frames.h"
 
 #include <bit>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,12 +42,28 @@ inline StereoSettings settingsOf(const reference::StereoSettings& twin) {
     settings.tight_edges = twin.tight_edges;
     settings.center_rois = twin.center_rois;
     settings.budget = twin.budget;
+    settings.move_cost = twin.move_cost;
     settings.hole_error = twin.hole_error;
     settings.newcomer_error = twin.newcomer_error;
     return settings;
 }
 
-inline gpu::StereoView viewOfCase(const StereoCase& c) { return stereoViewOf(c.eyes.source, c.eyes.target, settingsOf(c.settings)); }
+// A moving pixel and an arrival as the device holds them, in a word (shaders/lib/moving_pixel.glsl).
+inline gpu::uint packMoving(double inverse_depth, bool landed, gpu::uint spread) {
+    return ((((std::bit_cast<gpu::uint>(static_cast<float>(inverse_depth)) + 16) >> 5) + 1) << 6) | (landed ? 32u : 0u) | spread;
+}
+inline gpu::uint packMoving(const std::optional<reference::MovingPixel>& pixel) {
+    return pixel ? packMoving(pixel->inverse_depth, true, pixel->spread) : 0;
+}
+inline gpu::uint packArrival(const reference::Arrival& arrival) {
+    if (arrival.way == reference::Arrival::kNone) { return 0; }
+    return packMoving(arrival.inverse_depth, arrival.way == reference::Arrival::kLanded, arrival.spread);
+}
+inline reference::Arrival unpackArrival(gpu::uint word) {
+    if (word == 0) { return {}; }
+    return {(word & 32) != 0 ? reference::Arrival::kLanded : reference::Arrival::kBetween,
+            static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5)), word & 31};
+}
 
 // Both sides start from what the device can hold.
 inline void roundToFloat(reference::Picture& picture) {
@@ -54,10 +73,35 @@ inline void roundToFloat(reference::Picture& picture) {
     }
 }
 
+// Likewise where the device is left a word a pixel: of that depth and that spread.
+inline void roundToWords(reference::Picture& picture, const reference::StereoSettings& settings) {
+    roundToFloat(picture);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        const reference::Arrival held = unpackArrival(packMoving(reference::movingPixel(picture, i, settings)));
+        const double weight = picture.rgba[i].w, w = held.inverse_depth, spread = reference::spreadOf(held.spread);
+        picture.depth[i] = held.way != reference::Arrival::kNone && w > 0.0 ? weight / w : -weight;
+        picture.inverse_depth[i] = held.way != reference::Arrival::kNone ? weight * w : -weight;
+        picture.inverse_depth_squared[i] = weight * w * w * (1.0 + spread * spread);
+    }
+}
+
+// Likewise where colours are half floats. Depths stay as they are.
+inline void roundToHalves(reference::Picture& picture) {
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        const double before = picture.rgba[i].w;
+        for (int channel = 0; channel < 4; ++channel) {
+            double& value = picture.rgba[i][channel];
+            value = static_cast<double>(glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(value))));
+        }
+        const double scale = before > 0.0 ? picture.rgba[i].w / before : 1.0;
+        for (auto* plane : {&picture.depth, &picture.inverse_depth, &picture.inverse_depth_squared}) { (*plane)[i] *= scale; }
+    }
+}
+
 inline StereoCase makeCase(const std::string& name, const Scene& scene, const std::array<Eye, 2>& eyes, Side dominant) {
     StereoCase c{name + (dominant == kLeft ? ", from the left" : ", from the right"), scene, {eyes[dominant], eyes[1 - dominant]}, {}, {}};
     c.dominant = reference::render(scene, c.eyes.source, {.inverse_depth_moments = true});
-    roundToFloat(c.dominant);
+    roundToWords(c.dominant, c.settings);
     return c;
 }
 
@@ -74,7 +118,7 @@ inline std::vector<StereoCase> makeStereoCases() {
     add("room, canted", room, headsetEyes(room.eye, glm::radians(5.0)));
     add("fence", fence, stereoPair(fence.eye, 0.12));
     add("fence, canted", fence, headsetEyes(fence.eye, glm::radians(5.0), 0.12));
-    // Rows longer than two workgroups, with holes across their borders.
+    // Rows longer than four workgroups, with holes across their borders.
     add("wide", wide, stereoPair(wide.eye, 0.25));
     add("small", small, stereoPair(small.eye, 0.2));
     add("small, canted", small, headsetEyes(small.eye, glm::radians(5.0), 0.2));
@@ -82,18 +126,10 @@ inline std::vector<StereoCase> makeStereoCases() {
 }
 
 inline std::vector<gpu::vec4> coloursOf(const reference::Picture& picture) { return {picture.rgba.begin(), picture.rgba.end()}; }
-inline std::vector<float> depthsOf(const reference::Picture& picture) {
-    std::vector<float> depths;
-    for (const double depth : picture.depth) { depths.push_back(static_cast<float>(depth)); }
-    return depths;
-}
-// As 7_rasterize leaves them: moments, and nothing has arrived.
-inline std::vector<gpu::StereoPixel> momentsOf(const reference::Picture& picture) {
-    std::vector<gpu::StereoPixel> pixels;
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-        pixels.push_back({static_cast<float>(picture.inverse_depth[i]), static_cast<float>(picture.inverse_depth_squared[i]), 0, 0.0f});
-    }
-    return pixels;
+inline std::vector<gpu::uint> movingOf(const reference::Picture& picture, const reference::StereoSettings& settings) {
+    std::vector<gpu::uint> words;
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { words.push_back(packMoving(reference::movingPixel(picture, i, settings))); }
+    return words;
 }
 
 inline std::vector<gpu::uint> kindsOf(const std::vector<reference::TileKind>& kinds) {
@@ -101,32 +137,50 @@ inline std::vector<gpu::uint> kindsOf(const std::vector<reference::TileKind>& ki
     for (const reference::TileKind kind : kinds) { values.push_back(static_cast<gpu::uint>(kind)); }
     return values;
 }
+inline std::vector<reference::TileKind> kindsOf(const std::vector<gpu::uint>& values) {
+    std::vector<reference::TileKind> kinds;
+    for (const gpu::uint value : values) { kinds.push_back(static_cast<reference::TileKind>(value)); }
+    return kinds;
+}
 
-// StereoPixel::nearest while pixels arrive and once they are resolved (shaders/lib/stereo.glsl), to the device and back.
-inline gpu::uint packArrival(const reference::Arrival& arrival) {
-    if (arrival.way == reference::Arrival::kNone) { return 0; }
-    return ((std::bit_cast<gpu::uint>(static_cast<float>(arrival.inverse_depth)) + 2) & ~1u) |
-           (arrival.way == reference::Arrival::kLanded ? 1u : 0u);
-}
-inline reference::Arrival unpackArrival(gpu::uint nearest) {
-    if (nearest == 0) { return {}; }
-    const auto way = (nearest & 1) != 0 ? reference::Arrival::kLanded : reference::Arrival::kBetween;
-    return {way, static_cast<double>(std::bit_cast<float>((nearest & ~1u) - 2))};
-}
-inline gpu::uint packResolved(const reference::Resolved& resolved, bool arrived) {
-    if (arrived) {
-        const auto way =
-            resolved.pixel_class == reference::PixelClass::kCovered ? reference::Arrival::kLanded : reference::Arrival::kBetween;
-        return packArrival({way, resolved.inverse_depth});
+// A byte a tile, 1 for those that are in it, as a mask of bits (shaders/lib/tile_mask.glsl).
+inline std::vector<gpu::uint> maskOf(const std::vector<std::uint8_t>& tiles, glm::uvec2 size_tiles) {
+    const std::size_t row_words = (size_tiles.x + 31) / 32;
+    std::vector<gpu::uint> mask(row_words * size_tiles.y, 0);
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        const std::size_t x = t % size_tiles.x;
+        if (tiles[t] != 0) { mask[t / size_tiles.x * row_words + x / 32] |= 1u << (x % 32); }
     }
-    return 0x80000000u | (static_cast<gpu::uint>(resolved.pixel_class) << 24) | resolved.column;
+    return mask;
 }
-inline reference::Resolved unpackResolved(const gpu::StereoPixel& pixel, std::uint32_t x) {
-    const auto depth = static_cast<double>(pixel.resolved_inverse_depth);
-    if ((pixel.nearest >> 31) != 0) {
-        return {static_cast<reference::PixelClass>((pixel.nearest >> 24) & 3), pixel.nearest & 0xffffffu, depth};
+
+inline bool isNear(double a, double b, double relative, double absolute) {
+    return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b)) + absolute;
+}
+
+// What the twin's 8d leaves, as the device holds it, and the same for the twin again.
+struct Arrived {
+    explicit Arrived(const StereoCase& c) {
+        for (const reference::Arrival& arrival : reference::reproject(c.dominant, c.eyes, c.settings)) {
+            words.push_back(packArrival(arrival));
+            arrivals.push_back(unpackArrival(words.back()));
+        }
     }
-    return {(pixel.nearest & 1) != 0 ? reference::PixelClass::kCovered : reference::PixelClass::kGap, x, depth};
+    std::vector<gpu::uint> words;
+    std::vector<reference::Arrival> arrivals;
+};
+
+// Kinds of which every third tile has one.
+inline std::vector<reference::TileKind> markSome(std::size_t tiles) {
+    std::vector<reference::TileKind> kinds(tiles, reference::TileKind::kNone);
+    for (std::size_t t = 0; t < tiles; t += 3) { kinds[t] = static_cast<reference::TileKind>(1 + t % 5); }
+    return kinds;
 }
+
+inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
+    return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
+}
+
+inline double share(std::size_t part, std::size_t whole) { return static_cast<double>(part) / static_cast<double>(whole); }
 
 }  // namespace binosplat::test

@@ -1,174 +1,349 @@
 // The stereo passes on the device, one at a time, over arrays that come from the host and go back to it.
 #pragma once
 
-#include "engine/passes/frame_buffers.h"
 #include "engine/passes/stereo_passes.h"
 #include "tests/gpu_fixture.h"
 #include "tests/pass_stages.h"
+#include "tests/stereo_cases.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace binosplat::test {
 
-// What passes 8 and 9 share. Each call runs one of them; between calls every array may be read or replaced.
+// Where moving pixels and arrivals lie: by themselves, or row by row where the affiliated eye's colours come to lie; these are floats or
+// half floats.
+enum class Rows { kOwn, kShared, kOwnHalves, kSharedHalves };
+inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::kSharedHalves; }
+inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
+
+// What passes 8 work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to write begins
+// as kUnwritten.
 class StereoOnDevice {
 public:
-    // `depths` may be empty where the choice of depth reads none.
-    StereoOnDevice(Gpu& gpu, const gpu::StereoView& view, const std::vector<gpu::vec4>& colours, const std::vector<float>& depths,
-                   const std::vector<gpu::StereoPixel>& pixels, std::uint32_t boxes = 64)
-        : view_(view),
-          view_buffer_(gpu.upload("stereo view", std::vector{view})),
-          counters_(gpu.upload("stereo counters", std::vector{gpu::StereoCounters{}})),
-          colours_(gpu.upload("dominant colours", colours)),
-          depths_(gpu.upload("dominant depths", depths)),
-          pixels_(gpu.upload("stereo pixels", pixels)),
-          buffers_(gpu.context(), view.size_px, boxes),
-          borrowed_(gpu.context(), "boxes and pixel classes", buffers_.borrowedBytes()),
-          gpu_(gpu) {
-        buffers_.borrow(borrowed_.address<gpu::uint>());
-        gpu.run([&](Commands& commands) {
-            commands.fillZero(buffers_.tiles());
-            commands.fillZero(borrowed_);
-        });
+    static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
+
+    StereoOnDevice(Gpu& gpu, const gpu::StereoView& view, const std::vector<gpu::vec4>& colours, const std::vector<gpu::uint>& moving,
+                   Rows rows = Rows::kOwn, std::uint32_t boxes = 64)
+        : gpu_(gpu),
+          rows_(rows),
+          view_(withRows(view, rows)),
+          view_buffer_(gpu.upload("stereo view", std::vector{view_})),
+          counters_(gpu.upload("stereo counters", std::vector{movingAll()})),
+          colours_(areHalves(rows) ? gpu.upload("dominant colours", halvesOf(colours)) : gpu.upload("dominant colours", colours)),
+          affiliated_(gpu.upload("affiliated colours", std::vector<gpu::uint>(wordsPerPixel() * pixelCount(), kUnwritten))),
+          depths_(gpu.upload("affiliated depths", std::vector<gpu::uint>(pixelCount(), kUnwritten))),
+          classes_(gpu.upload("classes", std::vector<gpu::uint>(std::size_t{view.size_tiles.x} * view.size_px.y, kUnwritten))),
+          tile_kinds_(gpu.upload("tile kinds", std::vector<gpu::uint>(tileCount(), 0))),
+          tile_costs_(gpu.upload("tile costs", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_errors_(gpu.upload("tile errors", std::vector<gpu::uint>(tileCount(), 0))),
+          tile_prices_(gpu.upload("tile prices", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_list_(gpu.upload("tile list", std::vector<gpu::uint>(tileCount(), kUnwritten))),
+          tile_mask_(gpu.upload("tile mask", std::vector<gpu::uint>(maskWords(), 0))),
+          shown_mask_(gpu.upload("shown mask", std::vector<gpu::uint>(maskWords(), ~0u))),
+          bins_(gpu.upload("bins", std::vector<gpu::uint>(std::max(gpu::kDepthBins, gpu::kPriceBins), 0))),
+          boxes_(gpu.allocate<gpu::PixelBox>("boxes", boxes)),
+          box_capacity_(boxes) {
+        if (!isShared(rows)) {
+            moving_ = gpu.upload("moving", moving);
+            arrivals_ = gpu.upload("arrivals", std::vector<gpu::uint>(pixelCount(), 0));
+        } else {
+            writeRows(1, moving);
+            writeRows(0, std::vector<gpu::uint>(pixelCount(), 0));
+        }
     }
 
-    void reproject() {
-        dispatch("8a_reproject", {alongRows(), readDepth()}, gpu::ReprojectPass{view(), colours(), depths(), stereoPixels(), {}},
-                 view_.size_tiles);
-    }
-    void resolve(bool predict) {
-        dispatch("8b_resolve", {alongRows(), predict ? 1u : 0u},
-                 gpu::ResolvePass{view(), colours(), stereoPixels(), buffers_.tileErrors(), {}, counters()}, {view_.size_px.y, 1});
+    // `ranges`: of the dominant eye's pairs. Arrays that the pass is to clear are not clear before.
+    void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0) {
+        const Buffer range_buffer = gpu_.upload("ranges", ranges),
+                     lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
+        gpu_.upload(counters_, std::vector{gpu::StereoCounters{}});
+        fill(tile_errors_, tileCount(), kUnwritten);
+        fill(tile_mask_, maskWords(), kUnwritten);
+        fill(bins_, gpu::kPriceBins, kUnwritten);
+        dispatch("8a_weigh", {rectified(), hidden_tiles},
+                 gpu::WeighPass{.stereo = view(),
+                                .ranges = range_buffer.address<gpu::uvec2>(),
+                                .moving = moving(),
+                                .tile_kinds = words(tile_kinds_),
+                                .tile_costs = words(tile_costs_),
+                                .tile_errors = words(tile_errors_),
+                                .tile_mask = words(tile_mask_),
+                                .price_bins = words(bins_),
+                                .shown_mask = words(shown_mask_),
+                                .visible = lists.address<gpu::ListState>(),
+                                .masked_tiles = lists.address<gpu::ListState>(sizeof(gpu::ListState)),
+                                .counters = counters()},
+                 tileGroups());
     }
     void boundDepths() {
-        dispatch("8c_depth_bounds", {alongRows(), readDepth()},
-                 gpu::DepthBoundsPass{view(), colours(), depths(), stereoPixels(), buffers_.depthBins()}, view_.size_tiles);
+        dispatch("8b_depth_bounds", {rectified(), areHalves(rows_)},
+                 gpu::DepthBoundsPass{.stereo = view(),
+                                      .colours = colours_.address<gpu::vec4>(),
+                                      .half_colours = colours_.address<gpu::uvec2>(),
+                                      .moving = moving(),
+                                      .bins = words(bins_)},
+                 pixelGroups());
     }
-    void findEdgeRois() {
-        dispatch("8d_edge_rois", {alongRows()}, gpu::EdgeRoisPass{view(), buffers_.depthBins(), buffers_.tileKinds(), counters()}, {1, 1});
+    void findEdgeRois(bool hidden_tiles = false) {
+        dispatch("8c_edge_rois", {rectified(), hidden_tiles},
+                 gpu::EdgeRoisPass{.stereo = view(),
+                                   .bins = words(bins_),
+                                   .tile_kinds = words(tile_kinds_),
+                                   .shown_mask = words(shown_mask_),
+                                   .counters = counters()},
+                 tileGroups());
     }
-    // All steps of the pass, whatever the counters say of holes.
-    void findComponents() {
-        const gpu::ComponentsPass pass{
-            view(), pixels_.address<gpu::ComponentPixel>(), buffers_.boxes(), buffers_.tileKinds(), counters(), buffers_.boxCapacity()};
-        for (std::uint32_t step = 0; step < 4; ++step) { dispatch("8e_components", {alongRows(), step}, pass, view_.size_tiles); }
-        dispatch("8e_components", {alongRows(), 4u}, pass, {3, 1});
+    void reproject(bool hidden_tiles = false) {
+        dispatch("8d_reproject", {rectified(), hidden_tiles},
+                 gpu::ReprojectPass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
+                 pixelGroups());
     }
     // Splats in `order` as `scene` holds them, with what the dominant eye's 4_project counted of each; eye 1 is the affiliated one.
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
-        std::vector<gpu::uint> offsets(dominant_tiles.size());
-        std::exclusive_scan(dominant_tiles.begin(), dominant_tiles.end(), offsets.begin(), gpu::uint{0});
-        const std::size_t pairs = offsets.empty() ? 0 : offsets.back() + dominant_tiles.back();
-        const Buffer order_buffer = gpu_.upload("order", order), offset_buffer = gpu_.upload("dominant offsets", offsets);
-        const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size()), makeList(pairs)});
-        gpu::NewcomersPass pass{};
-        pass.chunks = scene.scene.chunks();
-        pass.eyes = scene.eyeViews();
-        pass.stereo = view();
-        pass.pixels = stereoPixels();
-        pass.order = order_buffer.address<gpu::uint>();
-        pass.visible = lists.address<gpu::ListState>();
-        pass.dominant_offsets = offset_buffer.address<gpu::uint>();
-        pass.dominant_pairs = lists.address<gpu::ListState>(sizeof(gpu::ListState));
-        pass.tile_errors = buffers_.tileErrors();
-        pass.counters = counters();
-        pass.chunk_bits = scene.scene.chunkBits();
-        pass.eye = 1;
-        dispatch("8f_newcomers", {}, pass, {static_cast<std::uint32_t>((order.size() + gpu::kGroupSize - 1) / gpu::kGroupSize), 1});
+        const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
+        const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
+        dispatch("8e_newcomers", {rectified()},
+                 gpu::NewcomersPass{.chunks = scene.scene.chunks(),
+                                    .eyes = scene.eyeViews(),
+                                    .stereo = view(),
+                                    .arrivals = arrivals(),
+                                    .order = order_buffer.address<gpu::uint>(),
+                                    .visible = lists.address<gpu::ListState>(),
+                                    .dominant_counts = count_buffer.address<gpu::uint>(),
+                                    .tile_kinds = words(tile_kinds_),
+                                    .tile_errors = words(tile_errors_),
+                                    .counters = counters(),
+                                    .chunk_bits = scene.scene.chunkBits(),
+                                    .eye = 1},
+                 {groupsOver(order.size()), 1});
     }
-    // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead.
+    struct ResampleParts {
+        bool errors = false, depths = false, classes = false, components = false;
+        glm::vec3 background{0.0f};
+    };
+    void resample(const ResampleParts& parts) {
+        const std::uint32_t width = view_.size_px.x,
+                            row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
+        dispatch("8f_resample", {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_)},
+                 gpu::ResamplePass{.stereo = view(),
+                                   .dominant = colours_.address<gpu::vec4>(),
+                                   .half_dominant = colours_.address<gpu::uvec2>(),
+                                   .arrivals = arrivals(),
+                                   .affiliated = affiliated_.address<gpu::vec4>(),
+                                   .half_affiliated = affiliated_.address<gpu::uvec2>(),
+                                   .depths = depths_.address<float>(),
+                                   .tile_kinds = words(tile_kinds_),
+                                   .tile_errors = words(tile_errors_),
+                                   .pixel_classes = words(classes_),
+                                   .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
+                                   .counters = counters(),
+                                   .background = parts.background},
+                 {view_.size_px.y, 1});
+    }
+    // All steps of the pass, whatever the counters say of holes.
+    void findComponents() {
+        const gpu::ComponentsPass pass{.stereo = view(),
+                                       .pixels = affiliated_.address<gpu::ComponentPixel>(),
+                                       .pixel_classes = words(classes_),
+                                       .boxes = boxes_.address<gpu::PixelBox>(),
+                                       .tile_kinds = words(tile_kinds_),
+                                       .counters = counters(),
+                                       .box_capacity = box_capacity_};
+        for (std::uint32_t step = 0; step < 3; ++step) {
+            dispatch("8g_components", {rectified(), step, areHalves(rows_)}, pass, pixelGroups());
+        }
+        dispatch("8g_components", {rectified(), 3u, areHalves(rows_)}, pass, {3, 1});
+    }
+    void price() {
+        dispatch("8h_price", {},
+                 gpu::PricePass{.stereo = view(),
+                                .tile_kinds = words(tile_kinds_),
+                                .tile_costs = words(tile_costs_),
+                                .tile_errors = words(tile_errors_),
+                                .tile_prices = words(tile_prices_),
+                                .price_bins = words(bins_)},
+                 tileGroups());
+    }
+    // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead, the tiles sorted.
     struct Selected {
         gpu::ListState masked_tiles, masked_visible;
-        std::vector<gpu::uint> tile_list, tiles_before;
+        std::vector<gpu::uint> tile_list, tile_mask;
     };
     Selected select(bool predicted, std::size_t visible_count) {
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
         const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
-        dispatch("8g_select", {alongRows(), predicted ? 1u : 0u},
-                 gpu::SelectPass{view(),
-                                 buffers_.tileErrors(),
-                                 buffers_.tileKinds(),
-                                 buffers_.tileList(),
-                                 buffers_.tilesBefore(),
-                                 list(0),
-                                 list(1),
-                                 list(2),
-                                 counters(),
-                                 {}},
-                 {1, 1});
+        dispatch("8i_select", {predicted},
+                 gpu::SelectPass{.stereo = view(),
+                                 .tile_kinds = words(tile_kinds_),
+                                 .tile_prices = words(tile_prices_),
+                                 .price_bins = words(bins_),
+                                 .tile_list = words(tile_list_),
+                                 .tile_mask = words(tile_mask_),
+                                 .tile_costs = words(tile_costs_),
+                                 .visible = list(0),
+                                 .masked_tiles = list(1),
+                                 .masked_visible = list(2),
+                                 .counters = counters()},
+                 tileGroups());
         const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
-        return {states[1], states[2], readTiles(buffers_.tileList(), states[1].count), readTiles(buffers_.tilesBefore(), tileCount() + 1)};
-    }
-    // Returns D.
-    std::vector<float> resample(const glm::vec3& background = glm::vec3(0.0f)) {
-        const Buffer affiliated_depths = gpu_.upload("affiliated depths", std::vector<float>(pixelCount(), -1.0f));
-        dispatch("9_resample", {alongRows(), /*depth=*/1},
-                 gpu::ResamplePass{view(), colours(), stereoPixels(), pixels_.address<gpu::vec4>(), affiliated_depths.address<float>(),
-                                   buffers_.tileKinds(), buffers_.pixelClasses(), background},
-                 view_.size_tiles);
-        return gpu_.readBack<float>(affiliated_depths, pixelCount());
+        auto tile_list = gpu_.readBack<gpu::uint>(tile_list_, std::min<std::size_t>(states[1].count, tileCount()));
+        std::ranges::sort(tile_list);
+        return {states[1], states[2], std::move(tile_list), readTileMask()};
     }
 
-    [[nodiscard]] std::vector<gpu::StereoPixel> readPixels() { return gpu_.readBack<gpu::StereoPixel>(pixels_, pixelCount()); }
-    [[nodiscard]] std::vector<gpu::vec4> readAffiliated() { return gpu_.readBack<gpu::vec4>(pixels_, pixelCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readArrivals() {
+        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(arrivals_, pixelCount()) : readRows(0);
+    }
+    [[nodiscard]] std::vector<gpu::uint> readMoving() {
+        return !isShared(rows_) ? gpu_.readBack<gpu::uint>(moving_, pixelCount()) : readRows(1);
+    }
+    [[nodiscard]] std::vector<gpu::vec4> readAffiliated() {
+        if (!areHalves(rows_)) { return gpu_.readBack<gpu::vec4>(affiliated_, pixelCount()); }
+        std::vector<gpu::vec4> colours;
+        for (const gpu::uvec2& packed : gpu_.readBack<gpu::uvec2>(affiliated_, pixelCount())) { colours.push_back(colourOf(packed)); }
+        return colours;
+    }
+    [[nodiscard]] std::vector<gpu::uint> readAffiliatedWords() {
+        return gpu_.readBack<gpu::uint>(affiliated_, wordsPerPixel() * pixelCount());
+    }
+    // Of a pixel's colour.
+    [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
+    [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
     [[nodiscard]] gpu::StereoCounters readCounters() { return gpu_.readBack<gpu::StereoCounters>(counters_, 1)[0]; }
-    [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return readTiles(buffers_.tileErrors(), tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return readTiles(buffers_.tileKinds(), tileCount()); }
-    [[nodiscard]] std::vector<gpu::uint> readDepthBins() { return readTiles(buffers_.depthBins(), gpu::kDepthBins); }
+    [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return gpu_.readBack<gpu::uint>(tile_errors_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTilePrices() { return gpu_.readBack<gpu::uint>(tile_prices_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileMask() { return gpu_.readBack<gpu::uint>(tile_mask_, maskWords()); }
+    // Of depths or of prices.
+    [[nodiscard]] std::vector<gpu::uint> readBins() { return gpu_.readBack<gpu::uint>(bins_, gpu::kDepthBins); }
     [[nodiscard]] std::vector<std::uint8_t> readClasses() {
         const std::size_t row_words = view_.size_tiles.x;
-        const auto words = gpu_.readBack<gpu::uint>(borrowed_, row_words * view_.size_px.y);
+        const auto packed = gpu_.readBack<gpu::uint>(classes_, row_words * view_.size_px.y);
         std::vector<std::uint8_t> classes;
         for (std::size_t y = 0; y < view_.size_px.y; ++y) {
             for (std::size_t x = 0; x < view_.size_px.x; ++x) {
-                classes.push_back(static_cast<std::uint8_t>((words[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
+                classes.push_back(static_cast<std::uint8_t>((packed[y * row_words + x / 16] >> (2 * (x % 16))) & 3));
             }
         }
         return classes;
     }
 
-    void writePixels(const std::vector<gpu::StereoPixel>& pixels) { gpu_.upload(pixels_, pixels); }
+    void writeView(const gpu::StereoView& view) { gpu_.upload(view_buffer_, std::vector{withRows(view, rows_)}); }
+    void writeArrivals(const std::vector<gpu::uint>& arrivals) {
+        if (!isShared(rows_)) {
+            gpu_.upload(arrivals_, arrivals);
+        } else {
+            writeRows(0, arrivals);
+        }
+    }
+    void writeClasses(const std::vector<std::uint8_t>& classes) {
+        const std::size_t row_words = view_.size_tiles.x;
+        std::vector<gpu::uint> packed(row_words * view_.size_px.y, 0);
+        for (std::size_t i = 0; i < classes.size(); ++i) {
+            const std::size_t x = i % view_.size_px.x, y = i / view_.size_px.x;
+            packed[y * row_words + x / 16] |= gpu::uint{classes[i]} << (2 * (x % 16));
+        }
+        gpu_.upload(classes_, packed);
+    }
+    void writeAffiliatedWords(const std::vector<gpu::uint>& values) { gpu_.upload(affiliated_, values); }
     void writeCounters(const gpu::StereoCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
-    void writeTileKinds(const std::vector<gpu::uint>& kinds) { writeTiles(buffers_.tileKinds(), kinds); }
-    void writeTileErrors(const std::vector<gpu::uint>& errors) { writeTiles(buffers_.tileErrors(), errors); }
-    void writeDepthBins(const std::vector<gpu::uint>& bins) { writeTiles(buffers_.depthBins(), bins); }
+    void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
+    void writeTileCosts(const std::vector<gpu::uint>& costs) { gpu_.upload(tile_costs_, costs); }
+    void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
+    void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
+    // A byte a tile, 1 for those that the dominant eye's lens hides.
+    void writeHidden(const std::vector<std::uint8_t>& hidden) {
+        std::vector<std::uint8_t> shown;
+        for (const std::uint8_t h : hidden) { shown.push_back(h != 0 ? 0 : 1); }
+        gpu_.upload(shown_mask_, maskOf(shown, view_.size_tiles));
+    }
 
     [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
-    [[nodiscard]] std::size_t tileCount() const { return buffers_.tileCount(); }
+    [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
 
 private:
-    [[nodiscard]] std::uint32_t alongRows() const { return isRectified(view_) ? 1 : 0; }
-    [[nodiscard]] std::uint32_t readDepth() const { return view_.depth_choice != gpu::kDepthInverse ? 1 : 0; }
+    static gpu::vec4 colourOf(const gpu::uvec2& packed) { return gpu::vec4(glm::unpackHalf2x16(packed.x), glm::unpackHalf2x16(packed.y)); }
+    static std::vector<gpu::uvec2> halvesOf(const std::vector<gpu::vec4>& colours) {
+        std::vector<gpu::uvec2> halves;
+        for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
+        return halves;
+    }
+    static gpu::StereoView withRows(gpu::StereoView view, Rows rows) {
+        view.row_words = (!isShared(rows) ? 1 : areHalves(rows) ? 2 : 4) * view.size_px.x;
+        return view;
+    }
+    static gpu::StereoCounters movingAll() {
+        gpu::StereoCounters counters{};
+        counters.moves = 1;
+        return counters;
+    }
+    [[nodiscard]] std::size_t maskWords() const { return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y; }
+    [[nodiscard]] std::uint32_t rectified() const {
+        const glm::vec3 zero(0.0f);
+        const auto alongRows = [&](const gpu::PixelMap& map) {
+            return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
+        };
+        return alongRows(view_.affiliated_from_dominant) && alongRows(view_.dominant_from_affiliated) ? 1 : 0;
+    }
+    static std::uint32_t groupsOver(std::size_t items) {
+        return static_cast<std::uint32_t>((items + gpu::kStereoGroup - 1) / gpu::kStereoGroup);
+    }
+    [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
+    [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
+
+    [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) { return buffer.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::StereoView> view() const { return view_buffer_.address<gpu::StereoView>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::StereoCounters> counters() const { return counters_.address<gpu::StereoCounters>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::vec4> colours() const { return colours_.address<gpu::vec4>(); }
-    [[nodiscard]] gpu::DeviceAddress<float> depths() const { return depths_.address<float>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::StereoPixel> stereoPixels() const { return pixels_.address<gpu::StereoPixel>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const { return !isShared(rows_) ? words(arrivals_) : words(affiliated_); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
+        return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
+    }
 
     template <typename Pass>
-    void dispatch(const char* shader, std::initializer_list<std::uint32_t> constants, const Pass& pass, glm::uvec2 groups) {
+    void dispatch(const char* shader, const std::vector<std::uint32_t>& constants, const Pass& pass, glm::uvec2 groups) {
         const Kernel kernel(gpu_.context(), shader, sizeof(Pass), constants);
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
     }
-    // The arrays over the tiles lie in one buffer.
-    [[nodiscard]] std::uint64_t offsetOf(gpu::DeviceAddress<gpu::uint> array) const { return array.value - buffers_.tileErrors().value; }
-    [[nodiscard]] std::vector<gpu::uint> readTiles(gpu::DeviceAddress<gpu::uint> array, std::size_t count) {
-        return gpu_.readBack<gpu::uint>(buffers_.tiles(), count, offsetOf(array));
+    void fill(const Buffer& buffer, std::size_t count, gpu::uint value) { gpu_.upload(buffer, std::vector<gpu::uint>(count, value)); }
+    // The first or the second part of each row of colours, a word a pixel.
+    [[nodiscard]] std::vector<gpu::uint> readRows(std::size_t part) {
+        const std::size_t width = view_.size_px.x;
+        const auto all = readAffiliatedWords();
+        std::vector<gpu::uint> values;
+        for (std::size_t y = 0; y < view_.size_px.y; ++y) {
+            const auto row = all.begin() + static_cast<std::ptrdiff_t>((wordsPerPixel() * y + part) * width);
+            values.insert(values.end(), row, row + static_cast<std::ptrdiff_t>(width));
+        }
+        return values;
     }
-    void writeTiles(gpu::DeviceAddress<gpu::uint> array, const std::vector<gpu::uint>& values) {
-        auto all = gpu_.readBack<gpu::uint>(buffers_.tiles(), buffers_.tiles().bytes() / sizeof(gpu::uint));
-        std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(offsetOf(array) / sizeof(gpu::uint)));
-        gpu_.upload(buffers_.tiles(), all);
+    void writeRows(std::size_t part, const std::vector<gpu::uint>& values) {
+        const std::size_t width = view_.size_px.x;
+        auto all = readAffiliatedWords();
+        for (std::size_t i = 0; i < values.size(); ++i) { all[(wordsPerPixel() * (i / width) + part) * width + i % width] = values[i]; }
+        gpu_.upload(affiliated_, all);
     }
 
-    gpu::StereoView view_;
-    Buffer view_buffer_, counters_, colours_, depths_, pixels_;
-    StereoBuffers buffers_;
-    Buffer borrowed_;
     Gpu& gpu_;
+    Rows rows_;
+    gpu::StereoView view_;
+    Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
+    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
+    Buffer moving_, arrivals_;  // where rows are their own
+    std::uint32_t box_capacity_;
 };
+
+inline gpu::StereoView viewOfCase(const StereoCase& c) {
+    return stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+}
+inline StereoOnDevice toDevice(Gpu& gpu, const StereoCase& c, Rows rows = Rows::kOwn) {
+    StereoOnDevice device(gpu, viewOfCase(c), coloursOf(c.dominant), movingOf(c.dominant, c.settings), rows);
+    if (!c.settings.source_hidden.empty()) { device.writeHidden(c.settings.source_hidden); }
+    return device;
+}
 
 }  // namespace binosplat::test

@@ -1,5 +1,5 @@
-// Facts about the passes that choose the tiles to render again, 8c, 8d, 8e and 8g: against the twin, against examples worked out by
-// hand, and against plainer algorithms.
+// Facts about the paper's choice of tiles to render, 8b, 8c and 8g: against the twin, against examples worked out by hand, and against
+// plainer algorithms.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -20,12 +20,9 @@ using reference::TileKind;
 using test::Gpu;
 using test::StereoCase;
 using test::StereoOnDevice;
+using test::toDevice;
 
 namespace {
-
-StereoOnDevice toDevice(Gpu& gpu, const StereoCase& c) {
-    return StereoOnDevice(gpu, test::viewOfCase(c), test::coloursOf(c.dominant), test::depthsOf(c.dominant), test::momentsOf(c.dominant));
-}
 
 // Parallel eyes 0.1 apart, of 100 px focal length: 10 px of disparity for a unit of inverse depth.
 StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
@@ -35,6 +32,7 @@ StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
     for (auto* plane : {&c.dominant.depth, &c.dominant.inverse_depth, &c.dominant.inverse_depth_squared}) {
         plane->resize(c.dominant.rgba.size());
     }
+    c.settings.method = reference::StereoMethod::kPaper;
     return c;
 }
 
@@ -74,68 +72,84 @@ Mask drawSpiral(glm::uvec2 size_px) {
     return mask;
 }
 
-// 8e on a mask of holes, some tiles marked before; against the twin's flood fill.
+// 8g on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill.
 void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
+    // Of half floats and of floats in turn.
+    const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
+    const std::size_t words_per_pixel = areHalves(rows) ? 2 : 4;
     StereoCase c = makePlainCase(size_px);
     c.settings.margin_px = margin_px;
-    std::vector<Resolved> resolved;
-    std::vector<gpu::StereoPixel> pixels;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        resolved.push_back({mask[i] != 0 ? PixelClass::kHole
-                            : i % 5 == 0 ? PixelClass::kGap
-                                         : PixelClass::kCovered,
-                            static_cast<std::uint32_t>(i % size_px.x), 0.5});
-        pixels.push_back({7.0f, 9.0f, test::packResolved(resolved.back(), mask[i] == 0 && i % 5 != 0), 0.5f});
-    }
     std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
-    StereoOnDevice device(gpu, test::viewOfCase(c), test::coloursOf(c.dominant), {}, pixels, boxes);
+    std::vector<Resolved> resolved;
+    std::vector<std::uint8_t> classes;
+    // As 8f leaves them: holes are their own parents, and the rest are colours.
+    std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;
+        resolved.push_back({pixel_class, static_cast<std::uint32_t>(i % size_px.x), 0.5, 0});
+        const bool moved = kinds[test::tileOf(i, size_px)] == TileKind::kNone;
+        classes.push_back(moved ? static_cast<std::uint8_t>(pixel_class) : 0);
+        if (moved && mask[i] != 0) { words[words_per_pixel * i] = static_cast<gpu::uint>(i); }
+    }
+    StereoOnDevice device(gpu, test::viewOfCase(c), {}, {}, rows, boxes);
     device.writeTileKinds(test::kindsOf(kinds));
+    device.writeClasses(classes);
+    device.writeAffiliatedWords(words);
     device.findComponents();
     const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
     const gpu::StereoCounters counters = device.readCounters();
     CHECK(counters.components == components);
     CHECK(device.readTileKinds() == test::kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
-    const auto after = device.readPixels();
+    CHECK(device.readClasses() == classes);
+    const auto after = device.readAffiliatedWords();
     std::size_t changed = 0;
-    for (std::size_t i = 0; i < after.size(); ++i) {
-        changed += after[i].nearest == pixels[i].nearest && after[i].resolved_inverse_depth == 0.5f ? 0 : 1;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+        if (classes[i] != static_cast<std::uint8_t>(PixelClass::kHole)) {
+            const std::size_t at = words_per_pixel * i;
+            changed += std::equal(&after[at], &after[at] + words_per_pixel, &words[at]) ? 0 : 1;
+        }
     }
     CHECK(changed == 0);
 }
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8c_depth_bounds counts the twin's depths") {
+TEST_CASE_FIXTURE(Gpu, "8b_depth_bounds counts the twin's depths") {
+    std::uint32_t all_flips = 0;
     for (StereoCase c : test::makeStereoCases()) {
-        for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
-            c.settings.depth_choice = choice;
+        for (const test::Rows rows : {test::Rows::kOwn, test::Rows::kShared, test::Rows::kSharedHalves}) {
             CAPTURE(c.name);
-            StereoOnDevice device = toDevice(*this, c);
+            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+            StereoOnDevice device = toDevice(*this, c, rows);
             device.boundDepths();
-            const auto bins = device.readDepthBins(), expected = reference::boundDepths(c.dominant, choice);
+            const auto bins = device.readBins(), expected = reference::boundDepths(c.dominant, c.settings.depth_choice);
             std::uint32_t flips = 0;
             for (std::size_t b = 0; b < bins.size(); ++b) {
                 flips += static_cast<std::uint32_t>(std::abs(static_cast<int>(bins[b]) - static_cast<int>(expected[b])));
             }
             CHECK(std::accumulate(bins.begin(), bins.end(), 0u) == std::accumulate(expected.begin(), expected.end(), 0u));
-            CHECK(flips <= 4);
+            CHECK(flips <= 2);
+            all_flips += flips;
         }
     }
+    MESSAGE(all_flips << " flips");
+    CHECK(all_flips <= 24);  // measured: 18, of three times 130,000 pixels
 }
 
-TEST_CASE_FIXTURE(Gpu, "8c_depth_bounds counts depths beyond its range as the last, and pixels of little weight not at all") {
+TEST_CASE_FIXTURE(Gpu, "8b_depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
     StereoCase c = makePlainCase({20, 10});
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) { c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5; }
-    const std::array<double, 4> inverse_depths{1.0, 1e-9, 1e9, 0.25};
+    const std::array<double, 5> inverse_depths{1.0, 1e-9, 1e9, 0.25, -1.0};
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) {
-        c.dominant.inverse_depth[i] = c.dominant.rgba[i].w * inverse_depths[i / 2 % 4];
+        c.dominant.inverse_depth[i] = c.dominant.rgba[i].w * inverse_depths[i / 2 % 5];
     }
     StereoOnDevice device = toDevice(*this, c);
     device.boundDepths();
     std::vector<gpu::uint> expected(gpu::kDepthBins, 0);
-    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 25;
-    CHECK(device.readDepthBins() == expected);
+    expected[16 * 32] = expected[gpu::kDepthBins - 1] = expected[0] = expected[18 * 32] = 20;
+    CHECK(device.readBins() == expected);
+    CHECK(reference::boundDepths(c.dominant, DepthChoice::kInverse) == expected);
 }
 
 TEST_CASE("depth bounds leave out one pixel in 200 at either end, and widen to whole bins") {
@@ -184,7 +198,7 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
 }
 
-TEST_CASE_FIXTURE(Gpu, "8d_edge_rois finds the twin's borders and tiles") {
+TEST_CASE_FIXTURE(Gpu, "8c_edge_rois finds the twin's borders and tiles") {
     for (StereoCase c : test::makeStereoCases()) {
         const auto bins = reference::boundDepths(c.dominant, c.settings.depth_choice);
         for (const int margin_px : {0, 32}) {
@@ -198,7 +212,7 @@ TEST_CASE_FIXTURE(Gpu, "8d_edge_rois finds the twin's borders and tiles") {
                     CAPTURE(samples);
                     CAPTURE(tight);
                     StereoOnDevice device = toDevice(*this, c);
-                    device.writeDepthBins(bins);
+                    device.writeBins(bins);
                     device.findEdgeRois();
                     const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
                     const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
@@ -212,23 +226,38 @@ TEST_CASE_FIXTURE(Gpu, "8d_edge_rois finds the twin's borders and tiles") {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8d_edge_rois asks for components only where they are wanted and there are holes") {
-    for (const bool wanted : {false, true}) {
-        for (const gpu::uint holes : {0u, 5u}) {
-            StereoCase c = makePlainCase({40, 20});
-            c.settings.center_rois = wanted;
+TEST_CASE_FIXTURE(Gpu,
+                  "8c_edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
+    for (const glm::uvec2 size_tiles : {glm::uvec2(8, 6), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
+        for (const Side dominant : {kLeft, kRight}) {
+            StereoCase c = makePlainCase(16u * size_tiles - 3u, dominant);
+            c.settings.margin_px = 5;
+            std::mt19937 random(3);
+            for (std::uint32_t t = 0; t < size_tiles.x * size_tiles.y; ++t) {
+                c.settings.source_hidden.push_back(random() % 10 == 0 ? 1 : 0);
+                c.settings.target_hidden.push_back(random() % 10 == 0 ? 1 : 0);
+            }
+            std::vector<gpu::uint> bins(gpu::kDepthBins, 0);
+            bins[500] = bins[600] = 1000;
             StereoOnDevice device = toDevice(*this, c);
-            gpu::StereoCounters counters{};
-            counters.hole_pixels = holes;
-            device.writeCounters(counters);
-            device.findEdgeRois();
-            const gpu::DispatchSize groups = device.readCounters().component_groups;
-            CHECK(groups.x * groups.y * groups.z == (wanted && holes > 0 ? 6u : 0u));
+            std::vector<TileKind> before(device.tileCount(), TileKind::kNone);
+            reference::markHidden(before, c.settings);
+            device.writeTileKinds(test::kindsOf(before));
+            device.writeBins(bins);
+            device.findEdgeRois(/*hidden_tiles=*/true);
+            const Borders borders = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
+            auto expected = reference::markEdges(borders, c.sizePx());
+            const auto without_lens = std::ranges::count(expected, TileKind::kEdge);
+            reference::markHidden(expected, c.settings);
+            reference::markBehindHidden(expected, c.eyes, c.settings);
+            CHECK(device.readTileKinds() == test::kindsOf(expected));
+            CHECK(device.readCounters().edge_tiles == std::ranges::count(expected, TileKind::kEdge));
+            CHECK(std::ranges::count(expected, TileKind::kEdge) > without_lens);
         }
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_components groups holes as a flood fill does, whatever their shape") {
+TEST_CASE_FIXTURE(Gpu, "8g_components groups holes as a flood fill does, whatever their shape") {
     std::mt19937 random(1);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
         CAPTURE(size_px.x);
@@ -251,13 +280,13 @@ TEST_CASE_FIXTURE(Gpu, "8e_components groups holes as a flood fill does, whateve
         }
         // A spiral is one component.
         std::vector<Resolved> resolved;
-        for (const std::uint8_t hole : masks[6]) { resolved.push_back({hole != 0 ? PixelClass::kHole : PixelClass::kCovered, 0, 0.0}); }
+        for (const std::uint8_t hole : masks[6]) { resolved.push_back({hole != 0 ? PixelClass::kHole : PixelClass::kCovered, 0, 0.0, 0}); }
         std::vector<TileKind> kinds = reference::markEdges({}, size_px);
         CHECK(reference::markComponents(resolved, kinds, size_px, 0) == 1);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
+TEST_CASE_FIXTURE(Gpu, "8g_components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });

@@ -240,7 +240,7 @@ std::size_t coloursOfPanel(const Image& screen) {
 TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     if (!haveScreen()) { return; }
     const Workplace work;
-    std::ofstream(work.path / "rest.script") << "rate 90\nsize 192 192\nframes every 20\n";
+    std::ofstream(work.path / "rest.script") << "rate 90\nsize 192 192\nframes all\n";
     Viewer viewer(work, "--simulate rest.script --out seen");
     Program& program = viewer.program();
 

@@ -38,7 +38,7 @@ void Commands::writeTimestamp() {
 
 void Commands::beginPass(const std::string& name) {
     endPass();
-    if (context_.validates()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name.c_str())); }
+    if (context_.hasLabels()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name.c_str())); }
     pass_names_.push_back(name);
     writeTimestamp();
     in_pass_ = true;
@@ -47,7 +47,7 @@ void Commands::beginPass(const std::string& name) {
 void Commands::endPass() {
     if (!in_pass_) { return; }
     writeTimestamp();
-    if (context_.validates()) { command_buffer_.endDebugUtilsLabelEXT(); }
+    if (context_.hasLabels()) { command_buffer_.endDebugUtilsLabelEXT(); }
     in_pass_ = false;
 }
 

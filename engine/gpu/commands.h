@@ -37,10 +37,10 @@ public:
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
     }
-    // A workgroup for every kGroupSize of `items`, folded into rows (see groupIndex in the shaders).
+    // A workgroup for every `group_items` of `items`, folded into rows (see groupIndex in the shaders).
     template <typename Pass>
-    void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items) {
-        const auto groups = static_cast<std::uint32_t>((items + gpu::kGroupSize - 1) / gpu::kGroupSize);
+    void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items, gpu::uint group_items = gpu::kGroupSize) {
+        const auto groups = static_cast<std::uint32_t>((items + group_items - 1) / group_items);
         if (groups == 0) { return; }
         dispatch(kernel, pass, std::min(groups, gpu::kMaxGroupsX), (groups + gpu::kMaxGroupsX - 1) / gpu::kMaxGroupsX);
     }

@@ -40,10 +40,10 @@ std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& devic
 std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (device.getProperties().apiVersion < kApiVersion) { return "Vulkan 1.2"; }
     if (!queueFamilyOf(device)) { return "a compute queue"; }
-    // 1_cull and others run 256 threads; sort_scatter keeps 16 histograms where subgroups have eight.
+    // What Vulkan promises.
     const auto limits = device.getProperties().limits;
-    if (limits.maxComputeWorkGroupInvocations < 256 || limits.maxComputeWorkGroupSize[0] < 256) { return "workgroups of 256 invocations"; }
-    if (limits.maxComputeSharedMemorySize < 20480) { return "20 KiB of shared memory"; }
+    if (limits.maxComputeWorkGroupInvocations < 128 || limits.maxComputeWorkGroupSize[0] < 128) { return "workgroups of 128 invocations"; }
+    if (limits.maxComputeSharedMemorySize < 16384) { return "16 KiB of shared memory"; }
     const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.bufferDeviceAddress) { return "bufferDeviceAddress"; }
@@ -53,7 +53,7 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     const auto operations =
         vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
     if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
-    if (vulkan11.subgroupSize < 8 || vulkan11.subgroupSize > 64) { return "subgroups of 8 to 64 invocations"; }
+    if (vulkan11.subgroupSize < 4 || vulkan11.subgroupSize > 128) { return "subgroups of 4 to 128 invocations"; }
     return {};
 }
 
@@ -95,6 +95,8 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
 }
 
 Context::~Context() {
+    pipeline_cache_.save();
+    pipeline_cache_ = {};
     if (!validates_) { return; }
     const std::size_t before = validationMessages().size();
     queue_ = vk::raii::Queue(nullptr);
@@ -112,8 +114,14 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
                                        [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
-        extensions.insert(extensions.end(), {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
+        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
+    // The validation layer has it, too, where no driver does.
+    const auto offered = loader_->enumerateInstanceExtensionProperties();
+    labels_ = validation || std::ranges::any_of(offered, [](const vk::ExtensionProperties& extension) {
+                  return std::strcmp(extension.extensionName, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
+              });
+    if (labels_) { extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME); }
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT validation_features(synchronization);
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
@@ -195,12 +203,21 @@ void Context::createDevice(const ContextOptions& options) {
             device_extensions_.insert(wanted);
         }
     }
+    vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics;
+    if (hasDeviceExtension(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) {
+        using Statistics = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR;
+        statistics = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Statistics>().get<Statistics>();
+        kernel_statistics_ = statistics.pipelineExecutableInfo == VK_TRUE;
+        statistics.pNext = nullptr;
+        features.pNext = &statistics;
+    }
     const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, &features);
     const DeviceMaker& maker = options.maker;
     device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
                                                                                            *physical_device_, info))
                                   : vk::raii::Device(physical_device_, info);
     queue_ = device_.getQueue(queue_family_, 0);
+    pipeline_cache_ = PipelineCache(physical_device_, device_);
 
     const auto properties = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;
@@ -218,6 +235,7 @@ void Context::createDevice(const ContextOptions& options) {
         max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
     const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
+    max_group_invocations_ = std::min(vulkan10.limits.maxComputeWorkGroupInvocations, vulkan10.limits.maxComputeWorkGroupSize[0]);
     timestamp_mask_ = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
     if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }
 }

@@ -1,6 +1,8 @@
 // The Vulkan device: chosen, opened, and what it can do. One queue; no descriptor sets anywhere.
 #pragma once
 
+#include "engine/gpu/pipeline_cache.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -69,8 +71,12 @@ public:
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
+    // Of a workgroup that lies along x.
+    [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
     [[nodiscard]] bool hasDynamicBroadcast() const { return dynamic_broadcast_; }
     [[nodiscard]] bool validates() const { return validates_; }
+    // Whether names and labels go into captures and messages: VK_EXT_debug_utils.
+    [[nodiscard]] bool hasLabels() const { return labels_; }
     // Throws Error if the validation layers said anything so far.
     void requireNoValidationMessages() const;
     // What they said; empty is good.
@@ -81,6 +87,8 @@ public:
     // For whoever works on the shaders while the program runs; empty otherwise. Kernels that are there stay as they are.
     [[nodiscard]] ShaderWords& replacedShaders() const { return replaced_shaders_; }
 
+    [[nodiscard]] const vk::raii::PipelineCache& pipelineCache() const { return pipeline_cache_.handle(); }
+
     [[nodiscard]] MemoryUse& memoryUse() const { return memory_use_; }
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                            vk::MemoryPropertyFlags preferred) const;
@@ -88,10 +96,13 @@ public:
     // Whether a device extension was asked for and is there.
     [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }
 
+    // Whether the driver tells what it makes of kernels; only where VK_KHR_pipeline_executable_properties was asked for.
+    [[nodiscard]] bool hasKernelStatistics() const { return kernel_statistics_; }
+
     // Gives a Vulkan object its name in validation messages and captures.
     template <typename Handle>
     void name(const Handle& handle, const std::string& object_name) const {
-        if (!validates_) { return; }
+        if (!labels_) { return; }
         using Raw = std::remove_cvref_t<decltype(*handle)>;
         nameObject(Raw::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename Raw::CType>(*handle)), object_name);
     }
@@ -109,13 +120,14 @@ private:
         std::vector<std::string> lines;
     };
 
-    bool validates_ = false, dynamic_broadcast_ = false;
+    bool validates_ = false, labels_ = false, dynamic_broadcast_ = false, kernel_statistics_ = false;
     Messages messages_;
     std::optional<vk::raii::Context> loader_;
     vk::raii::Instance instance_{nullptr};
     vk::raii::DebugUtilsMessengerEXT messenger_{nullptr};
     vk::raii::PhysicalDevice physical_device_{nullptr};
     vk::raii::Device device_{nullptr};
+    PipelineCache pipeline_cache_;
     vk::raii::Queue queue_{nullptr};
     mutable std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
@@ -125,6 +137,7 @@ private:
     double timestamp_period_ns_ = 0.0;
     std::uint64_t timestamp_mask_ = 0;
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
+    std::uint32_t max_group_invocations_ = 0;
     mutable MemoryUse memory_use_;
     mutable ShaderWords replaced_shaders_;
 };

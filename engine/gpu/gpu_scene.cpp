@@ -17,6 +17,9 @@ namespace {
 // Splats that are packed and copied at a time: the upload buffer is at most 9 MiB.
 constexpr std::uint32_t kUploadSplats = 65536;
 
+// Words of a chunk are then counted in less than 31 bits, see kMaxItems.
+constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{4} << 30;
+
 std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2; }
 
 // Where the arrays of a chunk of `capacity` splats lie in its buffer.
@@ -85,11 +88,11 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 std::uint64_t deviceBytesPerSplat(int sh_degree) { return 48 + shWords(sh_degree) * sizeof(std::uint32_t); }
 
 GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : sh_degree_(scene.sh_degree) {
-    check(scene.size() < (1u << 31), "{}: {} splats, at most {} can be shown", scene.name, scene.size(), (1u << 31) - 1);
+    check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);
     splat_count_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
-    while (chunk_bits_ > 0 &&
-           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_).bytes > context.maxAllocationBytes()) {
+    const std::uint64_t most_bytes = std::min(context.maxAllocationBytes(), kMaxChunkBytes);
+    while (chunk_bits_ > 0 && ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_).bytes > most_bytes) {
         --chunk_bits_;
     }
 

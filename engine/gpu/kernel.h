@@ -6,26 +6,50 @@
 #include <cstdint>
 #include <initializer_list>
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace binosplat {
 
+// A kernel before it is made.
+struct KernelVariant {
+    std::string shader;                                            // names shaders/NAME.comp
+    std::uint32_t push_bytes;                                      // the size of the pass struct it takes
+    std::vector<std::pair<std::string, std::uint32_t>> constants;  // constant_id 0, 1, 2 ... by their names there
+
+    [[nodiscard]] std::vector<std::uint32_t> values() const;
+};
+
+// All kernels that somebody takes in any mode: each group of passes states its own, and `binosplat kernels` makes all of them.
+using KernelTable = std::vector<KernelVariant>;
+
+// A shader in every combination of its constants, each from 0 to one less than its count.
+KernelTable everyVariant(const std::string& shader, std::uint32_t push_bytes,
+                         std::initializer_list<std::pair<const char*, std::uint32_t>> counts = {});
+void append(KernelTable& table, const KernelTable& more);
+
+// What a driver says of a kernel, by its own names; see VK_KHR_pipeline_executable_properties.
+using KernelStatistics = std::vector<std::pair<std::string, std::variant<bool, std::int64_t, std::uint64_t, double>>>;
+
 class Kernel {
 public:
+    enum class Keep { kNothing, kStatistics };  // kStatistics only where Context::hasKernelStatistics
+
     Kernel() = default;
-    // `shader` names shaders/NAME.comp; `constants` are the values of constant_id 0, 1, 2 ... ; `push_bytes` is the size of the
-    // pass struct it takes.
-    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {})
-        : Kernel(context, shader, push_bytes, std::span(constants.begin(), constants.size())) {}
-    Kernel(const Context& context, std::string_view shader, std::uint32_t push_bytes, std::span<const std::uint32_t> constants);
+    // Throws Error (ExitCode::kNoDevice) where the driver does not take it.
+    Kernel(const Context& context, const KernelVariant& variant, Keep keep = Keep::kNothing)
+        : Kernel(context, variant.shader, variant.push_bytes, variant.values(), keep) {}
+    // `constants` are the values of constant_id 0, 1, 2 ...
+    Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants = {},
+           Keep keep = Keep::kNothing);
 
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
+    // Of a kernel that kept them.
+    [[nodiscard]] KernelStatistics statistics(const Context& context) const;
 
 private:
     vk::raii::PipelineLayout layout_{nullptr};
@@ -36,14 +60,16 @@ private:
 // Kernels, made when they are first wanted: a mode does not pay for another's.
 class KernelCache {
 public:
-    explicit KernelCache(const Context& context) : context_(context) {}
-    // The kernel of a shader and its specialization constants; the reference stays valid until rebuild().
+    // `table`: all that will ever be asked for.
+    KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
+    // The kernel of a shader and its specialization constants, one of the table; the reference stays valid until rebuild().
     const Kernel& get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
     // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and keeps the old ones then.
     void rebuild();
 
 private:
     const Context& context_;
+    KernelTable table_;
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> kernels_;
 };
 

@@ -40,17 +40,12 @@ PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const 
 
 glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
 
-StereoBuffers::StereoBuffers(const Context& context, glm::uvec2 size_px, std::uint32_t boxes)
-    : size_px_(size_px), tile_count_(std::uint64_t{tilesOf(size_px).x} * tilesOf(size_px).y), box_capacity_(boxes) {
-    tiles_ = Buffer(context, "stereo tiles", (4 * tile_count_ + 1 + gpu::kDepthBins) * sizeof(gpu::uint));
-}
-
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count) {
     FrameBuffers buffers;
     buffers.splat_count = splat_count;
     buffers.state = Buffer(context, "frame state", sizeof(FrameState));
     buffers.visibility =
-        Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kGroupSize / 8 + sizeof(gpu::uint)));
+        Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kCullBlock / 8 + sizeof(gpu::uint)));
     return buffers;
 }
 
@@ -64,11 +59,11 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.pairs = {};
         buffers.pairs = PairBuffers(context, capacity);
     }
-    const std::uint64_t scratch_bytes = std::max({Scan::blockSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
+    const std::uint64_t scratch_bytes = std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
                                                   Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
-        buffers.scratch = Buffer(context, "scan and sort scratch", scratch_bytes);
+        buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);
     }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/gpu/buffer.h"
-#include "engine/passes/scan.h"
 #include "engine/passes/sort.h"
 #include "shaders/shared/types.h"
 
@@ -37,8 +36,9 @@ struct FrameCapacity {
 
 // An eye's picture in device memory, rows top to bottom.
 struct EyeImage {
-    Buffer colours;  // vec4 a pixel
-    Buffer depths;   // D, a float a pixel, where it is wanted
+    Buffer colours;            // four floats a pixel, or four half floats
+    bool half_floats = false;  // which
+    Buffer depths = {};        // D, a float a pixel, where it is wanted
 };
 
 // The arrays over the visible splats lie in one buffer, one after the other.
@@ -56,6 +56,10 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
     [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(16); }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
+    // Of the sums of tiles that 4_project leaves for 5_bin.
+    static std::uint64_t groupSumBytes(std::uint64_t capacity) {
+        return (capacity + gpu::kListBlock - 1) / gpu::kListBlock * sizeof(gpu::uint);
+    }
 
 private:
     template <typename T>
@@ -103,58 +107,21 @@ struct FrameBuffers {
     Buffer visibility;  // a bit a splat, then a count a workgroup
     VisibleBuffers visible;
     PairBuffers pairs;
-    Buffer scratch;      // block sums or histograms of the list at hand
+    Buffer scratch;      // sums of workgroups or histograms of the list at hand
     Buffer tile_ranges;  // uvec2 a tile
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity(), pairs.lentWords()}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {
-        return visibility.address<gpu::uint>(cullGroups() * (gpu::kGroupSize / 8));
+        return visibility.address<gpu::uint>(cullGroups() * (gpu::kCullBlock / 8));
     }
-    [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kGroupSize - 1) / gpu::kGroupSize; }
+    [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kCullBlock - 1) / gpu::kCullBlock; }
     // Offsets of the lists within `state`.
     static std::uint64_t visibleList(int i) {
         return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState);
     }
     static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
-};
-
-// What reprojection and the choice of tiles work on. Arrays over the tiles lie in one buffer, one after the other. Boxes of holes and,
-// at the frame's end, the classes of pixels lie where the pairs are while these are not in use.
-class StereoBuffers {
-public:
-    StereoBuffers() = default;
-    // `boxes`: room for that many components of holes, 0 where centre ROIs are off.
-    StereoBuffers(const Context& context, glm::uvec2 size_px, std::uint32_t boxes);
-
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tiles_.address<gpu::uint>(0); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileKinds() const { return tileErrors().at(tile_count_); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> depthBins() const { return tileErrors().at(2 * tile_count_); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return depthBins().at(gpu::kDepthBins); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesBefore() const { return tileList().at(tile_count_); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return {borrowed_.value}; }
-    [[nodiscard]] std::uint32_t boxCapacity() const { return box_capacity_; }
-    // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return borrowed_; }
-    [[nodiscard]] std::uint64_t pixelClassBytes() const { return std::uint64_t{tilesOf(size_px_).x} * size_px_.y * sizeof(gpu::uint); }
-    // Where there are that many bytes for boxes and classes.
-    [[nodiscard]] std::uint64_t borrowedBytes() const {
-        return std::max<std::uint64_t>(pixelClassBytes(), box_capacity_ * sizeof(gpu::PixelBox));
-    }
-    void borrow(gpu::DeviceAddress<gpu::uint> address) { borrowed_ = address; }
-    [[nodiscard]] const Buffer& tiles() const { return tiles_; }
-    [[nodiscard]] std::uint64_t tileKindsOffset() const { return tile_count_ * sizeof(gpu::uint); }
-    [[nodiscard]] std::uint64_t tileCount() const { return tile_count_; }
-    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes(); }
-
-private:
-    glm::uvec2 size_px_{0, 0};
-    std::uint64_t tile_count_ = 0;
-    std::uint32_t box_capacity_ = 0;
-    Buffer tiles_;
-    gpu::DeviceAddress<gpu::uint> borrowed_;
 };
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);

@@ -20,14 +20,17 @@ namespace binosplat {
 
 // What the rasterizer writes beside the colour.
 struct Kept {
-    bool depth = false;                  // D, to EyeImage::depths
-    bool stereo_pixels = false;          // StereoPixel of each pixel, as nothing has reached it yet
-    bool inverse_depth_moments = false;  // with I and J in it
+    bool depth = false;                           // D, to EyeImage::depths
+    bool moments = false;                         // I and J
+    bool moving = false;                          // the picture is going to be moved into the other eye
+    bool spread = false;                          // and how far its pixels' depths spread
+    gpu::uint depth_choice = gpu::kDepthInverse;  // of a moving pixel
+    bool half_floats = false;                     // colours are kept as these
 };
 
-// The tiles that are rendered; see 8g_select, and ShownTiles, which needs no list.
+// The tiles that are rendered (shaders/lib/tile_mask.glsl); `list` only where a list says how many.
 struct TileMask {
-    gpu::DeviceAddress<gpu::uint> tiles_before, tile_list;
+    gpu::DeviceAddress<gpu::uint> mask, list;
 };
 
 // One eye's part of a frame.
@@ -37,27 +40,39 @@ struct EyeTarget {
     glm::uvec2 size_tiles{0, 0};
     PairArrays pairs;
     const EyeImage* image = nullptr;
-    gpu::DeviceAddress<gpu::StereoPixel> stereo_pixels;
     glm::vec3 background{0.0f};
     Kept kept;
-    TileMask shown = {};   // what the lens shows, if it hides anything; the other tiles become background
-    bool shifted = false;  // for some tiles alone: the splats were last projected for the dominant eye, and isShifted
+    gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
+    gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
+    gpu::uint row_words = 0;                                   // of these two
+    gpu::DeviceAddress<gpu::uint> shown = {};  // what the lens shows, as a mask, if it hides anything; the other tiles become background
 };
 
 // How many bits tell the tiles of a picture and no tile apart.
 unsigned tileBits(glm::uvec2 size_tiles);
 
+// Whose splats a list of visible ones holds: those that any of the eyes [first, first + count) sees, by the depths of `order`.
+struct EyesOfList {
+    int first = 0;
+    int count = 1;
+    int order = 0;
+    int list = 0;
+};
+
+// All kernels of the passes 1 to 7, sorting included. `threads_per_cell`: see Passes.
+KernelTable passKernels(const Context& context, std::uint32_t threads_per_cell = 0);
+
 class Passes {
 public:
-    // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's subgroups.
+    // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's
+    // subgroups. Fewer where its workgroups are too small.
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels(const Context& context);
 
-    // Passes 1 to 3 for the eyes [first_eye, first_eye + eye_count): fills list `list` with the splats that any of them sees, by
-    // the depths of `order_eye`. `role` goes before the passes' names.
-    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int first_eye, int eye_count, int order_eye,
-                       int list, const std::string& role);
+    // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
+    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                       const std::string& role);
     // Passes 2 and 3 alone, once more, by the depths of another eye.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
                      const std::string& role);
@@ -74,7 +89,6 @@ private:
     const Kernel& rasterizeKernel(Kept kept, bool masked);
 
     std::uint32_t threads_per_cell_;
-    Scan scan_;
     Sort sort_;
     KernelCache kernels_;
 };

@@ -5,19 +5,22 @@
 
 namespace binosplat {
 
-void ShownTiles::set(std::span<const std::uint8_t> hidden) {
-    if (std::ranges::equal(hidden, hidden_)) { return; }
+void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) {
+    if (std::ranges::equal(hidden, hidden_) && (hidden.empty() || size_tiles == size_tiles_)) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
+    size_tiles_ = size_tiles;
     hidden_count_ = static_cast<std::uint32_t>(std::ranges::count_if(hidden_, [](std::uint8_t tile) { return tile != 0; }));
     words_ = {};
     upload_ = {};
     if (!hideAny()) { return; }
-    std::vector<gpu::uint> words{0}, kinds;
-    for (const std::uint8_t tile : hidden_) {
-        words.push_back(words.back() + (tile == 0 ? 1 : 0));
-        kinds.push_back(tile == 0 ? 0 : gpu::kTileHidden);
+    const std::size_t row_words = (size_tiles.x + 31) / 32;
+    mask_words_ = row_words * size_tiles.y;
+    std::vector<gpu::uint> words(mask_words_, 0);
+    for (std::size_t tile = 0; tile < hidden_.size(); ++tile) {
+        const std::size_t x = tile % size_tiles.x, y = tile / size_tiles.x;
+        if (hidden_[tile] == 0) { words[y * row_words + x / 32] |= 1u << (x % 32); }
+        words.push_back(hidden_[tile] == 0 ? 0 : gpu::kTileHidden);
     }
-    words.insert(words.end(), kinds.begin(), kinds.end());
     const std::uint64_t bytes = words.size() * sizeof(gpu::uint);
     words_ = Buffer(context_, "shown tiles", bytes);
     upload_ = Buffer(context_, "shown tiles on their way", bytes, MemoryKind::kUpload);
@@ -30,8 +33,7 @@ void ShownTiles::record(Commands& commands) {
 
 void ShownTiles::recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const {
     if (!hideAny()) { return; }
-    const std::uint64_t tiles = hidden_.size();
-    commands.copy(words_, kinds, tiles * sizeof(gpu::uint), (tiles + 1) * sizeof(gpu::uint), offset_bytes);
+    commands.copy(words_, kinds, hidden_.size() * sizeof(gpu::uint), mask_words_ * sizeof(gpu::uint), offset_bytes);
 }
 
 }  // namespace binosplat

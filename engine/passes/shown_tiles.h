@@ -14,7 +14,7 @@ public:
     explicit ShownTiles(const Context& context) : context_(context) {}
 
     // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. What changed is on its way with the next record().
-    void set(std::span<const std::uint8_t> hidden);
+    void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles);
     // Before the passes that read the mask. Records nothing where the device has it already.
     void record(Commands& commands);
     // Once what was recorded has run.
@@ -22,8 +22,8 @@ public:
 
     [[nodiscard]] bool hideAny() const { return hidden_count_ > 0; }
     [[nodiscard]] std::uint32_t hiddenCount() const { return hidden_count_; }
-    // How many shown tiles there are before each tile, and one more for all. Null where none is hidden.
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> before() const { return words_.address<gpu::uint>(); }
+    // The shown tiles, as shaders/lib/tile_mask.glsl takes them. Null where none is hidden.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> mask() const { return words_.address<gpu::uint>(); }
     // Puts kTileHidden, or 0, into an array of tile kinds that begins `offset_bytes` into `kinds`.
     void recordKinds(Commands& commands, const Buffer& kinds, std::uint64_t offset_bytes) const;
 
@@ -31,7 +31,9 @@ private:
     const Context& context_;
     std::vector<std::uint8_t> hidden_;
     std::uint32_t hidden_count_ = 0;
-    Buffer words_, upload_;  // before, kinds
+    glm::uvec2 size_tiles_{0, 0};
+    std::uint64_t mask_words_ = 0;
+    Buffer words_, upload_;  // mask, kinds
 };
 
 }  // namespace binosplat

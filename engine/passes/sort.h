@@ -1,4 +1,5 @@
-// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort_*.comp): reduce then scan, 8 bits a round.
+// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort_*.comp): reduce then scan, 8 bits and two
+// commands a round.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -11,18 +12,28 @@ struct KeyValues {
     gpu::DeviceAddress<gpu::uint> keys, values;
 };
 
+// How lanes find those of equal digits. By ballots a subgroup of any width can; comparing with each lane in turn is cheaper where there
+// are at most eight.
+enum class DigitMatch { kAuto, kBallots, kComparisons };
+
+// sort_count and sort_scatter, in this order.
+KernelTable sortKernels(const Context& context, DigitMatch match = DigitMatch::kAuto);
+
 class Sort {
 public:
-    explicit Sort(const Context& context);
+    // kComparisons only where hasNarrowSubgroups.
+    explicit Sort(const Context& context, DigitMatch match = DigitMatch::kAuto);
 
-    // Bytes of `histograms` for lists of up to `items`: half a byte a key, and a kilobyte of totals.
+    static bool hasNarrowSubgroups(const Context& context);
+
+    // Bytes of `histograms` for lists of up to `items`: half a byte a key, 257 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
     // Whether the result of `record` lies in `spare`.
     static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
-    // holds the result. The length is that of the list at `list_bytes` of `lists`.
+    // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
     KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
                      std::uint64_t list_bytes, unsigned key_bits) const;
 
@@ -30,8 +41,7 @@ private:
     // As few rounds as 8 bits allow.
     static unsigned roundsOf(unsigned key_bits) { return (key_bits + 7) / 8; }
 
-    Kernel count_, spine_, scatter_;
-    gpu::uint digits_per_spine_group_;
+    Kernel count_, scatter_;
 };
 
 }  // namespace binosplat

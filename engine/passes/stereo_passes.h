@@ -1,22 +1,22 @@
-// One eye from the other: reprojection, and the tiles that must be rendered again.
+// One eye from the other: reprojection, and the tiles that must be rendered.
 //
-//   8a_reproject     the dominant eye's pixels go to where the affiliated eye sees them
-//   8b_resolve       every pixel of the affiliated eye gets a place in the dominant picture; its expected error
-//   8c_depth_bounds  paper: how deep the picture is
-//   8d_edge_rois     paper: the borders that the dominant eye does not see
-//   8e_components    paper, on request: connected holes inside the picture
-//   8f_newcomers     predicted: splats that only the affiliated eye sees
-//   8g_select        the tiles that are rendered again
-//   9_resample       the colour of all other pixels
+//   8a_weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
+//   8b_depth_bounds  paper: how deep the picture is
+//   8c_edge_rois     paper: the borders that the dominant eye does not see
+//   8d_reproject     the dominant eye's pixels go to where the affiliated eye sees them
+//   8e_newcomers     predicted: splats that only the affiliated eye sees
+//   8f_resample      every pixel's place in the dominant picture, its colour, and the error to expect
+//   8g_components    paper, on request: connected holes inside the picture
+//   8h_price         predicted: what it costs to mend each tile's error
+//   8i_select        the tiles that are rendered
 #pragma once
 
-#include "engine/geometry.h"
 #include "engine/gpu/gpu_scene.h"
-#include "engine/passes/frame_buffers.h"
+#include "engine/gpu/kernel.h"
+#include "engine/passes/eye_relation.h"
 #include "engine/passes/shown_tiles.h"
+#include "engine/passes/stereo_buffers.h"
 #include "shaders/shared/passes.h"
-
-#include <array>
 
 namespace binosplat {
 
@@ -24,7 +24,7 @@ namespace binosplat {
 enum class Patching {
     kNone,       // nobody: reprojection and interpolation alone
     kPaper,      // edge ROIs, and centre ROIs if asked for
-    kPredicted,  // the tiles of the greatest expected error
+    kPredicted,  // what is cheap to render, and the tiles of the greatest expected error for their cost
 };
 
 // What the stereo passes are told beside the two cameras.
@@ -36,34 +36,44 @@ struct StereoSettings {
     gpu::uint edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.15;        // share of the tiles that are not hidden
-    gpu::uint hidden_tiles = 0;  // of the affiliated eye
+    double budget = 0.22;     // share of an eye's work
+    gpu::uint move_cost = 0;  // of a tile, in pairs
     double hole_error = 1.0;
     double newcomer_error = 0.3;
 };
 
-// How `settings` and the cameras look to the device.
-gpu::StereoView stereoViewOf(const Eye& dominant, const Eye& affiliated, const StereoSettings& settings);
-// Whether pixels move along their row alone and keep their depth: the eyes are parallel, side by side, and share cy and fy.
-bool isRectified(const gpu::StereoView& view);
-// Whether besides the eyes share fx: then a splat's projection for one follows from that for the other.
-bool isShifted(const gpu::StereoView& view);
+// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers.
+gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
+// What the counters start a frame with: modes that do not weigh move everything.
+gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
+
+// What the passes of one frame work on.
+struct StereoPassInputs {
+    const GpuScene& scene;
+    const FrameBuffers& buffers;
+    const StereoBuffers& stereo;
+    const StereoSettings& settings;
+    bool rectified;
+    int dominant_eye;
+    const EyeImage& dominant;
+    const EyeImage& affiliated;
+    const ShownTiles& dominant_shown;
+    const ShownTiles& affiliated_shown;
+    glm::vec3 background;
+};
+
+// All kernels of the passes 8 and 9.
+KernelTable stereoKernels();
 
 class StereoPasses {
 public:
-    explicit StereoPasses(const Context& context) : kernels_(context) {}
+    explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels()) {}
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }
 
-    // Passes 8. `dominant` holds the dominant eye's colours (and D, if the choice of depth reads it); `affiliated` its stereo pixels;
-    // `shown` what the lenses show, by eye.
-    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const StereoBuffers& stereo,
-                const StereoSettings& settings, bool rectified, int dominant_eye, const EyeImage& dominant, const EyeImage& affiliated,
-                const std::array<ShownTiles, 2>& shown);
-    // Pass 9: the affiliated eye's colours take the place of its stereo pixels but in the tiles that are masked; its depths, too, where
-    // it has room for them. Tiles that are hidden become background.
-    void recordResample(Commands& commands, const FrameBuffers& buffers, const StereoBuffers& stereo, bool rectified,
-                        const EyeImage& dominant, const EyeImage& affiliated, const glm::vec3& background);
+    // All of passes 8: the affiliated eye's colours but in the tiles that are listed in the end; its depths, too, where it has room for
+    // them. Tiles that are hidden become background.
+    void record(Commands& commands, const StereoPassInputs& in);
 
 private:
     KernelCache kernels_;

@@ -18,8 +18,10 @@ PixelOrigin originOfTile(std::uint32_t kind) {
             return PixelOrigin::kCenterRoi;
         case gpu::kTilePredicted:
             return PixelOrigin::kPredictedRoi;
+        case gpu::kTileCheap:
+            return PixelOrigin::kCheap;
         default:
-            fail("tile kind is {}, must be 0 to {}", kind, gpu::kTilePredicted);
+            fail("tile kind is {}, must be 0 to {} or {}", kind, gpu::kTilePredicted, gpu::kTileCheap);
     }
 }
 
@@ -73,6 +75,8 @@ glm::vec3 tintOf(PixelOrigin origin) {
             return {0.0f, 0.8f, 0.2f};
         case PixelOrigin::kPredictedRoi:
             return {0.9f, 0.0f, 0.9f};
+        case PixelOrigin::kCheap:
+            return {0.0f, 0.8f, 0.9f};
         case PixelOrigin::kReprojected:
             break;
     }

@@ -17,17 +17,18 @@ enum class PixelOrigin : std::uint8_t {
     kEdgeRoi,       // rendered again: at the picture's border
     kCenterRoi,     // rendered again: a hole's box
     kPredictedRoi,  // rendered again: great expected error
+    kCheap,         // rendered: cheaper than to move
 };
 
-// One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, or 0 for a tile that stays as
+// One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap, or 0 for a tile that stays as
 // reprojected; tiles of kTileSize pixels, row-major, ceil(width / kTileSize) to a row. `pixel_classes` holds kCovered, kGap or kHole
 // for each pixel and counts where the tile's kind is 0. Either list may be empty: then it says 0 everywhere.
 // Throws Error if a list has another length than the picture needs, or a value that is none of these.
 std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::uint32_t> tile_kinds,
                                        std::span<const std::uint8_t> pixel_classes);
 
-// The tint of an origin, RGB 0 to 1: gaps yellow, holes red, edge ROIs blue, centre ROIs green, predicted tiles magenta. Reprojected
-// pixels have none (black, unused).
+// The tint of an origin, RGB 0 to 1: gaps yellow, holes red, edge ROIs blue, centre ROIs green, predicted tiles magenta, cheap ones cyan.
+// Reprojected pixels have none (black, unused).
 glm::vec3 tintOf(PixelOrigin origin);
 
 // The share of the tint in a tinted pixel; the rest is the picture, so that what a tile shows can still be seen.

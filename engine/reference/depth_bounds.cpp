@@ -1,4 +1,4 @@
-// 8c: how often each depth occurs in a picture.
+// 8b: how often each depth occurs in a picture.
 #include "engine/reference/stereo.h"
 
 #include <algorithm>
@@ -11,7 +11,9 @@ std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choi
     std::vector<std::uint32_t> bins(static_cast<std::size_t>(kBins), 0);
     for (std::size_t i = 0; i < dominant.rgba.size(); ++i) {
         if (dominant.rgba[i].w <= 0.5) { continue; }
-        const double octave = -std::log2(chooseInverseDepth(dominant, i, choice));
+        const auto pixel = movingPixel(dominant, i, {.method = StereoMethod::kPaper, .depth_choice = choice});
+        if (!pixel) { continue; }
+        const double octave = -std::log2(pixel->inverse_depth);
         ++bins[static_cast<std::size_t>(std::clamp(std::floor(kBinsPerOctave * octave + kBins / 2.0), 0.0, kBins - 1.0))];
     }
     return bins;

@@ -1,4 +1,4 @@
-// 8d: the borders of the target that the source does not see (paper, section 3.5, step 1).
+// 8c: the borders of the target that the source does not see (paper, section 3.5, step 1).
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 
@@ -21,8 +21,8 @@ Landed sampleEdge(const EyeChange& change, const glm::dvec2& first_px, const glm
         for (const double inverse_depth : {bounds.far, bounds.near}) {
             const EyeChange::Moved moved = change.move(first_px + (i + 0.5) * step_px, inverse_depth);
             if (!moved.in_front) { continue; }
-            // To a millionth of a pixel, so that an edge that does not move stays at 0.
-            const glm::dvec2 place = glm::round((moved.place_px - 0.5) * 0x1p20) * 0x1p-20;
+            // To 2^-14 px, as fine as single precision in a wide picture, so that an edge that does not move stays at 0.
+            const glm::dvec2 place = glm::round((moved.place_px - 0.5) * 0x1p14) * 0x1p-14;
             landed.least = glm::min(landed.least, place);
             landed.greatest = glm::max(landed.greatest, place);
         }

@@ -22,6 +22,11 @@ Picture rasterizePairs(const EyeSplats& seen, std::vector<TilePair> pairs, const
     return rasterize(seen.splats, pairs, tileRanges(pairs, eye.size_px), eye, settings);
 }
 
+std::vector<TileRange> tilesOfPairs(std::vector<TilePair> pairs, glm::uvec2 size_px) {
+    sortTiles(pairs);
+    return tileRanges(pairs, size_px);
+}
+
 // Renders the marked tiles over what is there.
 void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible, const Eye& eye, Settings settings) {
     const EyeSplats seen(scene, sortDepth(visible, settings), eye, settings);
@@ -51,30 +56,36 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
 
     StereoPictures pictures;
     pictures.dominant = rasterizePairs(source, source.pairs, eyes.source, settings);
-    pictures.resolved = resolve(reproject(pictures.dominant, eyes, stereo), eyes, stereo);
     pictures.tile_kinds.resize(std::size_t{tiles.x} * tiles.y, TileKind::kNone);
-    if (stereo.method == StereoMethod::kPaper) {
+    const bool predicts = stereo.method == StereoMethod::kPredicted;
+    std::uint64_t budget_cost = 0;
+    if (predicts) {
+        Weighed weighed = weigh(pictures.dominant, tilesOfPairs(source.pairs, size_px), eyes, stereo);
+        budget_cost = static_cast<std::uint64_t>(stereo.budget * static_cast<double>(weighed.picture_cost));
+        pictures.tile_kinds = std::move(weighed.kinds);
+        pictures.tile_costs = std::move(weighed.costs);
+    } else if (stereo.method == StereoMethod::kPaper) {
         const InverseDepthBounds bounds = findInverseDepthBounds(boundDepths(pictures.dominant, stereo.depth_choice));
         pictures.tile_kinds = markEdges(findBorders(bounds, eyes, stereo), size_px);
         markHidden(pictures.tile_kinds, stereo);
-        if (stereo.center_rois) { markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px); }
         markBehindHidden(pictures.tile_kinds, eyes, stereo);
-    } else if (stereo.method == StereoMethod::kPredicted) {
-        std::vector<double> errors = expectErrors(pictures.resolved, pictures.dominant, eyes, stereo);
-        const EyeSplats target(scene, order, eyes.target, settings);
-        addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.resolved, size_px, stereo.newcomer_error);
-        pictures.tile_kinds = markUnseen(eyes, stereo.gap_px);
-        markHidden(pictures.tile_kinds, stereo);
-        markBehindHidden(pictures.tile_kinds, eyes, stereo);
-        const auto shown =
-            static_cast<double>(std::ranges::count_if(pictures.tile_kinds, [](TileKind k) { return k != TileKind::kHidden; }));
-        select(pictures.tile_kinds, errors, static_cast<std::size_t>(stereo.budget * shown));
-        pictures.tile_errors = std::move(errors);
     } else {
         markHidden(pictures.tile_kinds, stereo);
     }
+
+    const std::vector<Arrival> arrivals = reproject(pictures.dominant, eyes, stereo);
+    pictures.resolved = resolve(arrivals, eyes, stereo);
     pictures.affiliated = resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
     pictures.affiliated_depth = resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);
+    if (predicts) {
+        std::vector<double>& errors = pictures.tile_errors;
+        errors = expectErrors(pictures.resolved, pictures.dominant, pictures.tile_kinds, eyes, stereo);
+        const EyeSplats target(scene, order, eyes.target, settings);
+        addNewcomers(errors, target.splats, target.pairs, source.pairs, arrivals, pictures.tile_kinds, size_px, stereo.newcomer_error);
+        select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs), pictures.tile_costs, budget_cost);
+    } else if (stereo.method == StereoMethod::kPaper && stereo.center_rois) {
+        markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px);
+    }
     patch(pictures, scene, compact(scene, visible, eyes.target, settings), eyes.target, settings);
     return pictures;
 }

@@ -1,8 +1,9 @@
-// 8a: each pixel of the source goes to where the target sees it; the nearest stays.
+// 8d: each pixel of the source goes to where the target sees it; the nearest stays.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace binosplat::reference {
 namespace {
@@ -12,15 +13,18 @@ struct Arrivals {
     glm::ivec2 size_px;
     std::vector<Arrival> pixels;
 
-    void put(const glm::ivec2& at, double inverse_depth, Arrival::Way way) {
+    void put(const glm::ivec2& at, const Arrival& arrival) {
         if (at.x < 0 || at.y < 0 || at.x >= size_px.x || at.y >= size_px.y) { return; }
-        Arrival& arrival = pixels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size_px.x) + static_cast<std::size_t>(at.x)];
-        const bool nearer = arrival.way == Arrival::kNone || inverse_depth > arrival.inverse_depth;
-        if (nearer || (inverse_depth == arrival.inverse_depth && way > arrival.way)) { arrival = {way, inverse_depth}; }
+        Arrival& there = pixels[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(size_px.x) + static_cast<std::size_t>(at.x)];
+        const auto rank = [](const Arrival& a) { return std::tuple(roundedDepth(a.inverse_depth), a.way, a.spread); };
+        if (there.way == Arrival::kNone || rank(arrival) > rank(there)) { there = arrival; }
     }
 };
 
-using Moved = EyeChange::Moved;
+// A pixel of the source where the target sees it.
+struct Moved : EyeChange::Moved {
+    std::uint32_t spread;
+};
 glm::ivec2 pixelOf(const glm::dvec2& place_px) { return glm::ivec2(glm::floor(place_px)); }
 
 // The pixels of a row whose centres lie between two that parted by at most gap_px pixels, and that neither covers.
@@ -29,7 +33,8 @@ void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int r
     if (!(reach > 1.0 && reach <= gap_px + 1.0)) { return; }
     for (int x = pixelOf(here.place_px).x + 1; x < pixelOf(right.place_px).x; ++x) {
         const double share = (x + 0.5 - here.place_px.x) / reach;
-        arrivals.put({x, row}, (1.0 - share) * here.inverse_depth + share * right.inverse_depth, Arrival::kBetween);
+        const double inverse_depth = (1.0 - share) * here.inverse_depth + share * right.inverse_depth;
+        arrivals.put({x, row}, {Arrival::kBetween, inverse_depth, std::max(here.spread, right.spread)});
     }
 }
 
@@ -49,7 +54,8 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
             const glm::dvec2 share = shares_from_offset * (glm::dvec2(at) + 0.5 - here.place_px);
             if (share.x < 0.0 || share.y < 0.0 || share.x > 1.0 || share.y > 1.0) { continue; }
             const double across = right.inverse_depth - here.inverse_depth, down = below.inverse_depth - here.inverse_depth;
-            arrivals.put(at, here.inverse_depth + share.x * across + share.y * down, Arrival::kBetween);
+            const double inverse_depth = here.inverse_depth + share.x * across + share.y * down;
+            arrivals.put(at, {Arrival::kBetween, inverse_depth, std::max({here.spread, right.spread, below.spread})});
         }
     }
 }
@@ -71,20 +77,6 @@ bool isWellInside(const std::vector<std::uint8_t>& hidden, const glm::ivec2& pix
 
 }  // namespace
 
-double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice) {
-    const double weight = dominant.rgba[pixel].w;
-    if (weight <= 0.0) { return 0.0; }
-    switch (choice) {
-        case DepthChoice::kSum:
-            return 1.0 / dominant.depth[pixel];
-        case DepthChoice::kMean:
-            return 1.0 / (dominant.depth[pixel] / weight);
-        case DepthChoice::kInverse:
-            return dominant.inverse_depth[pixel] / weight;
-    }
-    return 0.0;
-}
-
 std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings) {
     const EyeChange change(eyes.target, eyes.source);
     const glm::ivec2 size(dominant.size_px);
@@ -93,16 +85,16 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
     // Where a pixel goes; nowhere if its depth is not one or it ends up behind the target.
     const auto moved = [&](int x, int y) -> std::optional<Moved> {
         if (x >= size.x || y >= size.y || !isWellInside(settings.source_hidden, {x, y}, size)) { return std::nullopt; }
-        const double inverse_depth = chooseInverseDepth(dominant, static_cast<std::size_t>(y * size.x + x), settings.depth_choice);
-        if (!(inverse_depth >= 0.0) || !std::isfinite(inverse_depth)) { return std::nullopt; }
-        const Moved there = change.move({x + 0.5, y + 0.5}, inverse_depth);
-        return there.in_front ? std::optional(there) : std::nullopt;
+        const auto pixel = movingPixel(dominant, static_cast<std::size_t>(y * size.x + x), settings);
+        if (!pixel) { return std::nullopt; }
+        const EyeChange::Moved there = change.move({x + 0.5, y + 0.5}, pixel->inverse_depth);
+        return there.in_front ? std::optional(Moved{there, pixel->spread}) : std::nullopt;
     };
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             const auto here = moved(x, y);
             if (!here) { continue; }
-            arrivals.put(pixelOf(here->place_px), here->inverse_depth, Arrival::kLanded);
+            arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, here->spread});
             const auto right = moved(x + 1, y);
             if (settings.gap_px == 0 || !right) { continue; }
             if (keeps_rows) {

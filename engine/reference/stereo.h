@@ -1,6 +1,6 @@
 // The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
-// shaders/8*.comp and shaders/9_resample.comp; `renderStereo` runs them all. Source: DESIGN "the stereo methods"; paper, sections
-// 3.4 and 3.5. Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
+// shaders/8*.comp or a part of one; `renderStereo` runs them all. Source: DESIGN "the stereo methods"; paper, sections 3.4 and 3.5.
+// Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
 #pragma once
 
 #include "engine/reference/reference.h"
@@ -9,10 +9,11 @@
 
 namespace binosplat::reference {
 
-enum class DepthChoice { kSum, kMean, kInverse };                                   // D, D/A, A/I
-enum class StereoMethod { kReproject, kPaper, kPredicted };                         // which tiles are rendered again
-enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };                     // what made a pixel
-enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden };  // why a tile is rendered again; kHidden: nobody sees it
+enum class DepthChoice { kSum, kMean, kInverse };                // D, D/A, A/I
+enum class StereoMethod { kReproject, kPaper, kPredicted };      // which tiles are rendered
+enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };  // what made a pixel
+// Why a tile is rendered; kNone: it is not, its pixels are moved; kHidden: nor that, nobody sees it.
+enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden, kCheap };
 
 struct StereoSettings {
     StereoMethod method = StereoMethod::kPredicted;
@@ -22,7 +23,8 @@ struct StereoSettings {
     int edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.15;  // share of the tiles that are not hidden
+    double budget = 0.22;         // share of an eye's work that is spent on tiles with an error
+    std::uint32_t move_cost = 0;  // what moving a tile costs, in pairs; tiles of no more are rendered
     double hole_error = 1.0, newcomer_error = 0.3;
     // Tiles that nobody sees: a byte a tile, 1 for these; empty: there is none. The source has no picture there.
     std::vector<std::uint8_t> source_hidden = {}, target_hidden = {};
@@ -33,33 +35,39 @@ struct EyePair {
     Eye source, target;
 };
 
-// What the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
+// 7: what the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
 double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice);
-
-// 8a: what reached a pixel of the target: the nearest, and whether it landed there or lies between two that did not part far.
-struct Arrival {
-    enum Way : std::uint8_t { kNone, kBetween, kLanded };
-    Way way = kNone;
-    double inverse_depth = 0.0;  // of the target's
-};
-std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings);
-
-// 8b: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
-struct Resolved {
-    PixelClass pixel_class;
-    std::uint32_t column;
+// Likewise 7: how much the depths differ that a pixel blends, as a share of the one that is chosen, in steps of half an octave: 0 for
+// none, 1 for 2^-13, up to 31 for 2^2.
+std::uint32_t spreadCode(double spread);
+double spreadOf(std::uint32_t code);
+// Likewise 7: a pixel as it is moved; nothing if its depth is not one.
+struct MovingPixel {
     double inverse_depth;
+    std::uint32_t spread;  // a code; 0 where errors are not predicted
 };
-std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
-// Likewise 8b: the expected squared error of each tile that is not hidden, by holes and by pixels that blend several depths.
-std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, const EyePair& eyes,
-                                 const StereoSettings& settings);
+std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings);
 
-// 8c: how many pixels with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023; what is
+// 8a: which tiles are rendered before anything is known of errors, and what each costs, in pairs of the source's.
+struct Weighed {
+    std::vector<TileKind> kinds;
+    std::vector<std::uint64_t> costs;
+    std::uint64_t picture_cost, saved_cost;  // of all tiles that are shown; by moving tiles
+    bool moves;                              // whether any tile is moved
+};
+Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8a: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge).
+std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
+// Likewise 8a: hidden tiles of the target, whatever they were.
+void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
+// Likewise 8a, and 8c: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
+void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
+
+// 8b: how many pixels with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023; what is
 // nearer or farther counts as the first or the last.
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
-// 8d: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
+// 8c: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
 // see; and the tiles that meet them.
 struct InverseDepthBounds {
     double far, near;
@@ -72,33 +80,54 @@ struct Borders {
 Borders findBorders(const InverseDepthBounds& bounds, const EyePair& eyes, const StereoSettings& settings);
 std::vector<TileKind> markEdges(const Borders& borders, glm::uvec2 size_px);
 
-// 8e: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
+// 8d: what reached a pixel of the target: the nearest; of equals one that landed there before one that lies between two that did
+// not part far, and the one of the greater spread. Depths are equal where they round to the same, see roundedDepth.
+struct Arrival {
+    enum Way : std::uint8_t { kNone, kBetween, kLanded };
+    Way way = kNone;
+    double inverse_depth = 0.0;  // of the target's
+    std::uint32_t spread = 0;    // a code, see spreadCode
+};
+std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings);
+// To 19 bits, which is how far the device tells inverse depths apart.
+double roundedDepth(double inverse_depth);
+
+// 8e: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what was
+// reprojected. Splats are in one order, pairs are by splat. Returns the number of such splats.
+std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
+                         std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
+                         glm::uvec2 size_px, double newcomer_error);
+
+// 8f: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
+struct Resolved {
+    PixelClass pixel_class;
+    std::uint32_t column;
+    double inverse_depth;
+    std::uint32_t spread;  // a code; 0 where nothing arrived
+};
+std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8f: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
+std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                 const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
+// Likewise 8f: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
+std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
+                                   glm::uvec2 size_px);
+// Likewise 8f: the expected squared error of each unmarked tile, by holes and by pixels that blend several depths.
+std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, std::span<const TileKind> kinds,
+                                 const EyePair& eyes, const StereoSettings& settings);
+
+// 8g: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
 // With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.
 std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
                            std::size_t most_boxes = SIZE_MAX);
 
-// 8f: adds what splats that only the target sees are expected to cost, where their centre is nearer than what was reprojected.
-// Splats are in one order, pairs are by splat. Returns the number of such splats.
-std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
-                         std::span<const TilePair> source_pairs, std::span<const Resolved> resolved, glm::uvec2 size_px,
-                         double newcomer_error);
+// 8h: which sixteenth of an octave of error a pair the unmarked tiles are in, from 2^-43 upwards; nothing for tiles without an error.
+std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds, std::span<const double> errors,
+                                                std::span<const std::uint64_t> costs);
 
-// Hidden tiles of the target, whatever they were.
-void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
-
-// 8g: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge); and of the others
-// those of the greatest errors, at most `budget_tiles` and none without an error, the first of equals.
-std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
-// Likewise 8g: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
-void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
-void select(std::vector<TileKind>& kinds, std::span<const double> errors, std::size_t budget_tiles);
-
-// 9: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
-std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                 const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise 9: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
-std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
-                                   glm::uvec2 size_px);
+// 8i: from the greatest price down, the first of equals first, the tiles that together cost no more than `budget_cost`.
+void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
+            std::uint64_t budget_cost);
 
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {
@@ -106,7 +135,8 @@ struct StereoPictures {
     std::vector<glm::dvec4> affiliated;
     std::vector<double> affiliated_depth;  // D
     std::vector<TileKind> tile_kinds;
-    std::vector<double> tile_errors;  // of kPredicted
+    std::vector<double> tile_errors;        // of kPredicted
+    std::vector<std::uint64_t> tile_costs;  // likewise
     std::vector<Resolved> resolved;
 };
 StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings);

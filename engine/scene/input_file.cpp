@@ -1,4 +1,5 @@
-// Buffered reading of one file. The buffer is 1 MiB, large enough for full disk speed and small beside any scene, or what a smaller file needs.
+// Buffered reading of one file. The buffer is 1 MiB, large enough for full disk speed and small beside any scene, or what a smaller file
+// needs.
 #include "engine/scene/input_file.h"
 
 #include "engine/error.h"

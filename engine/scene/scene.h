@@ -32,12 +32,12 @@ struct Scene {
 // What loading met on the way, for `info`, the report and the user.
 struct LoadNotes {
     std::uint64_t splats_in_file = 0;
-    std::uint64_t skipped_not_finite = 0;      // a NaN or infinity in position, scale, rotation, opacity or colour
-    std::uint64_t skipped_zero_rotation = 0;   // a quaternion of length zero
-    int sh_degree_in_file = 0;                 // bands above Scene::sh_degree were all zero and were left out
-    bool three_scales = false;                 // a 3DGS scene: the shortest axis was dropped
-    double median_flatness = 0.0;              // 3DGS only: median of shortest / second shortest axis
-    std::vector<std::string> lines;            // one sentence each, for the user
+    std::uint64_t skipped_not_finite = 0;     // a NaN or infinity in position, scale, rotation, opacity or colour
+    std::uint64_t skipped_zero_rotation = 0;  // a quaternion of length zero
+    int sh_degree_in_file = 0;                // bands above Scene::sh_degree were all zero and were left out
+    bool three_scales = false;                // a 3DGS scene: the shortest axis was dropped
+    double median_flatness = 0.0;             // 3DGS only: median of shortest / second shortest axis
+    std::vector<std::string> lines;           // one sentence each, for the user
 };
 
 // Called now and then with the share done, 0 to 1.

@@ -12,8 +12,8 @@ uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 // The thread's place in the order that the scans below sum in: by subgroup and lane, which the invocation index need not follow.
 uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
 
-// One value a subgroup, of at least eight lanes, and one for all.
-shared uint subgroup_sums[kGroupSize / 8 + 1];
+// One value a subgroup, of at least four lanes, and one for all.
+shared uint subgroup_sums[kOldGroupSize / 4 + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
 uint scanGroup(uint value, out uint total) {

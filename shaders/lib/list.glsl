@@ -1,13 +1,18 @@
 // Lists whose length only the GPU knows, and the dispatches over them.
 
+uint groupsOver(uint count, uint group_items) { return count / group_items + (count % group_items != 0 ? 1 : 0); }
+
 DispatchSize dispatchOver(uint count, uint group_items) {
-    const uint groups = (count + group_items - 1) / group_items;
-    return DispatchSize(min(groups, kMaxGroupsX), (groups + kMaxGroupsX - 1) / kMaxGroupsX, 1);
+    const uint groups = groupsOver(count, group_items);
+    return DispatchSize(min(groups, kMaxGroupsX), groupsOver(groups, kMaxGroupsX), 1);
 }
+
+// The keys of a list of `count` that one workgroup of a sort takes: a longer list has no more than kMaxSortBlocks blocks.
+uint sortBlockKeys(uint count) { return kSortBlock * max(groupsOver(count, kSortBlock * kMaxSortBlocks), 1); }
 
 // A list of `needed` items, or an empty one if that is more than `capacity`: the frame is then void and done again.
 ListState makeList(uint needed, uint capacity) {
     const uint count = needed <= capacity ? needed : 0;
-    return ListState(needed, count, dispatchOver(count, kGroupSize), dispatchOver(count, kScanBlock), dispatchOver(count, kSortBlock),
-                     dispatchOver(count, 1));
+    return ListState(needed, count, /*groups_done*/ 0, dispatchOver(count, kGroupSize), dispatchOver(count, kListBlock),
+                     dispatchOver(count, sortBlockKeys(count)), dispatchOver(count, 1));
 }

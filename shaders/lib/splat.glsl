@@ -128,23 +128,3 @@ void placeExactly(inout ProjectedSplat p, vec3 position, EyeView eye) {
     p.reference_px = vec2(x_px.x, y_px.x);
     p.colour.y = packRest(p.reference_px, vec2(x_px.y, y_px.y));
 }
-
-// The same splat as an eye beside this one sees it, which differs by a shift along x: pixels move by `offset_px` and by
-// `shift_px` for a unit of inverse depth, so that a pixel at dx, dy from the reference lies at (1 + shift f) dx + shift g dy there.
-// Of a splat that has a reference; false where the other eye looks along the disc.
-bool shiftAlongRow(inout ProjectedSplat p, float shift_px, float offset_px) {
-    const float stretch = 1 + shift_px * p.perspective.x;
-    if (!(stretch > 1e-3)) { return false; }
-    const vec2 rest_px = restOfReference(p);
-    vec2 x_px = exactSum(p.reference_px.x, offset_px);
-    x_px = addExact(x_px, exactProduct(shift_px, p.inverse_depth));
-    x_px = addExact(x_px, vec2(rest_px.x, 0));
-    p.reference_px.x = x_px.x;
-    p.colour.y = packRest(p.reference_px, vec2(x_px.y, rest_px.y));
-    const float a = p.plane_from_pixel.x / stretch, f = p.perspective.x / stretch;
-    p.plane_from_pixel.y -= a * shift_px * p.perspective.y;
-    p.perspective.y -= f * shift_px * p.perspective.y;
-    p.plane_from_pixel.x = a;
-    p.perspective.x = f;
-    return true;
-}

@@ -15,21 +15,28 @@ BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
 // fit into the shared memory of a GPU's core; a multiple of 32, since a bit each says which cells they meet.
 BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
-// Threads of a workgroup wherever a thread handles one item.
-BINOSPLAT_CONSTANT uint kGroupSize = 256;
-// Values that one workgroup of a scan handles: eight a thread.
-BINOSPLAT_CONSTANT uint kScanBlock = 2048;
+// Threads of a workgroup wherever a thread handles one item: as many as every device has, and a subgroup on the widest.
+BINOSPLAT_CONSTANT uint kGroupSize = 128;
+BINOSPLAT_CONSTANT uint kOldGroupSize = 256;  // of stages that count on it
+// Splats of the scene that a workgroup culls or compacts, and items of a list that one projects or bins. Several a thread, so that the
+// last workgroup has few counts to sum up, and the eye is brought to shared memory less often.
+BINOSPLAT_CONSTANT uint kCullBlock = 512;
+BINOSPLAT_CONSTANT uint kListBlock = 256;
 
 // Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups, so that its histograms, one a
-// subgroup, keep to 4 KiB of shared memory and 16 keys a thread of 32-wide subgroups amortise them.
+// subgroup, keep to 4 KiB of shared memory and 16 keys a thread of 32-wide subgroups amortise them. From half a million keys on blocks
+// grow, since one workgroup sums up what all of them counted: 256 KiB of it.
 BINOSPLAT_CONSTANT uint kMaxDigits = 256;
 BINOSPLAT_CONSTANT uint kSortBlock = 2048;
+BINOSPLAT_CONSTANT uint kMaxSortBlocks = 256;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
-BINOSPLAT_CONSTANT uint kSortSpineSize = 128;
 
 // 5_bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
+
+// A list holds no more: SPIR-V takes the index of an array as a signed number.
+BINOSPLAT_CONSTANT uint kMaxItems = 0x7fffffffu;
 
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
@@ -65,14 +72,35 @@ BINOSPLAT_CONSTANT uint kCovered = 0;
 BINOSPLAT_CONSTANT uint kGap = 1;
 BINOSPLAT_CONSTANT uint kHole = 2;
 
-BINOSPLAT_CONSTANT uint kNoComponent = 0xffffffffu;
-
-// Why a tile is rendered again; 0: it is not.
+// Why a tile of the affiliated eye is rendered; 0: it is not, its pixels are moved.
 BINOSPLAT_CONSTANT uint kTileEdge = 1;
 BINOSPLAT_CONSTANT uint kTileCenter = 2;
 BINOSPLAT_CONSTANT uint kTilePredicted = 3;
-// No reason but the opposite: no lens shows it, so that it stays the background, without splats and without errors.
+// Neither: no lens shows it, so that it stays the background, without splats and without errors.
 BINOSPLAT_CONSTANT uint kTileHidden = 4;
+// Rendered because that is cheaper than moving its pixels.
+BINOSPLAT_CONSTANT uint kTileCheap = 5;
+
+// What a tile costs to render beside its pairs, in pairs: a workgroup starts and 256 pixels are written.
+BINOSPLAT_CONSTANT uint kTilePairs = 16;
+// Moving costs something even where tiles are not moved, since 7, 8d and 8f go over all pixels: this part of what moving all tiles costs.
+BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
+
+// The price list of 8h: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
+BINOSPLAT_CONSTANT uint kPriceBins = 1024;
+// What a tile costs in the price list at most, in pairs: the other ten bits of the word say the bin.
+BINOSPLAT_CONSTANT uint kMaxTileCost = 0x3fffffu;
+
+// The spread of a moving pixel's inverse depth is told in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
+BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
+BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
+
+// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again.
+BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
+BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
+BINOSPLAT_CONSTANT uint kLongestSharedRow = kMostRowSteps * kArrivalsStep;
+// Invocations of a workgroup in the passes of the stereo frame: as many as every device allows.
+BINOSPLAT_CONSTANT uint kStereoGroup = 128;
 
 // Pixels of the dominant eye that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
 // two pixels beside them, and the place is up to one off.

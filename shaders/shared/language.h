@@ -32,6 +32,8 @@ struct DeviceAddress {
 #define BINOSPLAT_BEGIN_SHARED namespace binosplat::gpu {
 #define BINOSPLAT_END_SHARED }
 #define BINOSPLAT_ARRAY_OF(Element, Name) using Name = DeviceAddress<Element>
+#define BINOSPLAT_ALIGNED_ARRAY_OF(Element, Align, Name) using Name = DeviceAddress<Element>
+#define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) using Name = DeviceAddress<Element>
 #define BINOSPLAT_CONSTANT inline constexpr
 
 #else
@@ -42,8 +44,13 @@ struct DeviceAddress {
 #define BINOSPLAT_BEGIN_SHARED
 #define BINOSPLAT_END_SHARED
 // In a shader `name.at[i]` is element i.
-#define BINOSPLAT_ARRAY_OF(Element, Name) \
-    layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Name { Element at[]; }
+#define BINOSPLAT_ARRAY_OF(Element, Name) BINOSPLAT_ALIGNED_ARRAY_OF(Element, 4, Name)
+// Of elements that begin at a multiple of `align` bytes, so that one access takes a whole one.
+#define BINOSPLAT_ALIGNED_ARRAY_OF(Element, align, Name) \
+    layout(buffer_reference, scalar, buffer_reference_align = align) buffer Name { Element at[]; }
+// Where workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
+#define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
+    layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
 #define BINOSPLAT_CONSTANT const
 
 #endif

@@ -10,12 +10,14 @@ BINOSPLAT_BEGIN_SHARED
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
-    Uints visible_bits;  // out: a bit a splat
-    Uints group_counts;  // out: visible splats of each workgroup
+    Uints visible_bits;          // out: a bit a splat
+    CoherentUints group_counts;  // out: how many visible splats there are before each kCullBlock of them
+    ListStates visible;          // out
     uint splat_count;
     uint chunk_bits;
     uint first_eye;
     uint eye_count;
+    uint capacity;  // of the list
 };
 
 // 2_compact: the visible splats in the scene's order, with the depth of their centres as sort keys.
@@ -23,7 +25,7 @@ struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
     Uints visible_bits;
-    Uints group_offsets;  // exclusive prefix sums of CullPass::group_counts
+    Uints group_offsets;  // CullPass::group_counts
     ListStates visible;
     Uints keys;    // out
     Uints splats;  // out: indices into the scene
@@ -38,28 +40,33 @@ struct ProjectPass {
     EyeViews eyes;
     Uints order;  // indices into the scene, front to back
     ListStates visible;
-    ProjectedSplats splats;  // out
-    UVec2s tile_sets;       // out: lib/tile_set.glsl
-    Uints tile_counts;       // out
-    EyeCounterss counters;   // out
-    Uints tiles_before;      // under a mask: how many masked tiles there are before each, and one more for all
-    StereoViews stereo;      // where `splats` holds what the other eye, shifted along x, saw
+    ProjectedSplats splats;    // out
+    UVec2s tile_sets;          // out: lib/tile_set.glsl
+    Uints tile_counts;         // out
+    CoherentUints group_sums;  // out: how many tiles there are before each kListBlock of splats
+    ListStates pairs;          // out: as long as there are tiles
+    EyeCounterss counters;     // out
+    Uints tile_mask;           // under a mask: lib/tile_mask.glsl
     uint chunk_bits;
     uint eye;
+    uint capacity;  // of the pairs
 };
 
 // 5_bin and 5_bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
 struct BinPass {
     ProjectedSplats splats;
     UVec2s tile_sets;
-    Uints pair_offsets;  // exclusive prefix sums of ProjectPass::tile_counts
+    Uints tile_counts;
+    Uints group_sums;
     ListStates visible;
     ListStates pairs;
-    Uints tiles;        // out
-    Uints ranks;        // out: indices into `splats`
+    Uints tiles;         // out
+    Uints ranks;         // out: indices into `splats`
     Uints large_splats;  // out of 5_bin, in no order: what is left to 5_bin_large
+    Uints large_begins;  // likewise: where the pairs of each begin
     EyeCounterss counters;
-    Uints tiles_before;  // under a mask, as in ProjectPass
+    Uints tile_mask;  // under a mask, as in ProjectPass
+    UVec2s ranges;    // out of 5_bin_large: zeros, of every tile and of no tile, for 6_tile_ranges
     uvec2 size_tiles;
 };
 
@@ -76,142 +83,145 @@ struct RasterizePass {
     ProjectedSplats splats;
     Uints ranks;
     UVec2s ranges;
-    Vec4s colours;         // out, a value a pixel: sum w c + T background, and sum w
-    Floats depths;         // out where asked for: D = sum w z
-    StereoPixels moments;  // out where asked for: I = sum w/z and J = sum w/z^2; nothing has reached the pixel yet
+    FloatColours colours;  // out: one of the two
+    HalfColours half_colours;
+    Floats depths;            // out where asked for: D = sum w z
+    Vec2s moments;            // out where asked for: I = sum w/z and J = sum w/z^2
+    Uints moving;             // out where the picture is going to be moved: lib/moving_pixel.glsl
+    Uints arrivals;           // likewise: of the other eye's pixel, that nothing has reached yet
     Uints tile_list;          // under a mask: the tiles to render
     ListStates masked_tiles;  // likewise: how many
     vec3 background;
     uint eye;
+    uint row_words;  // of `moving` and `arrivals`
 };
 
-// 8a_reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
-struct ReprojectPass {
+// 8a_weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
+struct WeighPass {
     StereoViews stereo;
-    Vec4s colours;  // dominant
-    Floats depths;
-    StereoPixels pixels;  // in: moments of the dominant pixel; out: `nearest` of the affiliated one
-    Uints shown_before;   // where the dominant eye has hidden tiles: how many shown ones there are before each, and one more for all
-};
-
-// 8b_resolve: every pixel of the affiliated eye gets a place in the dominant picture, and tiles their expected error.
-struct ResolvePass {
-    StereoViews stereo;
-    Vec4s colours;  // dominant
-    StereoPixels pixels;
-    Uints tile_errors;  // out, where errors are predicted
-    Uints tile_kinds;   // where the affiliated eye has hidden tiles: these are neither counted nor wrong
+    UVec2s ranges;  // of the dominant eye's pairs
+    Uints moving;
+    Uints tile_kinds;   // out, but for kTileHidden
+    Uints tile_costs;   // out: in pairs
+    Uints tile_errors;  // out: zeros
+    Uints tile_mask;    // out: zeros
+    Uints price_bins;   // out: zeros
+    Uints shown_mask;   // where the dominant eye has hidden tiles: the others
+    ListStates visible;
+    ListStates masked_tiles;  // counts workgroups; empty as yet
     StereoCounterss counters;
 };
 
-// 8c_depth_bounds: how often each depth occurs in the dominant picture.
+// 8b_depth_bounds: paper: how often each depth occurs in the dominant picture.
 struct DepthBoundsPass {
     StereoViews stereo;
-    Vec4s colours;
-    Floats depths;
-    StereoPixels pixels;
+    FloatColours colours;
+    HalfColours half_colours;
+    Uints moving;
     Uints bins;  // out: kDepthBins counts
 };
 
-// 8d_edge_rois: the borders that the dominant eye does not see (paper, section 3.5, step 1).
+// 8c_edge_rois: paper: the borders that the dominant eye does not see (section 3.5, step 1).
 struct EdgeRoisPass {
     StereoViews stereo;
     Uints bins;
     Uints tile_kinds;  // out, but where it is kTileHidden
+    Uints shown_mask;  // as in WeighPass
     StereoCounterss counters;
 };
 
-// 8e_components: connected holes inside the picture (paper, section 3.5, step 2), in steps: see the shader.
-struct ComponentsPass {
+// 8d_reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
+struct ReprojectPass {
     StereoViews stereo;
-    ComponentPixels pixels;
-    PixelBoxes boxes;  // out: of each component
-    Uints tile_kinds;  // in and out
-    StereoCounterss counters;
-    uint box_capacity;
+    Uints moving;
+    Uints arrivals;    // in: zeros; out: lib/moving_pixel.glsl
+    Uints shown_mask;  // where the dominant eye has hidden tiles: the others
 };
 
-// 8f_newcomers: splats that only the affiliated eye sees, by the tiles they stand in.
+// 8e_newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
     StereoViews stereo;
-    StereoPixels pixels;
+    Uints arrivals;
     Uints order;
     ListStates visible;
-    Uints dominant_offsets;  // prefix sums of the dominant eye's tile counts
-    ListStates dominant_pairs;
+    Uints dominant_counts;  // of tiles
+    Uints tile_kinds;
     Uints tile_errors;
     StereoCounterss counters;
     uint chunk_bits;
     uint eye;
 };
 
-// 8g_select: the tiles that are rendered again, as a list and as prefix sums.
-struct SelectPass {
-    StereoViews stereo;
-    Uints tile_errors;
-    Uints tile_kinds;    // in or, where errors are predicted, out but for kTileHidden
-    Uints tile_list;     // out
-    Uints tiles_before;  // out
-    ListStates visible;
-    ListStates masked_tiles;    // out
-    ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
-    StereoCounterss counters;
-    Uints shown_before;  // as in ReprojectPass
-};
-
-// 9_resample: the colour of each pixel of the affiliated eye that no tile will render again.
+// 8f_resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
 struct ResamplePass {
     StereoViews stereo;
-    Vec4s dominant;
-    StereoPixels pixels;  // in
-    Vec4s affiliated;     // out, in the same place
-    Floats depths;        // out where asked for: D, alpha over the inverse depth that the place was found by
+    FloatColours dominant;
+    HalfColours half_dominant;
+    Uints arrivals;
+    FloatColours affiliated;  // out; `arrivals` may lie in the same row
+    HalfColours half_affiliated;
+    Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
-    Uints pixel_classes;  // out: 2 bits a pixel, kCovered, kGap or kHole
-    vec3 background;      // of tiles that are hidden
+    Uints tile_errors;                 // out, where errors are predicted
+    Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
+    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
+    StereoCounterss counters;
+    vec3 background;  // of tiles that are hidden
 };
 
-// Exclusive prefix sums of `values` in place, in three steps: sums of blocks, their sums, and the blocks again.
-struct ScanReducePass {
-    Uints values;
-    Uints block_sums;  // out
-    ListStates list;   // whose length `values` has
+// 8g_components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
+struct ComponentsPass {
+    StereoViews stereo;
+    ComponentPixels pixels;  // in and out, of holes
+    Uints pixel_classes;
+    PixelBoxes boxes;  // out: of each component
+    Uints tile_kinds;  // in and out
+    StereoCounterss counters;
+    uint box_capacity;
 };
-struct ScanSpinePass {
-    Uints block_sums;   // in and out
-    ListStates list;    // of kScanBlock blocks; or null, and `block_count` says how many
-    ListStates result;  // out: a list as long as the sum
-    uint block_count;
-    uint capacity;      // of that list
+
+// 8h_price: predicted: what each tile's error costs to mend, and how much there is of each price.
+struct PricePass {
+    StereoViews stereo;
+    Uints tile_kinds;
+    Uints tile_costs;
+    Uints tile_errors;
+    Uints tile_prices;  // out: bin << 22 | cost
+    Uints price_bins;   // out: cost of the tiles in each bin, greatest error a pair first
 };
-struct ScanApplyPass {
-    Uints values;  // in and out
-    Uints block_sums;
-    ListStates list;
+
+// 8i_select: the tiles that are rendered, as a list and as a mask.
+struct SelectPass {
+    StereoViews stereo;
+    Uints tile_kinds;  // in and, where errors are predicted, out
+    Uints tile_prices;
+    Uints price_bins;
+    Uints tile_list;  // out, in no order
+    Uints tile_mask;  // in: zeros; out
+    Uints tile_costs;
+    ListStates visible;
+    ListStates masked_tiles;    // in: a list of none; out
+    ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
+    StereoCounterss counters;
 };
 
 // A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups
 // nor a subgroup width.
 struct SortCountPass {
     Uints keys;
-    Uints histograms;  // out: [digit][block]
+    CoherentUints histograms;  // out: [block][digit], of the blocks before
+    Uints digit_begins;        // out
     ListStates list;
     uint shift;
     uint digits;  // a power of two, at most kMaxDigits
-};
-struct SortSpinePass {
-    Uints histograms;  // in and out: exclusive prefix sums along the blocks
-    Uints totals;      // out: a sum a digit
-    ListStates list;
-    uint digits;
 };
 struct SortScatterPass {
     Uints keys_in, values_in;
     Uints keys_out, values_out;
     Uints histograms;
-    Uints totals;
+    Uints digit_begins;
     ListStates list;
     uint shift;
     uint digits;
@@ -219,7 +229,8 @@ struct SortScatterPass {
 
 // 10_present: an eye's picture as the headset takes it.
 struct PresentPass {
-    Vec4s colours;
+    FloatColours colours;
+    HalfColours half_colours;
     Floats depths;         // D, where its depth is wanted
     Uints tile_kinds;      // where it shows what made it
     Uints pixel_classes;   // likewise

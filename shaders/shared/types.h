@@ -7,11 +7,16 @@
 BINOSPLAT_BEGIN_SHARED
 
 BINOSPLAT_ARRAY_OF(uint, Uints);
+BINOSPLAT_COHERENT_ARRAY_OF(uint, CoherentUints);
 BINOSPLAT_ARRAY_OF(float, Floats);
 BINOSPLAT_ARRAY_OF(uvec2, UVec2s);
 BINOSPLAT_ARRAY_OF(vec2, Vec2s);
 BINOSPLAT_ARRAY_OF(vec3, Vec3s);
 BINOSPLAT_ARRAY_OF(vec4, Vec4s);
+
+// A picture, rows top to bottom: rgb = sum w c + T background, a = sum w. As floats, or where nobody asks for these as four half floats.
+BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
+BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
 // A run of splats that lies in one allocation: 48 bytes a splat, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
 struct SceneChunk {
@@ -72,11 +77,12 @@ struct DispatchSize {
 // A list whose length the GPU alone knows: what was needed, what fits (0 if it does not fit: the frame is void and is done
 // again with more room), and the dispatches that go over it.
 struct ListState {
-    uint needed;  // 0xffffffff: more than can be counted
+    uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
+    uint groups_done;             // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
     DispatchSize per_item;        // workgroups of kGroupSize
-    DispatchSize per_scan_block;  // workgroups of kScanBlock
-    DispatchSize per_sort_block;  // workgroups of kSortBlock
+    DispatchSize per_block;       // workgroups of kListBlock
+    DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl
     DispatchSize per_tile;        // a workgroup an item, of lists of tiles
 };
 BINOSPLAT_ARRAY_OF(ListState, ListStates);
@@ -95,36 +101,25 @@ struct PixelMap {
 struct StereoView {
     PixelMap affiliated_from_dominant;
     PixelMap dominant_from_affiliated;
-    uvec2 size_px;     // of both eyes
+    uvec2 size_px;  // of both eyes
     uvec2 size_tiles;
-    uint depth_choice;   // kDepthSum, kDepthMean or kDepthInverse
-    uint gap_px;         // runs of uncovered pixels up to this long are gaps; longer ones are holes
-    uint margin_px;      // paper: around what needs rendering
-    uint edge_samples;   // paper: N, along each edge
-    uint tight_edges;    // 1: bounds of what near content uncovers as well
-    uint center_rois;    // paper: 1: also holes inside the picture
-    uint budget_tiles;   // predicted: at most so many tiles are rendered again
-    float hole_error;    // predicted: what a hole's expected difference counts for
+    uint row_words;        // from a row of moving pixels or of arrivals to the next
+    uint gap_px;           // runs of uncovered pixels up to this long are gaps; longer ones are holes
+    uint margin_px;        // paper: around what needs rendering
+    uint edge_samples;     // paper: N, along each edge
+    uint tight_edges;      // 1: bounds of what near content uncovers as well
+    uint move_cost;        // predicted: what moving a tile costs, in pairs; tiles of fewer are rendered
+    float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
+    float hole_error;      // predicted: what a hole's expected difference counts for
     float newcomer_error;  // predicted: what full coverage by splats that the dominant eye does not see counts for
 };
 BINOSPLAT_ARRAY_OF(StereoView, StereoViews);
 
-// A pixel while one eye becomes the other: the dominant eye's moments and then, at the affiliated eye's pixel, what reached it.
-// It lies where the affiliated eye's colour comes to lie (a vec4).
-struct StereoPixel {
-    float inverse_depth_sum;         // I of the dominant pixel
-    float inverse_depth_square_sum;  // J of the dominant pixel
-    uint nearest;  // what reached it, see packNearest; once it is resolved, see packUncovered
-    float resolved_inverse_depth;    // after gaps and holes are filled
-};
-BINOSPLAT_ARRAY_OF(StereoPixel, StereoPixels);
-
-// The same sixteen bytes while holes are grouped.
+// A hole's pixel while holes are grouped: it lies where its colour would (of float colours, in its first half), since all holes are
+// rendered.
 struct ComponentPixel {
-    uint parent;     // a pixel of the same component, or the pixel itself: the root; kNoComponent: no hole
+    uint parent;     // a pixel of the same component, or the pixel itself: the root
     uint component;  // of a root
-    uint nearest;
-    float resolved_inverse_depth;
 };
 BINOSPLAT_ARRAY_OF(ComponentPixel, ComponentPixels);
 
@@ -137,8 +132,18 @@ struct StereoCounters {
     uint edge_tiles;
     uint center_tiles;
     uint predicted_tiles;
+    uint cheap_tiles;
     uint newcomers;
-    uvec4 borders_px;  // paper: left, top, right, bottom
+    uint moved_tiles;               // before any is chosen for its error
+    uint picture_cost;              // of all tiles that are shown, in pairs: an eye's work
+    uint shown_tiles;               // that no lens hides
+    uint saved_cost;                // by moving tiles, as far as known before the choice
+    uint chosen_cost;               // of what is rendered
+    uint moves;                     // 1: something is moved
+    uvec4 borders_px;               // paper: left, top, right, bottom
+    DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is moved
+    DispatchSize per_row;           // likewise over the rows
+    DispatchSize per_visible;       // likewise over the visible splats
     DispatchSize component_groups;  // paper: workgroups over the pixels, none if there is no hole
 };
 BINOSPLAT_ARRAY_OF(StereoCounters, StereoCounterss);

@@ -15,7 +15,7 @@ struct Occluder {
     Occluder(Shape shape, const glm::vec3& centre, const glm::vec3& half, float yaw_rad);
     Shape shape;
     glm::vec3 centre, inverse_half;
-    float cosine, sine;     // of the yaw
+    float cosine, sine;  // of the yaw
     float bounding_radius;
 };
 

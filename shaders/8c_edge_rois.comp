@@ -1,23 +1,26 @@
-// 8d: the borders of the affiliated picture that the dominant eye does not see (paper, section 3.5, step 1). Samples along the
-// edges of the dominant picture are moved at the least and the greatest depth; where they land bounds what is covered. One
-// workgroup.
+// 8c: the borders of the affiliated picture that the dominant eye does not see (paper, section 3.5, step 1). Samples along the
+// edges of the dominant picture are moved at the least and the greatest depth; where they land bounds what is covered. A thread a tile:
+// every workgroup finds the bounds for itself, since that takes it less than waiting for another dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
+#include "lib/tile_mask.glsl"
 #include "lib/stereo.glsl"
+#include "lib/unseen.glsl"
 
-layout(local_size_x = kGroupSize) in;
+layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { EdgeRoisPass pass; };
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 
-const uint kBinsPerThread = kDepthBins / kGroupSize;
+const uint kBinsPerThread = kDepthBins / kStereoGroup;
 // One pixel in two hundred may be nearer, and one farther, than the bounds: specks and fringes of mixed depth are no surface.
 const uint kOutliers = 200;
 
 shared float inverse_depth_bounds[2];  // far, near
-shared vec4 group_low[kGroupSize];     // least x and y of all samples; greatest of the left and of the top edge's
-shared vec4 group_high[kGroupSize];    // greatest x and y of all; least of the right and of the bottom edge's
+shared vec4 group_low[kStereoGroup];     // least x and y of all samples; greatest of the left and of the top edge's
+shared vec4 group_high[kStereoGroup];    // greatest x and y of all; least of the right and of the bottom edge's
 
 void findDepthBounds() {
     const uint thread = threadIndex();
@@ -44,7 +47,7 @@ void findDepthBounds() {
 void sampleEdges(StereoView stereo) {
     const vec2 size = vec2(stereo.size_px);
     vec4 low = vec4(1e9, 1e9, -1e9, -1e9), high = vec4(-1e9, -1e9, 1e9, 1e9);
-    for (uint sample_index = gl_LocalInvocationIndex; sample_index < 8 * stereo.edge_samples; sample_index += kGroupSize) {
+    for (uint sample_index = gl_LocalInvocationIndex; sample_index < 8 * stereo.edge_samples; sample_index += kStereoGroup) {
         const uint edge = (sample_index / 2) & 3;  // left, top, right, bottom
         const float along = (float(sample_index / 8) + 0.5) / float(stereo.edge_samples);
         const bool vertical = (edge & 1) == 0;
@@ -52,8 +55,8 @@ void sampleEdges(StereoView stereo) {
         const vec2 pixel_px = vertical ? vec2(edge == 0 ? 0.5 : size.x - 0.5, along * size.y) : vec2(along * size.x, edge == 1 ? 0.5 : size.y - 0.5);
         const vec3 moved = movePixel(stereo.affiliated_from_dominant, pixel_px, inverse_depth_bounds[sample_index & 1]);
         if (!(moved.z > 0)) { continue; }
-        // The paper counts pixels from 0 at their centres.
-        const vec2 place = moved.xy - 0.5;
+        // The paper counts pixels from 0 at their centres. To 2^-14 px, so that an edge that does not move stays at 0.
+        const vec2 place = round((moved.xy - 0.5) * 16384.0) / 16384.0;
         low.xy = min(low.xy, place);
         high.xy = max(high.xy, place);
         if (edge == 0) { low.z = max(low.z, place.x); }
@@ -64,7 +67,7 @@ void sampleEdges(StereoView stereo) {
     group_low[gl_LocalInvocationIndex] = low;
     group_high[gl_LocalInvocationIndex] = high;
     barrier();
-    for (uint reach = kGroupSize / 2; reach > 0; reach /= 2) {
+    for (uint reach = kStereoGroup / 2; reach > 0; reach /= 2) {
         if (gl_LocalInvocationIndex < reach) {
             const vec4 other_low = group_low[gl_LocalInvocationIndex + reach], other_high = group_high[gl_LocalInvocationIndex + reach];
             low = vec4(min(low.xy, other_low.xy), max(low.zw, other_low.zw));
@@ -89,21 +92,16 @@ void main() {
     const uvec2 low_tiles = (uvec2(low_borders) + kTileSize - 1) / kTileSize;
     const uvec2 high_tiles = (stereo.size_px - uvec2(high_borders)) / kTileSize;
 
-    uint edge_tiles = 0;
-    for (uint tile = gl_LocalInvocationIndex; tile < stereo.size_tiles.x * stereo.size_tiles.y; tile += kGroupSize) {
+    const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
+    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    bool edge = false;
+    if (tile < tiles && pass.tile_kinds.at[tile] != kTileHidden) {
         const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
         const bool beyond = (high_borders.x > 0 && at.x >= high_tiles.x) || (high_borders.y > 0 && at.y >= high_tiles.y);
-        const bool edge = any(lessThan(at, low_tiles)) || beyond;
-        if (pass.tile_kinds.at[tile] == kTileHidden) { continue; }
+        edge = any(lessThan(at, low_tiles)) || beyond || (kHiddenTiles && isUnseen(stereo, pass.shown_mask, true, tile, false));
         pass.tile_kinds.at[tile] = edge ? kTileEdge : 0;
-        edge_tiles += edge ? 1 : 0;
     }
-    uint all_edge_tiles;
-    scanGroup(edge_tiles, all_edge_tiles);
-    if (gl_LocalInvocationIndex == 0) {
-        pass.counters.at[0].edge_tiles = all_edge_tiles;
-        pass.counters.at[0].borders_px = uvec4(low_borders, high_borders);
-        const bool center = stereo.center_rois != 0 && pass.counters.at[0].hole_pixels > 0;
-        pass.counters.at[0].component_groups = center ? DispatchSize(stereo.size_tiles.x, stereo.size_tiles.y, 1) : DispatchSize(0, 0, 0);
-    }
+    const uint edge_tiles = subgroupAdd(edge ? 1 : 0);
+    if (subgroupElect() && edge_tiles > 0) { atomicAdd(pass.counters.at[0].edge_tiles, edge_tiles); }
+    if (gl_WorkGroupID.x == 0 && gl_LocalInvocationIndex == 0) { pass.counters.at[0].borders_px = uvec4(low_borders, high_borders); }
 }

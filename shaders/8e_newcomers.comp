@@ -1,4 +1,4 @@
-// 8f: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
+// 8e: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
 // so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -9,8 +9,9 @@
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
 #include "lib/stereo.glsl"
+#include "lib/moving_pixel.glsl"
 
-layout(local_size_x = kGroupSize) in;
+layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 // What one splat adds to a tile at most.
@@ -18,18 +19,39 @@ const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
 const uint kMaxTiles = 1024;
 
-// Whether the splat's centre, held to the picture, is clearly nearer than what reached that pixel.
+// What lies at a pixel: what reached it, or else the farther of what reached its row beside it, since what is hidden lies behind.
+float inverseDepthNear(StereoView stereo, uvec2 at) {
+    const uint row = at.y * stereo.row_words;
+    const uint here = pass.arrivals.at[row + at.x];
+    if (here != 0) { return inverseDepthOf(here); }
+    uint left = 0, right = 0;
+    for (uint x = at.x; x > 0 && left == 0; --x) { left = pass.arrivals.at[row + x - 1]; }
+    for (uint x = at.x + 1; x < stereo.size_px.x && right == 0; ++x) { right = pass.arrivals.at[row + x]; }
+    const uint farther = left == 0 ? right : right == 0 ? left : min(left, right);
+    return farther == 0 ? 0 : inverseDepthOf(farther);
+}
+
+// Whether the splat's centre, held to the picture, is clearly nearer than what reached that pixel; also in a tile that is rendered.
 bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
     const uvec2 at = uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1)));
-    return inverse_depth > kInFrontRatio * pass.pixels.at[at.y * stereo.size_px.x + at.x].resolved_inverse_depth;
+    return pass.tile_kinds.at[tileOf(stereo, at)] != 0 || inverse_depth > kInFrontRatio * inverseDepthNear(stereo, at);
+}
+
+// Sums stop at half of what a word holds; whatever gets there is rendered anyway. By exchange, since many threads that each looked before
+// they added could still go beyond together.
+void addError(uint tile, uint steps) {
+    uint seen = atomicOr(pass.tile_errors.at[tile], 0), before;
+    do {
+        before = seen;
+        seen = atomicCompSwap(pass.tile_errors.at[tile], before, min(before + steps, 0x7fffffffu));
+    } while (seen != before);
 }
 
 void main() {
-    const uint rank = groupIndex() * kGroupSize + gl_LocalInvocationIndex;
+    const uint rank = groupIndex() * kStereoGroup + gl_LocalInvocationIndex;
     const uint count = pass.visible.at[0].count;
     if (rank >= count) { return; }
-    const uint next = rank + 1 < count ? pass.dominant_offsets.at[rank + 1] : pass.dominant_pairs.at[0].count;
-    if (next != pass.dominant_offsets.at[rank]) { return; }  // the dominant eye sees it
+    if (pass.dominant_counts.at[rank] != 0) { return; }  // the dominant eye sees it
 
     const uint i = pass.order.at[rank];
     SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
@@ -56,8 +78,7 @@ void main() {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
         for (int x = in_row.x; x < in_row.y && added < kMaxTiles; ++x, ++added) {
             const uint tile = uint(row) * eye.size_tiles.x + uint(x);
-            // Sums stop at half of what a word holds; whatever gets there is rendered again anyway.
-            if (pass.tile_errors.at[tile] < 0x7fffffffu) { atomicAdd(pass.tile_errors.at[tile], steps); }
+            if (pass.tile_kinds.at[tile] == 0) { addError(tile, steps); }
         }
     }
 }

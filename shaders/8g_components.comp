@@ -1,19 +1,28 @@
-// 8e: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2). Union-find with links towards the
+// 8g: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2). Union-find with links towards the
 // smaller index (Jaiganesh and Burtscher 2018): whatever the order of threads, a component's root is its first pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/stereo.glsl"
 
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
-// The steps, each a dispatch over the pixels but for the last, which strides over the boxes.
-const uint kStepInit = 0, kStepUnite = 1, kStepCount = 2, kStepBound = 3, kStepMark = 4;
-layout(constant_id = 1) const uint kStep = kStepInit;
+// The steps, each a dispatch over the pixels but for the last, which strides over the boxes. 8f has made every hole its own parent.
+const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
+layout(constant_id = 1) const uint kStep = kStepUnite;
+
+layout(constant_id = 2) const bool kHalfColours = false;
+
+// Where a pixel's colour would lie.
+uint slotOf(uint pixel) { return kHalfColours ? pixel : 2 * pixel; }
+
+bool isHole(StereoView stereo, uvec2 at) {
+    return ((pass.pixel_classes.at[at.y * stereo.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;
+}
 
 // Other threads change parents meanwhile; every value one may see leads to the same root.
-uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[pixel].parent, 0); }
+uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[slotOf(pixel)].parent, 0); }
 
 uint rootOf(uint pixel) {
     uint parent = parentOf(pixel);
@@ -29,7 +38,7 @@ void unite(uint a, uint b) {
     b = rootOf(b);
     while (a != b) {
         const uint low = min(a, b), high = max(a, b);
-        const uint old = atomicMin(pass.pixels.at[high].parent, low);
+        const uint old = atomicMin(pass.pixels.at[slotOf(high)].parent, low);
         if (old == high) { return; }
         a = rootOf(old);
         b = rootOf(low);
@@ -57,37 +66,30 @@ void main() {
         const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
         for (uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; b < boxes; b += groups) {
             const PixelBox box = pass.boxes.at[b];
-            markTiles(stereo, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex, 256);
+            markTiles(stereo, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex, kStereoGroup);
         }
         return;
     }
     const uvec2 at = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(at, stereo.size_px))) { return; }
     const uint pixel = at.y * stereo.size_px.x + at.x;
-    if (kStep == kStepInit) {
-        const uint tile = (at.y / kTileSize) * stereo.size_tiles.x + at.x / kTileSize;
-        const bool hole = pixelClass(pass.pixels.at[pixel].nearest) == kHole && pass.tile_kinds.at[tile] == 0;
-        pass.pixels.at[pixel].parent = hole ? pixel : kNoComponent;
-        return;
-    }
-    if (pass.pixels.at[pixel].parent == kNoComponent) { return; }
+    if (!isHole(stereo, at)) { return; }
     if (kStep == kStepUnite) {
         // The four neighbours that come before; the others find this pixel.
         for (uint n = 0; n < 4; ++n) {
             const ivec2 other = ivec2(at) + (n == 0 ? ivec2(-1, 0) : ivec2(int(n) - 2, -1));
             if (other.x < 0 || other.y < 0 || other.x >= int(stereo.size_px.x)) { continue; }
-            const uint neighbour = uint(other.y) * stereo.size_px.x + uint(other.x);
-            if (parentOf(neighbour) != kNoComponent) { unite(pixel, neighbour); }
+            if (isHole(stereo, uvec2(other))) { unite(pixel, uint(other.y) * stereo.size_px.x + uint(other.x)); }
         }
     } else if (kStep == kStepCount) {
         if (parentOf(pixel) == pixel) {
             const uint component = atomicAdd(pass.counters.at[0].components, 1);
-            pass.pixels.at[pixel].component = component;
+            pass.pixels.at[slotOf(pixel)].component = component;
             if (component < pass.box_capacity) { pass.boxes.at[component] = PixelBox(0xffffffffu, 0xffffffffu, 0, 0); }
         }
     } else {
         if (haveBoxes()) {
-            const uint component = pass.pixels.at[rootOf(pixel)].component;
+            const uint component = pass.pixels.at[slotOf(rootOf(pixel))].component;
             atomicMin(pass.boxes.at[component].x0, at.x);
             atomicMin(pass.boxes.at[component].y0, at.y);
             atomicMax(pass.boxes.at[component].x1, at.x + 1);

@@ -1,47 +1,45 @@
-// 8a: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
-// threads; the source's place follows from it again in 9, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
+// 8d: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
+// threads; the source's place follows from it again in 8f, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
 // A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
 // already, since what lies behind would otherwise show through the cracks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
+#include "lib/tile_mask.glsl"
 #include "lib/stereo.glsl"
+#include "lib/moving_pixel.glsl"
+#include "lib/unseen.glsl"
 
-layout(local_size_x = 16, local_size_y = 16) in;
+layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
-layout(constant_id = 1) const bool kReadDepth = false;  // the choice of depth wants D
-layout(constant_id = 2) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 
 struct Moved {
     vec2 place_px;
     float inverse_depth;
+    uint spread;
     bool valid;
 };
 
-bool isHiddenAt(StereoView stereo, uvec2 pixel) {
-    const uint tile = (pixel.y / kTileSize) * stereo.size_tiles.x + pixel.x / kTileSize;
-    return pass.shown_before.at[tile + 1] == pass.shown_before.at[tile];
-}
-
 // Whether the pixel or one within kHiddenMargin of it lies in a hidden tile; tiles are larger than that.
 bool isNearHidden(StereoView stereo, uvec2 pixel) {
-    const uvec2 low = uvec2(max(ivec2(pixel) - int(kHiddenMargin), ivec2(0))), high = min(pixel + kHiddenMargin, stereo.size_px - 1);
-    return isHiddenAt(stereo, low) || isHiddenAt(stereo, high) || isHiddenAt(stereo, uvec2(low.x, high.y)) || isHiddenAt(stereo, uvec2(high.x, low.y));
+    const vec2 low = vec2(pixel) - kHiddenMargin, high = vec2(pixel) + kHiddenMargin;
+    return isHiddenAt(stereo, pass.shown_mask, low) || isHiddenAt(stereo, pass.shown_mask, high) ||
+           isHiddenAt(stereo, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(stereo, pass.shown_mask, vec2(high.x, low.y));
 }
 
-// A dominant pixel as the affiliated eye sees it. Comparisons are written so that NaN goes nowhere.
+// A dominant pixel as the affiliated eye sees it.
 Moved moveDominant(StereoView stereo, uvec2 pixel) {
-    const uint i = pixel.y * stereo.size_px.x + pixel.x;
-    const float inverse_depth = chosenInverseDepth(stereo.depth_choice, pass.colours.at[i].w, kReadDepth ? pass.depths.at[i] : 1.0,
-                                                   pass.pixels.at[i].inverse_depth_sum);
+    const uint moving = pass.moving.at[pixel.y * stereo.row_words + pixel.x];
+    const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
     const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
     const bool seen = !kHiddenTiles || !isNearHidden(stereo, pixel);
-    return Moved(moved.xy, inverse_depth / moved.z, seen && moved.z > 0 && inverse_depth >= 0 && inverse_depth < 1e30);
+    return Moved(moved.xy, inverse_depth / moved.z, moving & kSpreadBits, seen && moving != 0 && moved.z > 0);
 }
 
-void put(StereoView stereo, ivec2 at, float inverse_depth, bool covered) {
+void put(StereoView stereo, ivec2 at, float inverse_depth, uint landed, uint spread) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(stereo.size_px)))) { return; }
-    atomicMax(pass.pixels.at[uint(at.y) * stereo.size_px.x + uint(at.x)].nearest, packNearest(inverse_depth, covered));
+    atomicMax(pass.arrivals.at[uint(at.y) * stereo.row_words + uint(at.x)], movingPixel(inverse_depth, landed, spread));
 }
 
 // Along a row: the pixels between `here` and its right neighbour.
@@ -50,7 +48,8 @@ void putBetween(StereoView stereo, Moved here, Moved right, int row) {
     if (!(right.valid && reach > 1 && reach <= float(stereo.gap_px + 1))) { return; }
     const int first = int(floor(here.place_px.x)) + 1, end = int(floor(right.place_px.x));
     for (int x = first; x < end; ++x) {
-        put(stereo, ivec2(x, row), mix(here.inverse_depth, right.inverse_depth, (float(x) + 0.5 - here.place_px.x) / reach), false);
+        put(stereo, ivec2(x, row), mix(here.inverse_depth, right.inverse_depth, (float(x) + 0.5 - here.place_px.x) / reach), 0,
+            max(here.spread, right.spread));
     }
 }
 
@@ -70,7 +69,8 @@ void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
             const vec2 d = vec2(at) + 0.5 - here.place_px;
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
-            put(stereo, at, here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), false);
+            put(stereo, at, here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), 0,
+                max(here.spread, max(right.spread, below.spread)));
         }
     }
 }
@@ -83,7 +83,7 @@ void main() {
     // Too far out to reach the picture even where the surface is stretched.
     const float reach_px = float(stereo.gap_px + 2);
     if (!here.valid || any(lessThan(here.place_px, vec2(-reach_px))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + reach_px))) { return; }
-    put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, true);
+    put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, kLanded, here.spread);
     if (pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
     const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));
     if (kRectified) {

@@ -1,0 +1,63 @@
+// `binosplat kernels`: what the driver makes of every kernel in every specialization that a mode uses. Makes pipelines and nothing else,
+// so that it runs on drivers of GPUs that are not there.
+#include "app/commands.h"
+#include "engine/error.h"
+#include "engine/passes/passes.h"
+#include "engine/passes/stereo_passes.h"
+#include "engine/present.h"
+#include "engine/setup/output_files.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace binosplat {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+KernelTable allKernels(const Context& context) {
+    KernelTable table = passKernels(context);
+    append(table, stereoKernels());
+    append(table, presentKernels());
+    return table;
+}
+
+std::string textOf(const KernelVariant& variant, const Json& statistics) {
+    std::string text = variant.shader;
+    for (const auto& [name, value] : variant.constants) { text += fmt::format(" {}={}", name, value); }
+    text += "\n";
+    for (const auto& [name, value] : statistics.items()) { text += fmt::format("    {:<40} {}\n", name, value.dump()); }
+    return text;
+}
+
+}  // namespace
+
+void runKernels(const KernelsOptions& options) {
+    std::optional<OutputFiles> files;
+    if (!options.out.empty()) { files.emplace(options.out); }
+    const Context context({.device = options.device, .device_extensions = {VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME}});
+    const bool has_statistics = context.hasKernelStatistics();
+    Json kernels = Json::array();
+    std::string text;
+    for (const KernelVariant& variant : allKernels(context)) {
+        const Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
+        Json constants = Json::object(), statistics = Json::object();
+        for (const auto& [name, value] : variant.constants) { constants[name] = value; }
+        for (const auto& [name, value] : has_statistics ? kernel.statistics(context) : KernelStatistics{}) {
+            std::visit([&, &key = name](const auto& number) { statistics[key] = number; }, value);
+        }
+        text += textOf(variant, statistics);
+        kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
+    }
+    context.requireNoValidationMessages();
+    if (files) {
+        const Json all{{"device", context.deviceName()}, {"kernels", kernels}};
+        writeText(files->staging() / "kernels.json", all.dump(2) + "\n");
+        files->publish();
+    }
+    fmt::print("{}{} kernels on {}{}\n", text, kernels.size(), context.deviceName(),
+               has_statistics ? "" : ", which gives no statistics (VK_KHR_pipeline_executable_properties)");
+}
+
+}  // namespace binosplat

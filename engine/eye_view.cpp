@@ -1,0 +1,35 @@
+// Eyes in the numbers that the device has.
+#include "engine/eye_view.h"
+
+#include "engine/passes/frame_buffers.h"
+
+namespace binosplat {
+namespace {
+
+// Splits what the device holds in two floats.
+template <typename Wide, typename Narrow>
+void split(const Wide& value, Narrow& high, Narrow& low) {
+    high = Narrow(value);
+    low = Narrow(value - Wide(high));
+}
+
+}  // namespace
+
+gpu::EyeView viewOf(const Eye& eye, double near) {
+    const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
+    const Intrinsics& k = eye.intrinsics;
+    gpu::EyeView view{};
+    split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
+    split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
+    split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
+    split(eye.world_from_camera.position, view.position, view.position_low);
+    split(glm::dvec2(k.fx, k.fy), view.focal_px, view.focal_px_low);
+    split(glm::dvec2(k.cx, k.cy), view.principal_px, view.principal_px_low);
+    view.size_px = eye.size_px;
+    view.size_tiles = tilesOf(eye.size_px);
+    view.near = static_cast<float>(near);
+    view.max_inverse_depth = static_cast<float>(1.0 / near);
+    return view;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,59 @@
+// What the host reads of the last frame.
+#include "engine/frame.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace binosplat {
+
+template <typename T>
+std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first_bytes) {
+    const std::uint64_t bytes = std::min(buffer.bytes(), first_bytes);
+    if (bytes == 0) { return {}; }
+    const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
+    commands_.begin();
+    commands_.copy(buffer, readback, bytes);
+    commands_.submitAndWait();
+    const auto values = readback.mapped<T>();
+    return {values.begin(), values.end()};
+}
+
+Image StereoFrame::readPicture(int eye) {
+    Image picture{sizes_px_[eye], 4, {}};
+    if (!images_[eye].half_floats) {
+        picture.values = readBuffer<float>(images_[eye].colours);
+        return picture;
+    }
+    for (const gpu::uint pair : readBuffer<gpu::uint>(images_[eye].colours)) {
+        const glm::vec2 values = glm::unpackHalf2x16(pair);
+        picture.values.insert(picture.values.end(), {values.x, values.y});
+    }
+    return picture;
+}
+Image StereoFrame::readDepth(int eye) { return {sizes_px_[eye], 1, readBuffer<float>(images_[eye].depths)}; }
+
+Image StereoFrame::readInverseDepthMoments() { return {sizes_px_[dominant_], 2, readBuffer<float>(moments_)}; }
+
+std::vector<std::uint32_t> StereoFrame::readTileKinds() {
+    if (!reprojects(mode_)) { return {}; }
+    return readBuffer<std::uint32_t>(stereo_buffers_.tiles(), stereo_buffers_.tileCount() * sizeof(gpu::uint));
+}
+
+std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
+    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(stereo_buffers_.classesBuffer());
+    if (words.empty()) { return {}; }
+    const glm::uvec2 size = sizes_px_[0];
+    const std::size_t row_words = tilesOf(size).x;
+    std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);
+    for (std::size_t y = 0; y < size.y; ++y) {
+        for (std::size_t x = 0; x < size.x; ++x) {
+            classes[y * size.x + x] =
+                static_cast<std::uint8_t>((words[y * row_words + x / gpu::kTileSize] >> (2 * (x % gpu::kTileSize))) & 3);
+        }
+    }
+    return classes;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,88 @@
+// What a frame says of itself: counters, and what it left out.
+#include "engine/frame.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace binosplat {
+
+FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    FrameResult result;
+    result.gpu_ms = commands_.times();
+    result.gpu_total_ms = commands_.totalMs();
+    result.peak_gpu_bytes = context_.memoryUse().peak_bytes;
+    auto& counters = result.counters;
+    counters["splats_read"] = scene_->splatCount();
+    counters["scene_bytes"] = scene_->bytes();
+    counters["visible_bytes"] = buffers_.visible.bytes();
+    counters["pair_bytes"] = buffers_.pairs.bytes();
+    counters["scratch_bytes"] = buffers_.scratch.bytes();
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const std::string suffix = settings.mode == Mode::kMono ? "" : e == kLeft ? "_left" : "_right";
+        const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
+        counters["splats_visible" + suffix] = state_.visible[settings.mode == Mode::kTwoPass ? e : 0].count;
+        counters["tile_pairs" + suffix] = state_.pairs[e].count;
+        counters["square_box_tile_pairs" + suffix] =
+            (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
+        counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
+        if (shown_[e].hideAny()) { counters["tiles_hidden" + suffix] = shown_[e].hiddenCount(); }
+        counters["pixels" + suffix] = std::uint64_t{eyes[e].size_px.x} * eyes[e].size_px.y;
+        counters["pixel_bytes" + suffix] = images_[e].colours.bytes() + images_[e].depths.bytes();
+    }
+    if (reprojects(settings.mode)) {
+        const gpu::StereoCounters& stereo = state_.stereo_counters;
+        if (stereo_buffers_.classesBuffer().bytes() > 0) {
+            counters["pixels_covered"] = stereo.covered_pixels;
+            counters["pixels_gap"] = stereo.gap_pixels;
+            counters["pixels_hole"] = stereo.hole_pixels;
+        }
+        counters["tiles_patched"] = state_.masked_tiles.count;
+        counters["tiles_edge"] = stereo.edge_tiles;
+        counters["tiles_center"] = stereo.center_tiles;
+        counters["tiles_predicted"] = stereo.predicted_tiles;
+        if (settings.mode == Mode::kPredicted) {
+            counters["tiles_cheap"] = stereo.cheap_tiles;
+            counters["tiles_weighed_as_moved"] = stereo.moved_tiles;
+            counters["work_full"] = stereo.picture_cost;
+            counters["work_rendered"] = stereo.chosen_cost;
+            counters["work_saved_by_moving"] = stereo.saved_cost;
+        }
+        counters["hole_components"] = stereo.components;
+        counters["splats_newcomers"] = stereo.newcomers;
+        counters["stereo_bytes"] = stereo_buffers_.bytes();
+    }
+    explainLeftOut(eyes, settings, result);
+    return result;
+}
+
+void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const {
+    const auto leaveOut = [&](bool condition, std::string_view sentence) {
+        if (condition) { result.left_out.emplace_back(sentence); }
+    };
+    const bool patched = settings.mode == Mode::kPaper || settings.mode == Mode::kPredicted;
+    const bool inverse = reprojects(settings.mode) && settings.stereo.depth_choice == gpu::kDepthInverse;
+    const bool moments = settings.keep_moments || settings.mode == Mode::kPredicted || inverse;
+    const gpu::StereoCounters& stereo = state_.stereo_counters;
+    leaveOut(scene_->shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_->shDegree()));
+    leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
+    leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
+    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
+    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && relation_.same_depths,
+             "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const std::uint64_t tiles = std::uint64_t{tilesOf(eyes[e].size_px).x} * tilesOf(eyes[e].size_px).y;
+        leaveOut(shown_[e].hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown_[e].hiddenCount(),
+                                                  tiles, e == kLeft ? "left" : "right"));
+    }
+    leaveOut(settings.mode == Mode::kPredicted && stereo.moves == 0,
+             "reprojection: every tile is cheaper to render than to move, so that nothing is lost");
+    leaveOut(patched && state_.masked_tiles.count == 0, "patching: no tile needs to be rendered again");
+    leaveOut(settings.mode == Mode::kPaper && !settings.stereo.center_rois, "centre ROIs: not asked for");
+    leaveOut(settings.mode == Mode::kPaper && settings.stereo.center_rois && stereo.hole_pixels == 0,
+             "centre ROIs: the picture has no holes");
+    leaveOut(settings.mode == Mode::kPredicted && stereo.moves != 0 && stereo.newcomers == 0,
+             "errors of newcomers: the affiliated eye sees no splat that the dominant one does not");
+}
+
+}  // namespace binosplat

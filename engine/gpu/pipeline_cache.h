@@ -1,0 +1,37 @@
+// What a driver has compiled, kept from one run to the next in a file for each device and driver.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace binosplat {
+
+class PipelineCache {
+public:
+    // Without a file it serves this run alone.
+    PipelineCache() = default;
+    // Begins with what the file holds, if that is whole and of this device and driver.
+    PipelineCache(const vk::raii::PhysicalDevice& physical_device, const vk::raii::Device& device);
+
+    [[nodiscard]] const vk::raii::PipelineCache& handle() const { return cache_; }
+    // Writes the file if there is something new, whole or not at all. What goes wrong is not worth a word: the next run compiles again.
+    void save() const noexcept;
+
+private:
+    std::filesystem::path file_;
+    std::vector<std::uint8_t> loaded_;
+    vk::raii::PipelineCache cache_{nullptr};
+};
+
+// The folder that BINOSPLAT_PIPELINE_CACHE names, none if that is 0; without it binosplat/ in $XDG_CACHE_HOME or ~/.cache.
+std::filesystem::path pipelineCacheFolder();
+// The file in it; empty if there is no folder.
+std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device);
+
+// A cache's bytes as they lie in a file, and back: nothing if they were cut off, changed, or made by another device or driver.
+std::vector<std::uint8_t> sealPipelineCache(const std::vector<std::uint8_t>& data);
+std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& file, const vk::PhysicalDeviceProperties& device);
+
+}  // namespace binosplat

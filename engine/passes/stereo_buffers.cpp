@@ -1,0 +1,33 @@
+// Allocating what the stereo passes work on.
+#include "engine/passes/stereo_buffers.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+std::uint64_t StereoBuffers::maskWords(glm::uvec2 size_px) {
+    const glm::uvec2 tiles = tilesOf(size_px);
+    return std::uint64_t{(tiles.x + 31) / 32} * tiles.y;
+}
+
+StereoBuffers::StereoBuffers(const Context& context, const StereoBufferNeeds& needs) : needs_(needs) {
+    if (needs.size_px.x == 0) { return; }
+    const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) + std::max(gpu::kPriceBins, gpu::kDepthBins);
+    tiles_ = Buffer(context, "stereo tiles", words * sizeof(gpu::uint));
+    if (needs.classes) { classes_ = Buffer(context, "pixel classes", std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint)); }
+    boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
+    if (!sharesRows()) {
+        planes_ = Buffer(context, "moving pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
+    }
+}
+
+gpu::DeviceAddress<gpu::uint> StereoBuffers::arrivals(const EyeImage& affiliated) const {
+    return sharesRows() ? affiliated.colours.address<gpu::uint>() : planes_.address<gpu::uint>();
+}
+
+gpu::DeviceAddress<gpu::uint> StereoBuffers::moving(const EyeImage& affiliated) const {
+    const std::uint64_t width = needs_.size_px.x;
+    return sharesRows() ? arrivals(affiliated).at(width) : arrivals(affiliated).at(width * needs_.size_px.y);
+}
+
+}  // namespace binosplat

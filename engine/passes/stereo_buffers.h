@@ -1,0 +1,66 @@
+// The device memory of reprojection and of the choice of tiles.
+#pragma once
+
+#include "engine/passes/frame_buffers.h"
+
+namespace binosplat {
+
+// What a frame wants of them.
+struct StereoBufferNeeds {
+    glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
+    bool classes = false;      // of the affiliated picture's pixels
+    bool half_floats = false;  // what pictures consist of
+    std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 where centre ROIs are off
+    bool operator==(const StereoBufferNeeds&) const = default;
+};
+
+// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the affiliated
+// eye's colours come to lie, row by row, as long as 8f can keep a row of arrivals in shared memory; otherwise here.
+class StereoBuffers {
+public:
+    StereoBuffers() = default;
+    StereoBuffers(const Context& context, const StereoBufferNeeds& needs);
+
+    [[nodiscard]] const StereoBufferNeeds& needs() const { return needs_; }
+    [[nodiscard]] glm::uvec2 sizePx() const { return needs_.size_px; }
+    [[nodiscard]] glm::uvec2 sizeTiles() const { return tilesOf(needs_.size_px); }
+    [[nodiscard]] std::uint32_t tileCount() const { return sizeTiles().x * sizeTiles().y; }
+
+    [[nodiscard]] const Buffer& tiles() const { return tiles_; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileKinds() const { return tiles_.address<gpu::uint>(tileKindsOffset()); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tileArray(1); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCosts() const { return tileArray(2); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }
+    // The price list, or the counts of depths.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const { return tileMask().at(maskWords(needs_.size_px)); }
+    [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }
+    // Words of a mask of tiles: a bit each, rows begin a word.
+    static std::uint64_t maskWords(glm::uvec2 size_px);
+
+    [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
+    // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
+    [[nodiscard]] const Buffer& classesBuffer() const { return classes_; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return classes_.address<gpu::uint>(); }
+
+    // Moving pixels and arrivals: where the first rows begin, and the words from a row to the next.
+    [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= gpu::kLongestSharedRow; }
+    [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
+    // Of a row in shared memory, see 8f; 0: it is none.
+    [[nodiscard]] std::uint32_t rowSteps() const {
+        return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
+    }
+
+    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes() + classes_.bytes() + boxes_.bytes() + planes_.bytes(); }
+
+private:
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const { return tileKinds().at(i * tileCount()); }
+
+    StereoBufferNeeds needs_;
+    Buffer tiles_, classes_, boxes_, planes_;
+};
+
+}  // namespace binosplat

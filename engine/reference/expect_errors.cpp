@@ -1,0 +1,65 @@
+// 8f: the error to expect of a tile whose pixels are moved.
+#include "engine/reference/eye_change.h"
+#include "engine/reference/splat.h"
+
+#include <algorithm>
+
+namespace binosplat::reference {
+namespace {
+
+constexpr double kMaxSpreadPx = 4.0;
+constexpr double kMaxPixelError = 4.0, kLeastHoleError = 1e-4;
+
+glm::dvec3 colourAt(const Picture& picture, const glm::ivec2& pixel) {
+    const glm::ivec2 last = glm::ivec2(picture.size_px) - 1, at = glm::clamp(pixel, glm::ivec2(0), last);
+    return glm::dvec3(picture.rgba[static_cast<std::size_t>(at.y * (last.x + 1) + at.x)]);
+}
+
+// How much the picture changes from `source` to `distance_px` beside it, squared: as much as what a hole hides may differ from what it
+// repeats.
+double holeError(const Picture& dominant, const glm::ivec2& source, int distance_px, double weight) {
+    const glm::dvec3 change = weight * (colourAt(dominant, source + glm::ivec2(distance_px, 0)) - colourAt(dominant, source));
+    return glm::dot(change, change) + kLeastHoleError;
+}
+
+// Squared disparity spread of what arrived at a pixel times the squared change of the picture along the disparity where it came from, a
+// mean over the channels.
+double mixedDepthError(const Picture& dominant, const EyeChange& target_from_source, const Resolved& pixel, const glm::ivec2& source) {
+    const glm::dvec2 disparity = target_from_source.disparity(glm::dvec2(source) + 0.5);
+    const double length = glm::length(disparity);
+    if (length == 0.0) { return 0.0; }
+    const double spread_px = std::min(spreadOf(pixel.spread) * pixel.inverse_depth * length, kMaxSpreadPx);
+    const glm::dvec3 across = (colourAt(dominant, source + glm::ivec2(1, 0)) - colourAt(dominant, source - glm::ivec2(1, 0))) / 2.0;
+    const glm::dvec3 down = (colourAt(dominant, source + glm::ivec2(0, 1)) - colourAt(dominant, source - glm::ivec2(0, 1))) / 2.0;
+    const glm::dvec3 change = (disparity.x * across + disparity.y * down) / length;
+    return spread_px * spread_px * glm::dot(change, change) / 3.0;
+}
+
+}  // namespace
+
+std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, std::span<const TileKind> kinds,
+                                 const EyePair& eyes, const StereoSettings& settings) {
+    const EyeChange target_from_source(eyes.target, eyes.source), source_from_target(eyes.source, eyes.target);
+    const glm::ivec2 size(eyes.target.size_px);
+    const glm::uvec2 tiles = tileGrid(eyes.target.size_px);
+    std::vector<double> errors(std::size_t{tiles.x} * tiles.y, 0.0);
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const Resolved& pixel = resolved[static_cast<std::size_t>(y * size.x + x)];
+            const std::size_t tile = static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize);
+            if (kinds[tile] != TileKind::kNone) { continue; }
+            const bool hole = pixel.pixel_class == PixelClass::kHole;
+            if (!hole && y % 2 != 0) { continue; }  // rows are sampled in pairs
+            const int column = static_cast<int>(pixel.column);
+            const glm::dvec2 place = source_from_target.move({(hole ? column : x) + 0.5, y + 0.5}, pixel.inverse_depth).place_px;
+            const glm::dvec2 in_reach = glm::clamp(glm::floor(place), glm::dvec2(-1e6), glm::dvec2(1e6));
+            const double error = hole ? holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
+                                      : 2.0 * mixedDepthError(dominant, target_from_source, pixel,
+                                                              glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1));
+            errors[tile] += std::min(error, kMaxPixelError);
+        }
+    }
+    return errors;
+}
+
+}  // namespace binosplat::reference

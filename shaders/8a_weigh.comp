@@ -1,0 +1,88 @@
+// 8a: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows, rendering it costs its pairs of tile
+// and splat, and the dominant eye's ranges tell how many these are about. A thread a tile; the last workgroup sums up whether moving
+// pays at all: otherwise the passes that move are empty dispatches, every tile is rendered, and nothing is lost.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/list.glsl"
+#include "lib/tile_mask.glsl"
+#include "lib/stereo.glsl"
+#include "lib/moving_pixel.glsl"
+#include "lib/unseen.glsl"
+#include "lib/last_group.glsl"
+
+layout(local_size_x = kStereoGroup) in;
+layout(push_constant, scalar) uniform Push { WeighPass pass; };
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
+
+// Pairs of the dominant tile that the middle of this one comes from, if it is as deep as what the dominant eye sees at that pixel.
+uint pairsNear(StereoView stereo, uint tile) {
+    const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
+    const uvec2 middle = min(at * kTileSize + kTileSize / 2, stereo.size_px - 1);
+    const uint moving = pass.moving.at[middle.y * stereo.row_words + middle.x];
+    const vec2 middle_px = vec2(middle) + 0.5;
+    const vec3 moved = movePixel(stereo.dominant_from_affiliated, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
+    // Comparisons are written so that NaN stays where it is.
+    const bool sane = moved.z > 0 && abs(moved.x) < 1e9 && abs(moved.y) < 1e9;
+    const vec2 place_px = clamp(sane ? moved.xy : middle_px, vec2(0), vec2(stereo.size_px) - 1);
+    const uvec2 range = pass.ranges.at[tileOf(stereo, uvec2(place_px))];
+    return range.y - range.x;
+}
+
+// Whether what the moved tiles save is more than what moving costs beside them and the budget for what it gets wrong.
+bool movingPays(StereoView stereo, uint saved, uint picture_cost, uint tiles) {
+    const float budget = stereo.budget * float(picture_cost);
+    const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
+    uint high, low;
+    umulExtended(stereo.move_cost, tiles, high, low);
+    return high < kMoveSharedPart && saved > mending && saved - mending > (high << 31 | low >> 1);
+}
+
+void main() {
+    const StereoView stereo = pass.stereo.at[0];
+    const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
+    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    uint cost = 0, saved = 0;
+    bool moves = false;
+    if (tile < tiles) {
+        const bool hidden = kKindsGiven && pass.tile_kinds.at[tile] == kTileHidden;
+        if (!hidden) {
+            const uint pairs = pairsNear(stereo, tile);
+            const bool unseen = isUnseen(stereo, pass.shown_mask, kHiddenTiles, tile, true);
+            cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
+            moves = !unseen && pairs > stereo.move_cost;
+            saved = moves ? pairs - stereo.move_cost : 0;
+            pass.tile_kinds.at[tile] = unseen ? kTileEdge : moves ? 0 : kTileCheap;
+        }
+        pass.tile_costs.at[tile] = cost;
+        pass.tile_errors.at[tile] = 0;
+    }
+    const uint threads = gl_NumWorkGroups.x * kStereoGroup;
+    for (uint i = tile; i < maskWords(stereo.size_tiles) * stereo.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }
+    for (uint i = tile; i < kPriceBins; i += threads) { pass.price_bins.at[i] = 0; }
+
+    const uint group_cost = subgroupAdd(cost), group_saved = subgroupAdd(saved), group_moved = subgroupAdd(moves ? 1 : 0), group_shown = subgroupAdd(cost > 0 ? 1 : 0);
+    if (subgroupElect()) {
+        atomicAdd(pass.counters.at[0].picture_cost, group_cost);
+        atomicAdd(pass.counters.at[0].saved_cost, group_saved);
+        atomicAdd(pass.counters.at[0].moved_tiles, group_moved);
+        atomicAdd(pass.counters.at[0].shown_tiles, group_shown);
+    }
+    if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
+    const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0), all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
+    if (movingPays(stereo, all_saved, atomicOr(pass.counters.at[0].picture_cost, 0), shown)) {
+        pass.counters.at[0].moves = 1;
+        pass.counters.at[0].per_pixel_block = DispatchSize(stereo.size_tiles.x, 2 * stereo.size_tiles.y, 1);
+        pass.counters.at[0].per_row = DispatchSize(stereo.size_px.y, 1, 1);
+        pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kStereoGroup);
+    } else {
+        pass.counters.at[0].moves = 0;
+        pass.counters.at[0].moved_tiles = 0;
+        pass.counters.at[0].per_pixel_block = DispatchSize(0, 0, 0);
+        // Hidden tiles become background all the same.
+        pass.counters.at[0].per_row = shown < tiles ? DispatchSize(stereo.size_px.y, 1, 1) : DispatchSize(0, 0, 0);
+        pass.counters.at[0].per_visible = DispatchSize(0, 0, 0);
+    }
+}

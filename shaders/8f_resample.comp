@@ -1,0 +1,258 @@
+// 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
+// Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
+// depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
+// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole, and for mixed pixels the spread of
+// their disparity times the picture's gradient, which comes from the samples at hand.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/stereo.glsl"
+#include "lib/moving_pixel.glsl"
+
+layout(local_size_x = kStereoGroup) in;
+layout(push_constant, scalar) uniform Push { ResamplePass pass; };
+layout(constant_id = 1) const bool kPredictErrors = false;
+layout(constant_id = 2) const bool kDepth = false;
+layout(constant_id = 3) const bool kClasses = false;     // somebody asks for the class of each pixel
+layout(constant_id = 4) const bool kComponents = false;  // holes are going to be grouped
+// A whole row of arrivals in shared memory, which colours may then take the place of. 0: rows are too long, and arrivals lie elsewhere.
+layout(constant_id = 5) const uint kRowSteps = 1;
+layout(constant_id = 6) const bool kHalfColours = false;
+
+#include "lib/picture.glsl"
+
+const uint kMaxWidth = 16384;
+const uint kSharedRow = kRowSteps * kArrivalsStep;
+
+shared uint row_arrivals[kSharedRow + 1];
+shared uint arrived_bits[kSharedRow == 0 ? kMaxWidth / 32 : kSharedRow / 32];
+shared uint tile_classes[kClasses ? (kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16 : 1];
+shared uint moved_tiles[(kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16];  // of this row of tiles, in no order
+shared uint moved_count;
+shared uint hidden_count;
+
+uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.arrivals.at[row + x] : row_arrivals[x]; }
+
+// Which tiles of the row are moved, i.e. come from here, and whether any is hidden.
+void listTiles(uint first_tile, uint tiles, bool moves) {
+    for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) {
+        const uint kind = pass.tile_kinds.at[first_tile + tile];
+        if (kind == 0 && moves) { moved_tiles[atomicAdd(moved_count, 1)] = tile; }
+        if (kind == kTileHidden) { atomicAdd(hidden_count, 1); }
+    }
+}
+
+void loadRow(uint row, uint width) {
+    const uint thread = threadIndex(), lanes = laneCount();
+    for (uint begin = 0; begin < width; begin += kStereoGroup) {
+        const uint x = begin + thread;
+        const uint arrival = x < width ? pass.arrivals.at[row + x] : 0;
+        if (kSharedRow != 0 && x < width) { row_arrivals[x] = arrival; }
+        const uvec4 arrived = subgroupBallot(arrival != 0);
+        // A subgroup's pixels follow one another; 32 divides its first or is divided by its width.
+        if (subgroupElect()) {
+            for (uint word = 0; word < (lanes + 31) / 32; ++word) {
+                if (arrived[word] != 0) { atomicOr(arrived_bits[x / 32 + word], arrived[word] << (x & 31)); }
+            }
+        }
+    }
+}
+
+// The nearest pixel to the left, or right, of `x` that something reached; -1: there is none.
+int arrivedBefore(uint x) {
+    int word = int(x / 32);
+    uint bits = arrived_bits[word] & ((1u << (x & 31)) - 1);
+    while (bits == 0 && word > 0) { bits = arrived_bits[--word]; }
+    return bits == 0 ? -1 : word * 32 + findMSB(bits);
+}
+int arrivedAfter(uint x, uint width) {
+    const int words = int((width + 31) / 32);
+    int word = int(x / 32);
+    uint bits = arrived_bits[word] & ~((2u << (x & 31)) - 1);
+    while (bits == 0 && word + 1 < words) { bits = arrived_bits[++word]; }
+    return bits == 0 ? -1 : word * 32 + findLSB(bits);
+}
+
+// Where a pixel's colour is taken from: where the pixel in `column` of its row, at this depth, comes from.
+struct Resolved {
+    uint column;
+    uint pixel_class;
+    float inverse_depth;
+    float spread;
+};
+
+Resolved resolve(StereoView stereo, uint row, uvec2 at) {
+    const uint here = arrivalAt(row, at.x);
+    if (here != 0) { return Resolved(at.x, (here & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(here), spreadOf(here)); }
+    const int left = arrivedBefore(at.x), right = arrivedAfter(at.x, stereo.size_px.x);
+    const float left_depth = left >= 0 ? inverseDepthOf(arrivalAt(row, uint(left))) : 0;
+    const float right_depth = right >= 0 ? inverseDepthOf(arrivalAt(row, uint(right))) : 0;
+    const uint run = uint(right - left - 1);
+    if (left >= 0 && right >= 0 && run <= stereo.gap_px) {
+        const float disparity_px = length(disparityPerInverseDepth(stereo.affiliated_from_dominant, vec2(at) + 0.5));
+        if (abs(left_depth - right_depth) * disparity_px <= float(run + 1)) {
+            return Resolved(at.x, kGap, mix(left_depth, right_depth, float(int(at.x) - left) / float(right - left)), 0);
+        }
+        return left_depth <= right_depth ? Resolved(uint(left), kGap, left_depth, 0) : Resolved(uint(right), kGap, right_depth, 0);
+    }
+    if (left >= 0 && (right < 0 || left_depth <= right_depth)) { return Resolved(uint(left), kHole, left_depth, 0); }
+    return right >= 0 ? Resolved(uint(right), kHole, right_depth, 0) : Resolved(at.x, kHole, 0, 0);
+}
+
+vec4 dominantAt(uint i) { return colourAt(pass.dominant, pass.half_dominant, i); }
+
+// Weights of the samples at -1, 0, 1, 2 for a place `t` after sample 0. At t = 0 they are exactly 0, 1, 0, 0.
+vec4 cubicWeights(float t) {
+    return 0.5 * vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
+}
+
+// A colour, and how the picture changes from pixel to pixel along the disparity, at the pixel that holds the place.
+struct Sample {
+    vec4 colour;
+    vec3 gradient;
+};
+
+// Rectified pixels keep their row, where the vertical kernel is exactly 1.
+Sample sampleInRow(float place_px, uint row, int width) {
+    const float from_first = clamp(place_px, 0.5, float(width) - 0.5) - 0.5;
+    const int base = int(floor(from_first));
+    const float t = from_first - float(base);
+    const vec4 weights = cubicWeights(t);
+    vec4 taps[4];
+    [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = dominantAt(row + uint(clamp(base + x - 1, 0, width - 1))); }
+    const vec4 colour = weights.x * taps[0] + weights.y * taps[1] + weights.z * taps[2] + weights.w * taps[3];
+    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb));
+}
+
+Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
+    const vec2 from_first = clamp(place_px, vec2(0.5), vec2(size) - 0.5) - 0.5;
+    const ivec2 base = ivec2(floor(from_first));
+    const vec2 t = from_first - vec2(base);
+    const vec4 weights_x = cubicWeights(t.x), weights_y = cubicWeights(t.y);
+    const bool first_column = t.x < 0.5, first_row = t.y < 0.5;
+    vec4 sum = vec4(0);
+    vec3 across = vec3(0), down = vec3(0);
+    [[unroll]] for (int y = 0; y < 4; ++y) {
+        const int row = clamp(base.y + y - 1, 0, size.y - 1) * size.x;
+        vec4 taps[4];
+        [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = dominantAt(uint(row + clamp(base.x + x - 1, 0, size.x - 1))); }
+        sum += weights_y[y] * (weights_x.x * taps[0] + weights_x.y * taps[1] + weights_x.z * taps[2] + weights_x.w * taps[3]);
+        if (y == 1 && first_row || y == 2 && !first_row) { across = 0.5 * (first_column ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb); }
+        const vec3 middle = first_column ? taps[1].rgb : taps[2].rgb;
+        if (y == (first_row ? 0 : 1)) { down -= 0.5 * middle; }
+        if (y == (first_row ? 2 : 3)) { down += 0.5 * middle; }
+    }
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down);
+}
+
+// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` beside it: what is hidden differs from that as
+// much as what is seen equally far on the other side.
+float holeError(StereoView stereo, vec2 source_px, int repeated_px) {
+    const ivec2 last = ivec2(stereo.size_px) - 1;
+    const ivec2 source = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6))));
+    const ivec2 here = clamp(source, ivec2(0), last), beyond = clamp(source + ivec2(repeated_px, 0), ivec2(0), last);
+    const int width = last.x + 1;
+    const vec3 difference = stereo.hole_error * (dominantAt(uint(beyond.y * width + beyond.x)).rgb - dominantAt(uint(here.y * width + here.x)).rgb);
+    return dot(difference, difference) + kLeastHoleError;
+}
+
+// Writes the pixel; returns its expected squared error, and its class.
+float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
+    const Resolved resolved = resolve(stereo, row, at);
+    pixel_class = resolved.pixel_class;
+    const vec2 source_px = movePixel(stereo.dominant_from_affiliated, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
+    const ivec2 size = ivec2(stereo.size_px);
+    const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
+    const vec2 disparity = disparityPerInverseDepth(stereo.affiliated_from_dominant, source);
+    const float disparity_px = length(disparity);
+    const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
+                                    : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
+    const uint i = at.y * stereo.size_px.x + at.x;
+    if (kComponents && pixel_class == kHole) {
+        pass.component_pixels.at[kHalfColours ? i : 2 * i].parent = i;
+    } else {
+        putColour(pass.affiliated, pass.half_affiliated, i, found.colour);
+    }
+    if (kDepth) { pass.depths.at[i] = resolved.inverse_depth > 0 ? found.colour.a / resolved.inverse_depth : 0; }
+    if (!kPredictErrors) { return 0; }
+    if (pixel_class == kHole) { return holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
+    // Mixed pixels are many and alike: every other row stands for two.
+    if ((at.y & 1) != 0) { return 0; }
+    const float spread_px = min(resolved.spread * resolved.inverse_depth * disparity_px, kMaxSpread);
+    return 2 * spread_px * spread_px * dot(found.gradient, found.gradient) / 3;
+}
+
+// Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which.
+void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint lanes) {
+    const uint slots = max(lanes / kTileSize, 1u);
+    for (uint s = first_slot; s < first_slot + slots; ++s) {
+        const uint sum = subgroupAdd(slot == s ? steps : 0);
+        if (sum > 0 && subgroupElect()) { atomicAdd(pass.tile_errors.at[first_tile + moved_tiles[s]], sum); }
+    }
+}
+
+void hideTiles(uint y, uint first_tile, uint width) {
+    for (uint x = gl_LocalInvocationIndex; x < width; x += kStereoGroup) {
+        if (pass.tile_kinds.at[first_tile + x / kTileSize] != kTileHidden) { continue; }
+        const uint i = y * width + x;
+        putColour(pass.affiliated, pass.half_affiliated, i, vec4(pass.background, 0));
+        if (kDepth) { pass.depths.at[i] = 0; }
+    }
+}
+
+void main() {
+    const StereoView stereo = pass.stereo.at[0];
+    const uint y = gl_WorkGroupID.x;
+    const uint width = stereo.size_px.x, tiles = stereo.size_tiles.x;
+    const uint row = y * stereo.row_words;
+    const uint first_tile = (y / kTileSize) * tiles;
+    const uint thread = threadIndex(), lanes = laneCount();
+    if (gl_LocalInvocationIndex == 0) {
+        moved_count = 0;
+        hidden_count = 0;
+    }
+    for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
+    if (kClasses) {
+        for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { tile_classes[tile] = 0; }
+    }
+    barrier();
+    listTiles(first_tile, tiles, pass.counters.at[0].moves != 0);
+    barrier();
+    const uint items = moved_count * kTileSize;
+    if (items > 0) { loadRow(row, width); }
+    barrier();
+
+    uvec3 classes = uvec3(0);
+    for (uint begin = 0; begin < items; begin += kStereoGroup) {
+        const uint item = begin + thread, slot = item / kTileSize;
+        const uint x = item < items ? moved_tiles[slot] * kTileSize + item % kTileSize : width;
+        uint steps = 0;
+        if (x < width) {
+            uint pixel_class;
+            const float error = moveHere(stereo, row, uvec2(x, y), pixel_class);
+            steps = uint(min(error, kMaxPixelError) * kErrorSteps);
+            if (kClasses) {
+                classes += uvec3(equal(uvec3(pixel_class), uvec3(kCovered, kGap, kHole)));
+                if (pixel_class != kCovered) { atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize))); }
+            }
+        }
+        if (kPredictErrors) { addErrors(first_tile, subgroupBroadcastFirst(slot), slot, steps, lanes); }
+    }
+    if (hidden_count > 0) { hideTiles(y, first_tile, width); }
+    if (!kClasses) { return; }
+    barrier();
+    for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { pass.pixel_classes.at[y * tiles + tile] = tile_classes[tile]; }
+    const uint covered = subgroupAdd(classes.x), gaps = subgroupAdd(classes.y), holes = subgroupAdd(classes.z);
+    if (subgroupElect()) {
+        if (covered > 0) { atomicAdd(pass.counters.at[0].covered_pixels, covered); }
+        if (gaps > 0) { atomicAdd(pass.counters.at[0].gap_pixels, gaps); }
+        if (holes > 0) { atomicAdd(pass.counters.at[0].hole_pixels, holes); }
+        if (kComponents && holes > 0) {
+            atomicOr(pass.counters.at[0].component_groups.x, stereo.size_tiles.x);
+            atomicOr(pass.counters.at[0].component_groups.y, 2 * stereo.size_tiles.y);
+            atomicOr(pass.counters.at[0].component_groups.z, 1);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+// 8i: the tiles that are rendered, as a list and as a mask. Where errors are predicted, besides those that others have marked: the tiles
+// whose error is the dearest a pair, as long as all of them together keep within the budget; the first of equals. A thread a tile; each
+// workgroup finds from the price list (8h) where the budget ends.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/list.glsl"
+#include "lib/tile_mask.glsl"
+#include "lib/last_group.glsl"
+
+layout(local_size_x = kStereoGroup) in;
+layout(push_constant, scalar) uniform Push { SelectPass pass; };
+layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
+
+const uint kBinsPerThread = kPriceBins / kStereoGroup;
+
+shared uint last_bin;       // the one in which the budget ends
+shared uint left_for_last;  // of the budget
+
+// Greatest bins first: this thread holds kBinsPerThread of them.
+void findLastBin(uint budget) {
+    if (gl_LocalInvocationIndex == 0) { last_bin = kPriceBins; }
+    const uint first = kPriceBins - 1 - threadIndex() * kBinsPerThread;
+    uint own = 0;
+    for (uint b = 0; b < kBinsPerThread; ++b) { own += pass.price_bins.at[first - b]; }
+    uint total;
+    uint before = scanGroup(own, total);
+    for (uint b = 0; b < kBinsPerThread; ++b) {
+        const uint cost = pass.price_bins.at[first - b];
+        if (before <= budget && before + cost > budget) {
+            last_bin = first - b;
+            left_for_last = budget - before;
+        }
+        before += cost;
+    }
+    if (total <= budget && gl_LocalInvocationIndex == 0) {
+        last_bin = 0;
+        left_for_last = 0xffffffffu;
+    }
+    barrier();
+}
+
+// What the tiles of the last bin cost that come before this workgroup's.
+uint costBefore(uint first_tile) {
+    uint own = 0;
+    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kStereoGroup) {
+        const uint price = pass.tile_prices.at[tile];
+        own += price >> 22 == last_bin ? price & kMaxTileCost : 0;
+    }
+    uint total;
+    scanGroup(own, total);
+    return total;
+}
+
+bool isChosen(uint tile, uint tiles) {
+    const uint picture_cost = pass.counters.at[0].picture_cost;
+    const float budget = pass.stereo.at[0].budget * float(picture_cost);
+    findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
+    const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
+    const bool is_last = price != 0 && price >> 22 == last_bin;
+    const uint cost = price & kMaxTileCost;
+    const uint before_group = costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles));
+    uint total;
+    const uint before = before_group + scanGroup(is_last ? cost : 0, total);
+    return is_last ? before + cost <= left_for_last : price != 0 && price >> 22 > last_bin;
+}
+
+void main() {
+    const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
+    const uint tiles = size_tiles.x * size_tiles.y;
+    const uint tile = gl_WorkGroupID.x * kStereoGroup + threadIndex();
+    uint kind = tile < tiles ? pass.tile_kinds.at[tile] : kTileHidden;
+    if (kPredicted && pass.counters.at[0].moves == 0) {
+        kind = kind == 0 ? kTileCheap : kind;
+    } else if (kPredicted) {
+        kind = isChosen(tile, tiles) ? kTilePredicted : kind;
+    }
+    const bool selected = kind != 0 && kind != kTileHidden;
+    if (kPredicted && selected) { pass.tile_kinds.at[tile] = kind; }
+
+    const uvec4 lanes = subgroupBallot(selected);
+    const uint count = subgroupBallotBitCount(lanes);
+    const uint cost = kPredicted ? subgroupAdd(selected ? pass.tile_costs.at[tile] : 0) : 0;
+    const uint predicted = subgroupAdd(kind == kTilePredicted ? 1 : 0), cheap = subgroupAdd(kind == kTileCheap ? 1 : 0);
+    const uint edges = subgroupAdd(kind == kTileEdge ? 1 : 0);
+    uint place = 0;
+    if (subgroupElect() && count > 0) {
+        place = atomicAdd(pass.masked_tiles.at[0].needed, count);
+        if (kPredicted) {
+            atomicAdd(pass.counters.at[0].chosen_cost, cost);
+            atomicAdd(pass.counters.at[0].predicted_tiles, predicted);
+            atomicAdd(pass.counters.at[0].cheap_tiles, cheap);
+            atomicAdd(pass.counters.at[0].edge_tiles, edges);
+        }
+    }
+    place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(lanes);
+    if (selected) {
+        pass.tile_list.at[place] = tile;
+        const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
+        atomicOr(pass.tile_mask.at[at.y * maskWords(size_tiles) + at.x / 32], 1u << (at.x & 31));
+    }
+    if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
+    const uint listed = atomicOr(pass.masked_tiles.at[0].needed, 0);
+    pass.masked_tiles.at[0] = makeList(listed, tiles);
+    const uint visible = listed > 0 ? pass.visible.at[0].count : 0;
+    pass.masked_visible.at[0] = makeList(visible, visible);
+}
