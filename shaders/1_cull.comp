@@ -50,7 +50,8 @@ void main() {
     if (gl_LocalInvocationIndex == 0) { visible_count = 0; }
     const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);
     const EyeView last_eye = shareEye(pass.eyes, pass.first_eye + pass.eye_count - 1);
-    [[dont_unroll]] for (uint in_block = gl_LocalInvocationIndex; in_block < kCullBlock; in_block += kGroupSize) {
+    uint in_block = gl_LocalInvocationIndex;
+    [[dont_unroll]] do {
         const uint i = group * kCullBlock + in_block;
         if (i >= pass.splat_count) { break; }
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
@@ -61,7 +62,8 @@ void main() {
             atomicOr(visible_words[in_block / 32], 1u << (in_block & 31));
             atomicAdd(visible_count, 1);
         }
-    }
+        in_block += kGroupSize;
+    } while (in_block < kCullBlock);
     barrier();
     const uint groups = groupsOver(pass.splat_count, kCullBlock);
     if (group < groups) {  // the last row of a dispatch may have more

@@ -22,13 +22,6 @@ layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask c
 
 shared uint group_tiles;
 
-// The tiles of a row, of those from x to y (exclusive), that count.
-uint countInRow(uint row, ivec2 in_row, uvec2 size_tiles) {
-    if (in_row.y <= in_row.x) { return 0; }
-    if (!kMasked) { return uint(in_row.y - in_row.x); }
-    return countInMask(pass.tile_mask, size_tiles, row, uint(in_row.x), uint(in_row.y));
-}
-
 // How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
 // the middle of the disc's box, whatever the opacity (as the rasterizer of Huang et al. 2024 bins). For the report alone.
 uint squareBoxTiles(CameraSplat splat, EyeView eye) {
@@ -50,16 +43,23 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     return uint(size.x * size.y);
 }
 
-// How many tiles the splat meets; `small` has a bit for each where the box is small enough.
+// How many tiles the splat meets that count; `small` has a bit for each where the box is small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
+    const bool fits = isSmallBox(box);
     uint tiles = 0;
     small = 0;
     for (int row = box.y; row < box.w; ++row) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        tiles += countInRow(uint(row), in_row, size_tiles);
-        small |= smallRow(in_row - box.x, row - box.y);
+        uint bits = smallRow(in_row - box.x);
+        if (kMasked) { bits &= maskBits(pass.tile_mask, size_tiles, uvec2(box.x, row)); }
+        small |= bits << (kSmallBox * min(row - box.y, kSmallBox - 1));
+        if (kMasked && !fits && in_row.x < in_row.y) {
+            tiles += countInMask(pass.tile_mask, size_tiles, uint(row), uint(in_row.x), uint(in_row.y));
+        } else {
+            tiles += max(in_row.y - in_row.x, 0);
+        }
     }
-    return tiles;
+    return fits ? bitCount(small) : tiles;
 }
 
 // What a visible splat is to this eye: the tiles it meets, and for the report those of the customary bound.
@@ -101,15 +101,18 @@ void main() {
     if (gl_LocalInvocationIndex == 0) { group_tiles = 0; }
     const EyeView eye = shareEye(pass.eyes, pass.eye);
     uint own_tiles = 0, own_square_tiles = 0;
-    [[dont_unroll]] for (uint in_block = gl_LocalInvocationIndex; in_block < kListBlock; in_block += kGroupSize) {
-        const uint rank = group * kListBlock + in_block;
-        if (rank >= count) { break; }
-        uint square_tiles;
-        const uint tiles = project(rank, eye, square_tiles);
-        pass.tile_counts.at[rank] = tiles;
-        own_tiles += tiles;
-        own_square_tiles += square_tiles;
-    }
+    uint rank = group * kListBlock + gl_LocalInvocationIndex;
+    const uint end = min((group + 1) * kListBlock, count);
+    [[dont_unroll]] do {
+        if (rank < end) {
+            uint square_tiles;
+            const uint tiles = project(rank, eye, square_tiles);
+            pass.tile_counts.at[rank] = tiles;
+            own_tiles += tiles;
+            own_square_tiles += square_tiles;
+        }
+        rank += kGroupSize;
+    } while (rank < end);
     if (!kMasked) { addSquareTiles(own_square_tiles); }
     const uint subgroup_tiles = subgroupAdd(own_tiles);
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }

@@ -6,11 +6,9 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
-#include "lib/tile_mask.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
-layout(constant_id = 0) const bool kMasked = false;  // pairs in tiles of the mask alone
 
 #include "lib/pair.glsl"
 

@@ -35,7 +35,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const std::uint32_t masked = mask.empty() ? 0 : 1;
-    const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass), {masked}),
+    const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass)),
         large_kernel(gpu.context(), "5_bin_large", sizeof(gpu::BinPass), {masked});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);

@@ -23,7 +23,7 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     append(table, everyVariant("2_compact", sizeof(gpu::CompactPass)));
     append(table, sortKernels(context));
     append(table, everyVariant("4_project", sizeof(gpu::ProjectPass), {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}}));
-    append(table, everyVariant("5_bin", sizeof(gpu::BinPass), {{"kMasked", 2}}));
+    append(table, everyVariant("5_bin", sizeof(gpu::BinPass)));
     append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}}));
     append(table, everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass)));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
@@ -147,7 +147,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
                            tiles.mask,
                            ranges,
                            target.size_tiles};
-    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass), {masked}), bin, buffers.state, per_visible);
+    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass)), bin, buffers.state, per_visible);
     commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked}), bin, gpu::kBinLargeGroups);
     commands.beginPass(role + "6_sort_tiles");
     const KeyValues sorted =

@@ -1,11 +1,11 @@
-// Writing the pairs of a splat. For shaders with a BinPass as `pass` and with kMasked.
+// Writing the pairs of a splat. For shaders with a BinPass as `pass`.
 
 // Where the `count` pairs of a splat lie, half open; nowhere if there is no room for all splats'.
 uvec2 pairsFrom(uint begin, uint count) { return pass.pairs.at[0].count > 0 ? uvec2(begin, begin + count) : uvec2(0); }
 
-// The next of `pairs`, if there is any and the tile counts.
+// The next of `pairs`, if there is any.
 void putPair(inout uvec2 pairs, uvec2 tile, uint rank) {
-    if (pairs.x >= pairs.y || (kMasked && !isInMask(pass.tile_mask, pass.size_tiles, tile))) { return; }
+    if (pairs.x >= pairs.y) { return; }
     pass.tiles.at[pairs.x] = tile.y * pass.size_tiles.x + tile.x;
     pass.ranks.at[pairs.x] = rank;
     ++pairs.x;

@@ -1,4 +1,4 @@
-// The tiles that a splat meets, in 64 bits: where its box begins, and a bit for each tile that it meets if the box has at most 4x4;
+// The tiles that a splat meets, in 64 bits: where its box begins, and a bit for each tile that it meets (under a mask: of the mask) if the box has at most 4x4;
 // otherwise where the box ends, half open, and the outline has to tell again which rows meet which tiles.
 //
 //   x0 | y0 << 16,   x1 | y1 << 16                                     a large box: tile coordinates stay below 2^11
@@ -6,17 +6,16 @@
 
 const int kSmallBox = 4;
 
-// The bits of a row of tiles, from x to y (exclusive) within the box; of no use if the box is large.
-uint smallRow(ivec2 in_row, int row) {
+bool isSmallBox(ivec4 box) { return all(lessThanEqual(box.zw - box.xy, ivec2(kSmallBox))); }
+
+// A bit for each tile of a row, from x to y (exclusive) within the box; of no use if the box is large.
+uint smallRow(ivec2 in_row) {
     const ivec2 clipped = clamp(in_row, ivec2(0), ivec2(kSmallBox));
-    return clipped.y > clipped.x ? ((1u << clipped.y) - (1u << clipped.x)) << (kSmallBox * min(row, kSmallBox - 1)) : 0;
+    return clipped.y > clipped.x ? (1u << clipped.y) - (1u << clipped.x) : 0;
 }
 
 uvec2 packTileSet(ivec4 box, uint small) {
-    const uvec2 size = uvec2(box.zw - box.xy);
-    const bool fits = all(lessThanEqual(size, uvec2(kSmallBox)));
-    return uvec2(uint(box.x) | uint(box.y) << 16,
-                 fits ? 0x80000000u | small : uint(box.z) | uint(box.w) << 16);
+    return uvec2(uint(box.x) | uint(box.y) << 16, isSmallBox(box) ? 0x80000000u | small : uint(box.z) | uint(box.w) << 16);
 }
 
 bool isSmall(uvec2 tile_set) { return (tile_set.y & 0x80000000u) != 0; }
