@@ -96,20 +96,14 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(sqrt(variance) / inverse_depth) : 0);
 }
 
-// Even rows of tiles first, then the odd ones: pictures are often full below and empty above, and a device that deals out
-// workgroups in runs gets runs of like work.
-uint spreadRows(uint row, uint rows) {
-    const uint even_rows = (rows + 1) / 2;
-    return row < even_rows ? 2 * row : 2 * (row - even_rows) + 1;
-}
-
 void main() {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
     const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
     const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (kMasked && group >= pass.masked_tiles.at[0].count) { return; }
-    const uint tile = kMasked ? pass.tile_list.at[group] : spreadRows(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    const uint tile = kMasked ? pass.tile_list.at[spread(group, pass.masked_tiles.at[0].count)]
+                              : spread(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
     const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;

@@ -76,7 +76,7 @@ void main() {
         pass.counters.at[0].moves = 1;
         pass.counters.at[0].per_pixel_block = DispatchSize(stereo.size_tiles.x, 2 * stereo.size_tiles.y, 1);
         pass.counters.at[0].per_row = DispatchSize(stereo.size_px.y, 1, 1);
-        pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kStereoGroup);
+        pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kNewcomersBlock);
     } else {
         pass.counters.at[0].moves = 0;
         pass.counters.at[0].moved_tiles = 0;

@@ -14,6 +14,9 @@
 layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
+shared uint unseen_ranks[kNewcomersBlock];
+shared uint unseen_count;
+
 // What one splat adds to a tile at most.
 const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
@@ -47,16 +50,10 @@ void addError(uint tile, uint steps) {
     } while (seen != before);
 }
 
-void main() {
-    const uint rank = groupIndex() * kStereoGroup + gl_LocalInvocationIndex;
-    const uint count = pass.visible.at[0].count;
-    if (rank >= count) { return; }
-    if (pass.dominant_counts.at[rank] != 0) { return; }  // the dominant eye sees it
-
+// What the splat adds to the tiles it meets.
+void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
     const uint i = pass.order.at[rank];
     SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-    const EyeView eye = pass.eyes.at[pass.eye];
-    const StereoView stereo = pass.stereo.at[0];
     const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
     bool has_reference;
     ProjectedSplat p = projectGeometry(splat, eye, has_reference);
@@ -81,4 +78,20 @@ void main() {
             if (pass.tile_kinds.at[tile] == 0) { addError(tile, steps); }
         }
     }
+}
+
+// A workgroup looks over a block of the visible splats for those that the dominant eye does not see; its threads then share these few.
+void main() {
+    const uint count = pass.visible.at[0].count;
+    const uint begin = groupIndex() * kNewcomersBlock;
+    if (gl_LocalInvocationIndex == 0) { unseen_count = 0; }
+    barrier();
+    for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kStereoGroup) {
+        const uint rank = begin + in_block;
+        if (rank < count && pass.dominant_counts.at[rank] == 0) { unseen_ranks[atomicAdd(unseen_count, 1)] = rank; }
+    }
+    barrier();
+    const EyeView eye = pass.eyes.at[pass.eye];
+    const StereoView stereo = pass.stereo.at[0];
+    for (uint unseen = gl_LocalInvocationIndex; unseen < unseen_count; unseen += kStereoGroup) { addNewcomer(unseen_ranks[unseen], eye, stereo); }
 }

@@ -119,7 +119,7 @@ public:
                                     .counters = counters(),
                                     .chunk_bits = scene.scene.chunkBits(),
                                     .eye = 1},
-                 {groupsOver(order.size()), 1});
+                 {groupsOver(order.size(), gpu::kNewcomersBlock), 1});
     }
     struct ResampleParts {
         bool errors = false, depths = false, classes = false, components = false;
@@ -290,8 +290,8 @@ private:
         };
         return alongRows(view_.affiliated_from_dominant) && alongRows(view_.dominant_from_affiliated) ? 1 : 0;
     }
-    static std::uint32_t groupsOver(std::size_t items) {
-        return static_cast<std::uint32_t>((items + gpu::kStereoGroup - 1) / gpu::kStereoGroup);
+    static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kStereoGroup) {
+        return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
     }
     [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
     [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }

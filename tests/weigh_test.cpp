@@ -17,7 +17,7 @@ using test::toDevice;
 
 namespace {
 
-constexpr std::size_t kVisible = 1000;
+constexpr std::size_t kVisible = 5000;
 
 std::vector<glm::uvec2> rangesOf(const std::vector<TileRange>& ranges) {
     std::vector<glm::uvec2> values;
@@ -79,7 +79,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     const bool rows_wanted = moves || std::ranges::count(expected.kinds, TileKind::kHidden) > 0;
     CHECK(sizeOf(counters.per_row) == (rows_wanted ? glm::uvec3(size_px.y, 1, 1) : glm::uvec3(0)));
     const gpu::DispatchSize& visible = counters.per_visible;
-    CHECK(visible.x * visible.y * visible.z == (moves ? (kVisible + gpu::kStereoGroup - 1) / gpu::kStereoGroup : 0));
+    CHECK(visible.x * visible.y * visible.z == (moves ? (kVisible + gpu::kNewcomersBlock - 1) / gpu::kNewcomersBlock : 0));
     // What others add to begins at nothing.
     const auto isZero = [](gpu::uint value) { return value == 0; };
     CHECK(std::ranges::all_of(device.readTileErrors(), isZero));

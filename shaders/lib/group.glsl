@@ -6,6 +6,13 @@
 // Dispatches of many groups are folded into rows.
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
+// Even ones first, then the odd ones: pictures are often full below and empty above, and a device that deals out workgroups in runs gets
+// runs of like work.
+uint spread(uint i, uint count) {
+    const uint even = (count + 1) / 2;
+    return i < even ? 2 * i : 2 * (i - even) + 1;
+}
+
 // Lanes are counted, since gl_SubgroupSize may state more than a subgroup holds. In uniform control flow only.
 uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 
@@ -13,7 +20,7 @@ uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
 
 // One value a subgroup, of at least four lanes, and one for all.
-shared uint subgroup_sums[kOldGroupSize / 4 + 1];
+shared uint subgroup_sums[kGroupSize / 4 + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
 uint scanGroup(uint value, out uint total) {

@@ -17,7 +17,6 @@ BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
 // Threads of a workgroup wherever a thread handles one item: as many as every device has, and a subgroup on the widest.
 BINOSPLAT_CONSTANT uint kGroupSize = 128;
-BINOSPLAT_CONSTANT uint kOldGroupSize = 256;  // of stages that count on it
 // Splats of the scene that a workgroup culls or compacts, and items of a list that one projects or bins. Several a thread, so that the
 // last workgroup has few counts to sum up, and the eye is brought to shared memory less often.
 BINOSPLAT_CONSTANT uint kCullBlock = 512;
@@ -34,6 +33,9 @@ BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 // 5_bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
+
+// 8e_newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
+BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;
 
 // A list holds no more: SPIR-V takes the index of an array as a signed number.
 BINOSPLAT_CONSTANT uint kMaxItems = 0x7fffffffu;
