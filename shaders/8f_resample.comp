@@ -1,8 +1,8 @@
 // 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
-// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole, and for mixed pixels the spread of
-// their disparity times the picture's gradient, which comes from the samples at hand.
+// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels the spread of
+// their disparity times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -108,11 +108,16 @@ vec4 cubicWeights(float t) {
     return 0.5 * vec4(t * (-1 + t * (2 - t)), 2 + t * t * (-5 + 3 * t), t * (1 + t * (4 - 3 * t)), t * t * (t - 1));
 }
 
-// A colour, and how the picture changes from pixel to pixel along the disparity, at the pixel that holds the place.
+// A colour; how the picture changes from pixel to pixel along the disparity, at the pixel that holds the place; and the square of what
+// sampling between pixels loses.
 struct Sample {
     vec4 colour;
     vec3 gradient;
+    float lost;
 };
+
+// What changes its sign from pixel to pixel is lost halfway between them, and a share of it on the way there.
+vec3 lostBetween(float t, vec3 third_difference) { return 0.5 * t * (1 - t) * third_difference; }
 
 // Rectified pixels keep their row, where the vertical kernel is exactly 1.
 Sample sampleInRow(float place_px, uint row, int width) {
@@ -123,7 +128,8 @@ Sample sampleInRow(float place_px, uint row, int width) {
     vec4 taps[4];
     [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = dominantAt(row + uint(clamp(base + x - 1, 0, width - 1))); }
     const vec4 colour = weights.x * taps[0] + weights.y * taps[1] + weights.z * taps[2] + weights.w * taps[3];
-    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb));
+    const vec3 lost = lostBetween(t, taps[3].rgb - taps[0].rgb + 3 * (taps[1].rgb - taps[2].rgb));
+    return Sample(max(colour, vec4(0)), 0.5 * (t < 0.5 ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb), dot(lost, lost));
 }
 
 Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
@@ -133,18 +139,23 @@ Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
     const vec4 weights_x = cubicWeights(t.x), weights_y = cubicWeights(t.y);
     const bool first_column = t.x < 0.5, first_row = t.y < 0.5;
     vec4 sum = vec4(0);
-    vec3 across = vec3(0), down = vec3(0);
+    vec3 across = vec3(0), down = vec3(0), lost_across = vec3(0), third_down = vec3(0);
     [[unroll]] for (int y = 0; y < 4; ++y) {
         const int row = clamp(base.y + y - 1, 0, size.y - 1) * size.x;
         vec4 taps[4];
         [[unroll]] for (int x = 0; x < 4; ++x) { taps[x] = dominantAt(uint(row + clamp(base.x + x - 1, 0, size.x - 1))); }
         sum += weights_y[y] * (weights_x.x * taps[0] + weights_x.y * taps[1] + weights_x.z * taps[2] + weights_x.w * taps[3]);
-        if (y == 1 && first_row || y == 2 && !first_row) { across = 0.5 * (first_column ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb); }
+        if (y == 1 && first_row || y == 2 && !first_row) {
+            across = 0.5 * (first_column ? taps[2].rgb - taps[0].rgb : taps[3].rgb - taps[1].rgb);
+            lost_across = lostBetween(t.x, taps[3].rgb - taps[0].rgb + 3 * (taps[1].rgb - taps[2].rgb));
+        }
         const vec3 middle = first_column ? taps[1].rgb : taps[2].rgb;
         if (y == (first_row ? 0 : 1)) { down -= 0.5 * middle; }
         if (y == (first_row ? 2 : 3)) { down += 0.5 * middle; }
+        third_down += (y == 0 ? -1.0 : y == 1 ? 3.0 : y == 2 ? -3.0 : 1.0) * middle;
     }
-    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down);
+    const vec3 lost_down = lostBetween(t.y, third_down);
+    return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down));
 }
 
 // The expected squared error of a hole's pixel, which repeats what lies `repeated_px` beside it: what is hidden differs from that as
@@ -178,10 +189,10 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     if (kDepth) { pass.depths.at[i] = resolved.inverse_depth > 0 ? found.colour.a / resolved.inverse_depth : 0; }
     if (!kPredictErrors) { return 0; }
     if (pixel_class == kHole) { return holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
-    // Mixed pixels are many and alike: every other row stands for two.
+    // These pixels are many and alike: every other row stands for two.
     if ((at.y & 1) != 0) { return 0; }
     const float spread_px = min(resolved.spread * resolved.inverse_depth * disparity_px, kMaxSpread);
-    return 2 * spread_px * spread_px * dot(found.gradient, found.gradient) / 3;
+    return 2 * (spread_px * spread_px * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
 // Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which.
@@ -204,7 +215,7 @@ void hideTiles(uint y, uint first_tile, uint width) {
 
 void main() {
     const StereoView stereo = pass.stereo.at[0];
-    const uint y = gl_WorkGroupID.x;
+    const uint y = spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
     const uint width = stereo.size_px.x, tiles = stereo.size_tiles.x;
     const uint row = y * stereo.row_words;
     const uint first_tile = (y / kTileSize) * tiles;

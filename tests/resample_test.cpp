@@ -214,11 +214,12 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones t
                 }
             }
             CHECK(other_class == 0);
-            CHECK(worst <= 1e-3);  // of a column in the thousands, 2e-4 px
+            // Of a column in the thousands, 2e-4 px: so much are colours off, and what lies between pixels.
+            CHECK(worst <= 1e-3);
             const auto errors = device.readTileErrors();
             const auto expected_errors = reference::expectErrors(resolved, c.dominant, kinds, c.eyes, c.settings);
             for (std::size_t t = 0; t < errors.size(); ++t) {
-                CHECK(test::isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 1e-4,
+                CHECK(test::isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 1e-3,
                                    32.0 / static_cast<double>(gpu::kErrorSteps)));
             }
         }

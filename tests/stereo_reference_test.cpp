@@ -211,10 +211,29 @@ TEST_CASE("expected errors of blended depths: squared spread in pixels times squ
     auto spreadless = resolved;
     for (Resolved& r : spreadless) { r.spread = 0; }
     kinds[2] = TileKind::kCheap;
-    CHECK(expectErrors(spreadless, picture, kinds, eyes, settings) == std::vector<double>{0.0, 0.0, 0.0});
+    const auto without = expectErrors(spreadless, picture, kinds, eyes, settings);
+    CHECK(without[0] + without[1] < 1e-24);
+    CHECK(without[2] == 0.0);
     // Four pixels are the most.
     for (Resolved& r : spreadless) { r.spread = 31; }
     CHECK(expectErrors(spreadless, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+}
+
+TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not on one") {
+    const glm::uvec2 size_px(48, 16);
+    const auto errorAt = [&](double inverse_depth, bool across) {
+        Picture picture = makePicture(size_px, inverse_depth);
+        for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45; }
+        const EyePair eyes = parallelEyes(size_px);
+        const auto resolved = resolve(reproject(picture, eyes, {}), eyes, {});
+        return expectErrors(resolved, picture, std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
+    };
+    // 10 px of disparity at inverse depth 1.
+    CHECK(errorAt(0.25, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0));
+    CHECK(errorAt(0.225, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0 * 0.75 * 0.75));
+    CHECK(errorAt(0.2, true) < 1e-24);
+    // Rows stay where they are.
+    CHECK(errorAt(0.25, false) == 0.0);
 }
 
 TEST_CASE("prices are sixteenths of an octave of error steps a pair, of unmarked tiles with an error") {

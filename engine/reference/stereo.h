@@ -112,7 +112,7 @@ std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolv
 // Likewise 8f: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px);
-// Likewise 8f: the expected squared error of each unmarked tile, by holes and by pixels that blend several depths.
+// Likewise 8f: the expected squared error of each unmarked tile: of holes, of pixels that blend several depths, and of sampling.
 std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const StereoSettings& settings);
 
