@@ -59,6 +59,10 @@ Json resultJson(const BenchResult& result) {
     if (result.ratio_to_shared) { json["ratio_to_shared"] = *result.ratio_to_shared; }
     if (result.ratio_to_twin) { json["ratio_to_twin"] = *result.ratio_to_twin; }
     if (!result.quality.empty()) { json["affiliated_against_full"] = qualityJson(result.quality); }
+    if (result.move_cost) { json["move_cost"] = *result.move_cost; }
+    json["tiles_rendered"] = result.tiles_rendered;
+    json["work_rendered"] = result.work_rendered;
+    json["stereo_bytes_per_pixel"] = result.stereo_bytes_per_pixel;
     json["on_front"] = result.on_front;
     json["counters"] = counters;
     json["peak_gpu_bytes"] = result.peak_gpu_bytes;
@@ -97,6 +101,10 @@ std::vector<Column> fixedColumns(const BenchRun& run) {
             {"ratio_to_two_pass", [](R r) { return number(r.ratio_to_two_pass); }},
             {"ratio_to_shared", [](R r) { return number(r.ratio_to_shared); }},
             {"ratio_to_twin", [](R r) { return number(r.ratio_to_twin); }},
+            {"move_cost", [](R r) { return number(r.move_cost); }},
+            {"tiles_rendered", [](R r) { return number(r.tiles_rendered); }},
+            {"work_rendered", [](R r) { return number(r.work_rendered); }},
+            {"stereo_bytes_per_pixel", [](R r) { return number(r.stereo_bytes_per_pixel); }},
             {"peak_gpu_bytes", [](R r) { return fmt::format("{}", r.peak_gpu_bytes); }},
             {"on_front", [](R r) { return std::string(r.on_front ? "1" : "0"); }}};
 }

@@ -46,6 +46,9 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.most_ms = std::ranges::max(runner.total_ms);
     result.counters = runner.last.counters;
     result.peak_gpu_bytes = runner.peak_gpu_bytes;
+    result.tiles_rendered = runner.last.tiles_rendered;
+    result.work_rendered = runner.last.work_rendered;
+    if (!runner.last.stereo_bytes_per_pixel.empty()) { result.stereo_bytes_per_pixel = runner.last.stereo_bytes_per_pixel.back().second; }
     result.quality = runner.quality;
     return result;
 }

@@ -28,11 +28,32 @@ std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' 
 
 std::string stageOf(const std::string& mode, const std::string& pass) {
     const std::string bare = bareName(pass);
-    if (bare.starts_with("8a") || bare.starts_with("8b") || bare.starts_with("9")) { return "reprojection"; }
+    if (bare.starts_with("8d") || bare.starts_with("8f")) { return "reprojection"; }
     if (bare.starts_with("8")) { return "ROI choice"; }
     if (bare < "4") { return "cull+sort"; }
     if (!pass.starts_with("affiliated ")) { return "dominant"; }
     return mode == "two-pass" || mode == "shared" ? "affiliated" : "patch";
+}
+
+double sumOf(const NamedTimes& times, const std::string& name) {
+    double sum = 0.0;
+    for (const auto& [time_name, ms] : times) { sum += time_name == name ? ms : 0.0; }
+    return sum;
+}
+
+std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
+    const auto found = result.counters.find(name);
+    return found == result.counters.end() ? 0 : found->second;
+}
+
+// What the reprojection of a tile took, in the time that rendering the affiliated eye takes a pair of tile and splat.
+std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
+    const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
+    if (predicted.mode != "predicted" || shared == nullptr || moved == 0) { return std::nullopt; }
+    const double pairs = 0.5 * static_cast<double>(counterOf(*shared, "tile_pairs_left") + counterOf(*shared, "tile_pairs_right"));
+    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf("shared", shared->pass_ms), "affiliated") / pairs : 0.0;
+    if (!(pair_ms > 0.0)) { return std::nullopt; }
+    return sumOf(stagesOf("predicted", predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
 }
 
 // Whether a result takes part in the comparison of error and time.
@@ -103,7 +124,9 @@ void compareModes(std::vector<BenchResult>& results) {
         if (result.mode == "mono") { result.ratio_to_twin = ratioTo(result, findMode(results, result, "twin")); }
         if (result.mode == "twin") { continue; }  // another clock
         result.ratio_to_two_pass = ratioTo(result, findMode(results, result, "two-pass"));
-        result.ratio_to_shared = ratioTo(result, findMode(results, result, "shared"));
+        const BenchResult* shared = findMode(results, result, "shared");
+        result.ratio_to_shared = ratioTo(result, shared);
+        result.move_cost = moveCost(result, shared);
     }
 }
 

@@ -30,6 +30,9 @@ struct BenchResult {
     std::vector<OriginScores> quality;                         // of the affiliated eye; empty where it is rendered in full
     std::optional<double> ratio_to_two_pass, ratio_to_shared;  // of total_ms, in the same run
     std::optional<double> ratio_to_twin;                       // mono: of total_ms to the twin's
+    double tiles_rendered = 1.0, work_rendered = 1.0;          // see FrameResult
+    double stereo_bytes_per_pixel = 0.0;                       // likewise, of all passes; 0 where every eye is rendered in full
+    std::optional<double> move_cost;                           // predicted: what moving a tile took, in pairs of `shared`
     bool on_front = false;                                     // no other method of the point is as fast and as close to the full render
 };
 
@@ -50,11 +53,11 @@ std::string namePoint(const BenchResult& result);
 // The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".
 NamedTimes byPass(const BenchResult& result);
 
-// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8a, 8b, 9), "ROI choice" (8c to 8g), and of the
+// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8f), "ROI choice" (the rest of 8), and of the
 // affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
 NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms);
 
-// Fills in the ratios, where both modes were measured at the same point.
+// Fills in the ratios and what moving cost, where both modes were measured at the same point.
 void compareModes(std::vector<BenchResult>& results);
 
 // Marks what is worth its time: of two methods with the same error the faster one, of two as fast the closer one. Modes that render

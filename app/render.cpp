@@ -67,8 +67,7 @@ void runRender(const RenderOptions& options) {
     // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
     if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }
 
-    FrameReport report{context.deviceName(),  options,        cameras, result.gpu_ms, result.gpu_total_ms, result.counters,
-                       result.peak_gpu_bytes, result.left_out};
+    const FrameReport report{context.deviceName(), options, cameras, result};
     writePictures(files, frame, settings);
     writeText(files.staging() / "report.json", reportJson(report));
     context.requireNoValidationMessages();

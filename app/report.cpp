@@ -81,9 +81,10 @@ std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<st
 }
 
 std::string reportJson(const FrameReport& report) {
-    Json passes = Json::object(), counters = Json::object();
-    for (const auto& [name, ms] : addUp(report.gpu_ms)) { passes[name] = ms; }
-    for (const auto& [name, count] : report.counters) { counters[name] = count; }
+    Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
+    for (const auto& [name, ms] : addUp(report.frame.gpu_ms)) { passes[name] = ms; }
+    for (const auto& [name, count] : report.frame.counters) { counters[name] = count; }
+    for (const auto& [name, count] : report.frame.stereo_bytes_per_pixel) { bytes[name] = count; }
     Json eyes = Json::object();
     if (report.options.run.stereo.mode == "mono") {
         eyes["mono"] = eyeJson(report.cameras.middle);
@@ -95,23 +96,31 @@ std::string reportJson(const FrameReport& report) {
                     {"options", optionsJson(report.options, report.cameras)},
                     {"eyes", eyes},
                     {"gpu_ms", passes},
-                    {"gpu_total_ms", report.gpu_total_ms},
+                    {"gpu_total_ms", report.frame.gpu_total_ms},
                     {"counters", counters},
-                    {"peak_gpu_bytes", report.peak_gpu_bytes},
-                    {"left_out", report.left_out}};
+                    {"stereo_bytes_per_pixel", bytes},
+                    {"tiles_rendered", report.frame.tiles_rendered},
+                    {"work_rendered", report.frame.work_rendered},
+                    {"peak_gpu_bytes", report.frame.peak_gpu_bytes},
+                    {"left_out", report.frame.left_out}};
     return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string reportTable(const FrameReport& report) {
     std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.run.stereo.mode,
                                     report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
-    const double percent = report.gpu_total_ms > 0.0 ? 100.0 / report.gpu_total_ms : 0.0;
-    for (const auto& [name, ms] : addUp(report.gpu_ms)) {
+    const double percent = report.frame.gpu_total_ms > 0.0 ? 100.0 / report.frame.gpu_total_ms : 0.0;
+    for (const auto& [name, ms] : addUp(report.frame.gpu_ms)) {
         table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", name, ms, ms * percent);
     }
-    table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.gpu_total_ms);
-    for (const auto& [name, count] : report.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
-    table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.peak_gpu_bytes) / (1024.0 * 1024.0));
+    table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.frame.gpu_total_ms);
+    for (const auto& [name, count] : report.frame.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
+    if (!report.frame.stereo_bytes_per_pixel.empty()) {
+        table += fmt::format("  {:<28} {:>14.1f} bytes\n", "moved for a pixel", report.frame.stereo_bytes_per_pixel.back().second);
+        table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again", 100.0 * report.frame.tiles_rendered,
+                             100.0 * report.frame.work_rendered);
+    }
+    table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.frame.peak_gpu_bytes) / (1024.0 * 1024.0));
     return table;
 }
 

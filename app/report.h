@@ -3,9 +3,8 @@
 
 #include "app/camera_options.h"
 #include "app/options.h"
+#include "engine/frame.h"
 
-#include <cstdint>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,11 +15,7 @@ struct FrameReport {
     std::string device;
     RenderOptions options;
     Cameras cameras;
-    std::vector<std::pair<std::string, double>> gpu_ms;  // by pass, in frame order; passes of the same name are added up
-    double gpu_total_ms = 0.0;
-    std::map<std::string, std::uint64_t> counters;
-    std::uint64_t peak_gpu_bytes = 0;
-    std::vector<std::string> left_out;
+    FrameResult frame;  // passes of the same name are added up
 };
 
 // Times by name; entries of the same name are added up, in order of first appearance.

@@ -7,7 +7,6 @@
 #include <cassert>
 
 namespace binosplat {
-namespace {
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     StereoSettings stereo = settings.stereo;
@@ -16,8 +15,6 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
                                                           : Patching::kNone;
     return stereo;
 }
-
-}  // namespace
 
 bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
 

@@ -4,6 +4,7 @@
 #include "engine/geometry.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/stereo_passes.h"
+#include "engine/passes/stereo_traffic.h"
 #include "engine/picture/image.h"
 
 #include <array>
@@ -45,10 +46,15 @@ struct FrameSettings {
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
 };
 
+// Its `stereo`, with what the mode says of patching.
+StereoSettings stereoSettingsOf(const FrameSettings& settings);
+
 struct FrameResult {
     PassTimes gpu_ms;           // in frame order; "dominant 7_rasterize", "both 1_cull", or the bare pass where there is one eye
     double gpu_total_ms = 0.0;  // from the first pass to the last
     std::map<std::string, std::uint64_t> counters;
+    Traffic stereo_bytes_per_pixel;     // of the passes that make one eye from the other, where the mode has any
+    double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;   // of the device memory this program ever held at a time
     std::vector<std::string> left_out;  // what this scene and mode did not need
 };

@@ -13,6 +13,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
     result.gpu_total_ms = commands_.totalMs();
     result.peak_gpu_bytes = context_.memoryUse().peak_bytes;
     auto& counters = result.counters;
+    counters["commands"] = commands_.count();
     counters["splats_read"] = scene_->splatCount();
     counters["scene_bytes"] = scene_->bytes();
     counters["visible_bytes"] = buffers_.visible.bytes();
@@ -51,6 +52,16 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
         counters["hole_components"] = stereo.components;
         counters["splats_newcomers"] = stereo.newcomers;
         counters["stereo_bytes"] = stereo_buffers_.bytes();
+        result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
+                                                       .half_floats = settings.half_floats,
+                                                       .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
+                                                       .classes = stereo_buffers_.classesBuffer().bytes() > 0,
+                                                       .size_px = eyes[0].size_px,
+                                                       .counters = stereo,
+                                                       .visible = state_.visible[0].count});
+        const std::uint32_t shown = stereo_buffers_.tileCount() - shown_[1 - dominant_].hiddenCount();
+        result.tiles_rendered = shown > 0 ? static_cast<double>(state_.masked_tiles.count) / shown : 0.0;
+        if (stereo.picture_cost > 0) { result.work_rendered = static_cast<double>(stereo.chosen_cost) / stereo.picture_cost; }
     }
     explainLeftOut(eyes, settings, result);
     return result;

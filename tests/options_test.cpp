@@ -170,15 +170,31 @@ TEST_CASE("stagesAddUpPasses") {
                             {"both 3_sort_depth", 2.0},
                             {"dominant 4_project", 4.0},
                             {"dominant 7_rasterize", 8.0},
-                            {"affiliated 8a_reproject", 16.0},
-                            {"affiliated 8b_resolve", 32.0},
-                            {"affiliated 8f_newcomers", 64.0},
-                            {"affiliated 8g_select", 128.0},
-                            {"affiliated 9_resample", 256.0},
+                            {"affiliated 8d_reproject", 16.0},
+                            {"affiliated 8a_weigh", 32.0},
+                            {"affiliated 8e_newcomers", 64.0},
+                            {"affiliated 8i_select", 128.0},
+                            {"affiliated 8f_resample", 256.0},
                             {"affiliated 7_rasterize", 512.0}};
     CHECK(stagesOf("predicted", passes) ==
-          NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 304.0}, {"ROI choice", 192.0}, {"patch", 512.0}});
+          NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
     CHECK(stagesOf("shared", {{"affiliated 7_rasterize", 1.0}}) == NamedTimes{{"affiliated", 1.0}});
+}
+
+TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
+    BenchResult predicted = makeResult("a", "predicted", 1, 9.0), shared = makeResult("a", "shared", 1, 10.0);
+    predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8e_newcomers", 5.0}, {"affiliated 8f_resample", 2.0}};
+    predicted.counters = {{"tiles_weighed_as_moved", 300}};
+    shared.pass_ms = {{"dominant 7_rasterize", 7.0}, {"affiliated 4_project", 1.5}, {"affiliated 7_rasterize", 2.5}};
+    shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 7000}};
+    // 10 us a tile, 0.5 us a pair.
+    std::vector<BenchResult> results{predicted, shared};
+    compareModes(results);
+    CHECK(results[0].move_cost.value() == doctest::Approx(20.0));
+    CHECK_FALSE(results[1].move_cost.has_value());
+    results[0].counters["tiles_weighed_as_moved"] = 0;
+    compareModes(results);
+    CHECK_FALSE(results[0].move_cost.has_value());
 }
 
 TEST_CASE("theFrontHoldsWhatIsWorthItsTime") {

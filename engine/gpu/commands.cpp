@@ -25,6 +25,7 @@ Commands::Commands(const Context& context) : context_(context) {
 void Commands::begin() {
     pass_names_.clear();
     timestamp_count_ = 0;
+    count_ = 0;
     command_buffer_.reset();
     command_buffer_.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
     if (*timestamps_) { command_buffer_.resetQueryPool(*timestamps_, 0, kMaxTimestamps); }
@@ -52,6 +53,7 @@ void Commands::endPass() {
 }
 
 void Commands::waitForAll() {
+    ++count_;
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
     const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead | Access::eShaderWrite |

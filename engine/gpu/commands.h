@@ -63,9 +63,12 @@ public:
     // Of the frame that submitAndWait finished; empty where the device has no timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
     [[nodiscard]] double totalMs() const { return total_ms_; }
+    // Kernels, fills, updates and copies of buffers since begin.
+    [[nodiscard]] std::uint32_t count() const { return count_; }
 
 private:
     void recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes);
+    // Before each of them.
     void waitForAll();
     void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
     void writeTimestamp();
@@ -77,6 +80,7 @@ private:
     vk::raii::QueryPool timestamps_{nullptr};
     std::vector<std::string> pass_names_;
     std::uint32_t timestamp_count_ = 0;
+    std::uint32_t count_ = 0;
     bool in_pass_ = false;
     PassTimes times_;
     double total_ms_ = 0.0;

@@ -1,0 +1,58 @@
+// Sizes are those of the passes' arguments in shaders/shared/passes.h, named in the order they have there.
+#include "engine/passes/stereo_traffic.h"
+
+namespace binosplat {
+namespace {
+
+constexpr double kWord = sizeof(gpu::uint), kPixelsOfTile = gpu::kTileSize * gpu::kTileSize;
+
+// Words of a tile, by pixel.
+constexpr double perTile(double words) { return words * kWord / kPixelsOfTile; }
+
+}  // namespace
+
+Traffic stereoTraffic(const StereoFrameFacts& facts) {
+    const bool predict = facts.settings.patching == Patching::kPredicted, paper = facts.settings.patching == Patching::kPaper;
+    const bool components = paper && facts.settings.center_rois;
+    const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
+    const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
+    const double moving = kWord, arrival = kWord, depth = facts.affiliated_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
+    // Only predicted leaves tiles out before it moves anything.
+    const double moved = !predict                     ? 1.0
+                         : facts.counters.moves == 0 ? 0.0
+                                                     : facts.counters.moved_tiles / tiles;
+    const double any_moved = moved > 0.0 ? 1.0 : 0.0;
+
+    Traffic traffic{{"dominant 7_rasterize, for moving", moving + arrival}};
+    if (predict) {
+        // moving, ranges; kinds (in and out), costs, errors, a bit of the mask
+        traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1.0 / 32));
+    }
+    if (paper) {
+        traffic.emplace_back("8b_depth_bounds", colour + moving);
+        traffic.emplace_back("8c_edge_rois", perTile(2));
+    }
+    traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival));
+    if (predict) {
+        // counts of tiles; what newcomers read besides is nothing beside it
+        traffic.emplace_back("8e_newcomers", any_moved * kWord * facts.visible / pixels);
+    }
+    // A row of pixels reads its tiles' kinds, and adds to their errors.
+    const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
+    traffic.emplace_back("8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
+                                            moved * (2 * colour + depth));
+    if (components) { traffic.emplace_back("8g_components", 3 * pixel_class); }
+    if (predict) {
+        traffic.emplace_back("8h_price", perTile(4));  // kinds, costs, errors; prices
+    }
+    if (paper || predict) {
+        // kinds (in and out), prices, costs; the list and the mask. And each workgroup sums up the prices of half of the tiles.
+        traffic.emplace_back("8i_select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kStereoGroup) : 0.0));
+    }
+    double sum = 0.0;
+    for (const auto& [pass, bytes] : traffic) { sum += bytes; }
+    traffic.emplace_back("all", sum);
+    return traffic;
+}
+
+}  // namespace binosplat

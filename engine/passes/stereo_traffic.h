@@ -1,0 +1,29 @@
+// What the affiliated eye costs in memory traffic beside the tiles that are rendered for it.
+#pragma once
+
+#include "engine/passes/stereo_passes.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+// Bytes that a pass reads and writes, by pixel of an eye, in frame order. What several threads read counts once, since neighbours read it
+// from a cache; what is read and written back counts twice.
+using Traffic = std::vector<std::pair<std::string, double>>;
+
+// What a frame was like that traffic depends on.
+struct StereoFrameFacts {
+    StereoSettings settings;
+    bool half_floats = false;        // what pictures consist of
+    bool affiliated_depth = false;   // its D is kept
+    bool classes = false;            // of pixels are kept
+    glm::uvec2 size_px{0, 0};        // of an eye
+    gpu::StereoCounters counters{};  // at the end of the frame
+    std::uint32_t visible = 0;       // splats that either eye sees
+};
+
+Traffic stereoTraffic(const StereoFrameFacts& facts);
+
+}  // namespace binosplat
