@@ -31,7 +31,7 @@ inline constexpr OptionRow kStereoRows[] = {
     {"margin", "stereo", "PX", "paper mode: pixels added around what is rendered again (default 32)"},
     {"budget", "stereo", "FRACTION", "predicted mode: share of an eye's work that is spent on what moving gets wrong (default 0.22)"},
     {"move-cost", "stereo", "PAIRS",
-     "predicted mode: tiles with at most so many pairs of tile and splat are rendered, not moved (default 48)"},
+     "predicted mode: tiles with at most so many pairs of tile and splat are rendered, not moved (default 32)"},
     {"depth", "stereo", "KIND", "depth that reprojects a pixel: sum, mean or inverse (default inverse)"},
     {"gap-px", "stereo", "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes (default 2)"},
     {"edge-samples", "stereo", "N", "paper mode: samples along each edge of the picture (default 64)"},

@@ -26,7 +26,7 @@ struct CameraOptions {
 };
 
 // What moving a tile costs, in pairs of tile and splat, where nobody has measured it.
-inline constexpr std::uint32_t kDefaultMoveCost = 48;
+inline constexpr std::uint32_t kDefaultMoveCost = 32;
 
 struct StereoOptions {
     std::string mode = "predicted";

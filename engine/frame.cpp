@@ -32,6 +32,7 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
 void StereoFrame::show(const GpuScene& scene) {
     scene_ = &scene;
     first_frame_ = true;
+    moves_asked_ = {};
     buffers_ = {};
     buffers_ = makeFrameBuffers(context_, scene.splatCount());
 }
@@ -51,6 +52,9 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     relation_ = relate(eyes[dominant_], eyes.size() == 2 ? eyes[1 - dominant_] : eyes[dominant_]);
     prepareImages(eyes, settings);
     prepareLists();
+    const MovesAsked asked{stereoSettingsOf(settings), dominant_, eyes[0].size_px, settings.hidden_tiles[dominant_].size()};
+    if (settings.mode != Mode::kPredicted || asked != moves_asked_) { may_move_ = true; }
+    moves_asked_ = asked;
     do {
         recordFrame(eyes, settings);
         if (append) { append(commands_); }
@@ -58,7 +62,9 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
         for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
         state_ = state_readback_.mapped<FrameState>()[0];
     } while (!growIfNeeded());
-    return collect(eyes, settings);
+    FrameResult result = collect(eyes, settings);
+    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
+    return result;
 }
 
 void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& settings) {
@@ -101,6 +107,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
                                               .stereo = stereo_buffers_,
                                               .settings = stereo,
                                               .rectified = relation_.rectified,
+                                              .may_move = may_move_,
                                               .dominant_eye = first,
                                               .dominant = images_[first],
                                               .affiliated = images_[second],
@@ -109,6 +116,10 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
                                               .background = affiliated.background});
             if (stereo.patching == Patching::kNone) { break; }
             recordOrderOfAffiliated();
+            if (!may_move_) {
+                passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
+                break;
+            }
             passes_.recordTiles(commands_, *scene_, buffers_, affiliated, {stereo_buffers_.tileMask(), stereo_buffers_.tileList()},
                                 "affiliated ");
             break;
@@ -142,12 +153,14 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
     target.moments = moments_.address<gpu::vec2>();
     if (!reprojects(settings.mode)) { return target; }
     const EyeImage& other = images_[1 - eye];
-    target.kept.moving = true;
-    target.kept.spread = settings.mode == Mode::kPredicted;
-    target.kept.depth_choice = settings.stereo.depth_choice;
-    target.moving = stereo_buffers_.moving(other);
-    target.arrivals = stereo_buffers_.arrivals(other);
-    target.row_words = stereo_buffers_.rowWords();
+    if (may_move_) {
+        target.kept.moving = true;
+        target.kept.spread = settings.mode == Mode::kPredicted;
+        target.kept.depth_choice = settings.stereo.depth_choice;
+        target.moving = stereo_buffers_.moving(other);
+        target.arrivals = stereo_buffers_.arrivals(other);
+        target.row_words = stereo_buffers_.rowWords();
+    }
     // Until the dominant eye is blended nothing is in the other one's picture.
     if (buffers_.pairs.lentCapacity() > buffers_.pairs.capacity()) {
         target.pairs = buffers_.pairs.arraysWith(other.colours, tileBits(target.size_tiles));

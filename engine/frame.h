@@ -133,6 +133,16 @@ private:
     Mode mode_ = Mode::kMono;
     int dominant_ = 0;
     EyeRelation relation_;
+    // Whether anything is moved. `predicted` leaves it out as long as it did not pay in the frame before, if that was asked for the same.
+    struct MovesAsked {
+        StereoSettings stereo;
+        int dominant = 0;
+        glm::uvec2 size_px{0, 0};
+        std::size_t hidden_tiles = 0;
+        bool operator==(const MovesAsked&) const = default;
+    };
+    MovesAsked moves_asked_;
+    bool may_move_ = true;
     FrameCapacity first_capacity_;
     bool first_frame_ = true;
 };

@@ -1,6 +1,7 @@
 // 8a: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows, rendering it costs its pairs of tile
 // and splat, and the dominant eye's ranges tell how many these are about. A thread a tile; the last workgroup sums up whether moving
-// pays at all: otherwise the passes that move are empty dispatches, every tile is rendered, and nothing is lost.
+// pays at all: otherwise the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did not pay in
+// the frame before, the dominant picture comes without what moving needs, and the sum only says whether the next one should have it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -16,9 +17,11 @@ layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { WeighPass pass; };
 layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
+layout(constant_id = 3) const bool kMayMove = true;       // the dominant eye's pixels are there to be moved
 
 // Pairs of the dominant tile that the middle of this one comes from, if it is as deep as what the dominant eye sees at that pixel.
 uint pairsNear(StereoView stereo, uint tile) {
+    if (!kMayMove) { return pass.ranges.at[tile].y - pass.ranges.at[tile].x; }
     const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
     const uvec2 middle = min(at * kTileSize + kTileSize / 2, stereo.size_px - 1);
     const uint moving = pass.moving.at[middle.y * stereo.row_words + middle.x];
@@ -54,7 +57,7 @@ void main() {
             cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
             moves = !unseen && pairs > stereo.move_cost;
             saved = moves ? pairs - stereo.move_cost : 0;
-            pass.tile_kinds.at[tile] = unseen ? kTileEdge : moves ? 0 : kTileCheap;
+            pass.tile_kinds.at[tile] = !kMayMove ? kTileCheap : unseen ? kTileEdge : moves ? 0 : kTileCheap;
         }
         pass.tile_costs.at[tile] = cost;
         pass.tile_errors.at[tile] = 0;
@@ -72,7 +75,10 @@ void main() {
     }
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
     const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0), all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
-    if (movingPays(stereo, all_saved, atomicOr(pass.counters.at[0].picture_cost, 0), shown)) {
+    const uint picture_cost = atomicOr(pass.counters.at[0].picture_cost, 0);
+    const bool pays = movingPays(stereo, all_saved, picture_cost, shown);
+    pass.counters.at[0].pays = pays ? 1 : 0;
+    if (pays && kMayMove) {
         pass.counters.at[0].moves = 1;
         pass.counters.at[0].per_pixel_block = DispatchSize(stereo.size_tiles.x, 2 * stereo.size_tiles.y, 1);
         pass.counters.at[0].per_row = DispatchSize(stereo.size_px.y, 1, 1);
@@ -84,5 +90,10 @@ void main() {
         // Hidden tiles become background all the same.
         pass.counters.at[0].per_row = shown < tiles ? DispatchSize(stereo.size_px.y, 1, 1) : DispatchSize(0, 0, 0);
         pass.counters.at[0].per_visible = DispatchSize(0, 0, 0);
+    }
+    if (!kMayMove) {
+        pass.counters.at[0].cheap_tiles = shown;
+        pass.counters.at[0].chosen_cost = picture_cost;
+        pass.masked_tiles.at[0].count = shown;
     }
 }

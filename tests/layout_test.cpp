@@ -58,7 +58,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ComponentPixel, FIELD(parent), FIELD(component)),
         LAYOUT(StereoCounters, FIELD(covered_pixels), FIELD(gap_pixels), FIELD(hole_pixels), FIELD(components), FIELD(edge_tiles),
                FIELD(center_tiles), FIELD(predicted_tiles), FIELD(cheap_tiles), FIELD(newcomers), FIELD(moved_tiles), FIELD(picture_cost),
-               FIELD(shown_tiles), FIELD(saved_cost), FIELD(chosen_cost), FIELD(moves), FIELD(borders_px), FIELD(per_pixel_block),
+               FIELD(shown_tiles), FIELD(saved_cost), FIELD(chosen_cost), FIELD(moves), FIELD(pays), FIELD(borders_px), FIELD(per_pixel_block),
                FIELD(per_row), FIELD(per_visible), FIELD(component_groups)),
         LAYOUT(PixelBox, FIELD(x0), FIELD(y0), FIELD(x1), FIELD(y1)),
         LAYOUT(EyeCounters, FIELD(square_box_pairs_low), FIELD(square_box_pairs_high), FIELD(large_splats)),

@@ -240,3 +240,42 @@ TEST_CASE_FIXTURE(Gpu, "pixels that blend two depths are rendered again first") 
     CHECK(moved.psnr_db >= mean_db);
     CHECK(moved.psnr_db >= sum_db);
 }
+
+TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out and loses nothing, until it would pay again") {
+    const auto view = test::viewBuiltin("builtin:atelier", kSizePx, 20000);
+    const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.064);
+    std::array<Eye, 2> outside = eyes;
+    for (Eye& eye : outside) { eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(0, 0, 1000); }
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene), plain(context(), scene);
+    const auto render = [&](const std::array<Eye, 2>& of, double budget = 0.22) {
+        FrameSettings settings = makeSettings(Mode::kPredicted);
+        settings.stereo.budget = budget;
+        return makeAffiliated(frame, of, settings);
+    };
+    const auto reprojects = [](const AffiliatedFrame& made) {
+        return std::ranges::any_of(made.result.gpu_ms, [](const auto& pass) { return pass.first == "affiliated 8d_reproject"; });
+    };
+    const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
+        const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
+        CHECK(countKind(made, gpu::kTileCheap) == made.tile_kinds.size());
+        CHECK(made.result.counters.at("tiles_patched") == made.tile_kinds.size());
+        CHECK(made.result.tiles_rendered == 1.0);
+        CHECK(made.result.work_rendered == 1.0);
+        return made.pictures[kLeft].values == shared.pictures[kLeft].values && made.pictures[kRight].values == shared.pictures[kRight].values;
+    };
+    // Before the eyes there is nothing: what moves is asked once.
+    CHECK(reprojects(render(outside)));
+    const AffiliatedFrame left_out = render(outside);
+    CHECK_FALSE(reprojects(left_out));
+    CHECK(isWhole(left_out, outside));
+    const AffiliatedFrame first = render(eyes), second = render(eyes);
+    CHECK_FALSE(reprojects(first));
+    CHECK(isWhole(first, eyes));
+    CHECK(reprojects(second));
+    CHECK(second.result.counters.at("tiles_weighed_as_moved") > 0);
+    CHECK(second.result.work_rendered < 0.5);
+    // Whoever asks for something else is answered at once.
+    CHECK_FALSE((render(outside), reprojects(render(outside))));
+    CHECK(reprojects(render(eyes, 0.1)));
+}

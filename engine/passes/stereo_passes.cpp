@@ -40,7 +40,7 @@ gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 s
 }
 
 KernelTable stereoKernels() {
-    KernelTable table = everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}});
+    KernelTable table = everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
     append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
     append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
     append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
@@ -99,7 +99,8 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
                                   .visible = visible,
                                   .masked_tiles = state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
                                   .counters = counters};
-        commands.dispatch(kernel("8a_weigh", pass, {along_rows, hides, in.affiliated_shown.hideAny()}), pass, tile_groups);
+        commands.dispatch(kernel("8a_weigh", pass, {along_rows, hides, in.affiliated_shown.hideAny(), in.may_move}), pass, tile_groups);
+        if (!in.may_move) { return; }
     } else {
         commands.beginPass(paper ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
         commands.fillZero(stereo.tiles());

@@ -40,6 +40,7 @@ struct StereoSettings {
     gpu::uint move_cost = 0;  // of a tile, in pairs
     double hole_error = 1.0;
     double newcomer_error = 0.3;
+    bool operator==(const StereoSettings&) const = default;
 };
 
 // How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers.
@@ -54,6 +55,7 @@ struct StereoPassInputs {
     const StereoBuffers& stereo;
     const StereoSettings& settings;
     bool rectified;
+    bool may_move;  // otherwise only 8a runs, for the next frame's sake
     int dominant_eye;
     const EyeImage& dominant;
     const EyeImage& affiliated;

@@ -140,6 +140,7 @@ struct StereoCounters {
     uint saved_cost;                // by moving tiles, as far as known before the choice
     uint chosen_cost;               // of what is rendered
     uint moves;                     // 1: something is moved
+    uint pays;                      // 1: moving pays, or would have paid in a frame that could not
     uvec4 borders_px;               // paper: left, top, right, bottom
     DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is moved
     DispatchSize per_row;           // likewise over the rows
