@@ -94,7 +94,9 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const Camera
     settings.half_floats = !compared;  // as a viewer has it
     settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
     const bool reprojected = reprojects(settings.mode);
-    auto& frame = frames_[{settings.mode, reprojected && stereo.depth != "inverse", reprojected && stereo.center_roi}];
+    const bool predicted = settings.mode == Mode::kPredicted;
+    auto& frame = frames_[{settings.mode, reprojected && stereo.depth != "inverse", reprojected && stereo.center_roi,
+                           predicted ? stereo.budget : 0.0, predicted ? stereo.move_cost : 0}];
     if (frame == nullptr) { frame = std::make_unique<StereoFrame>(context_, scene_); }
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     return {frame->render(eyes, settings), frame.get()};

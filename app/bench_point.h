@@ -32,7 +32,8 @@ public:
     Rendered renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
 
 private:
-    using Needs = std::tuple<Mode, bool, bool>;  // mode, whether D is read, whether holes are grouped
+    // Mode, whether D is read, whether holes are grouped; and what a frame of `predicted` remembers of the one before: what it asked for.
+    using Needs = std::tuple<Mode, bool, bool, double, std::uint32_t>;
     const Context& context_;
     const GpuScene& scene_;
     std::map<Needs, std::unique_ptr<StereoFrame>> frames_;

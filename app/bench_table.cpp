@@ -35,8 +35,9 @@ std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
 
 std::string methodsTable(const std::vector<const BenchResult*>& point) {
     TextColumns columns;
-    columns.addRow({"method", "front", "ms", "least", "most", "/ two-pass", "/ shared", "peak MiB", "PSNR dB", "reprojected",
-                    "interpolated", "patched", "SSIM", "FLIP", "tiles again", "% of work", "bytes a px", "commands", "holes px", "gaps px", "pairs"});
+    columns.addRow({"method",      "front",     "ms",          "least",        "most",     "/ two-pass", "/ shared",
+                    "peak MiB",    "PSNR dB",   "reprojected", "interpolated", "patched",  "SSIM",       "FLIP",
+                    "tiles again", "% of work", "bytes a px",  "commands",     "holes px", "gaps px",    "pairs"});
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method, r->on_front ? "*" : ""};
         for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
@@ -52,7 +53,9 @@ std::string methodsTable(const std::vector<const BenchResult*>& point) {
         row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered) : "-");
         row.push_back(reprojects ? fmt::format("{:.1f}", r->stereo_bytes_per_pixel) : "-");
         row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "commands")));
-        for (const char* name : {"pixels_hole", "pixels_gap"}) { row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, name)) : "-"); }
+        for (const char* name : {"pixels_hole", "pixels_gap"}) {
+            row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, name)) : "-");
+        }
         row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "tile_pairs")));
         columns.addRow(std::move(row));
     }
@@ -96,7 +99,9 @@ std::string benchTable(const BenchRun& run) {
         table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]), point[0]->frames);
         table += methodsTable(point) + timesTable(point);
         for (const BenchResult* r : point) {
-            if (r->move_cost) { table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost); }
+            if (r->move_cost) {
+                table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
+            }
             if (r->ratio_to_twin && *r->ratio_to_twin > 0.0) {
                 table += fmt::format("  mono is {:.2f} times as fast as its float64 twin on the CPU\n", 1.0 / *r->ratio_to_twin);
             }

@@ -120,7 +120,8 @@ std::string reportTable(const FrameReport& report) {
         table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again", 100.0 * report.frame.tiles_rendered,
                              100.0 * report.frame.work_rendered);
     }
-    table += fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.frame.peak_gpu_bytes) / (1024.0 * 1024.0));
+    table +=
+        fmt::format("  {:<28} {:>14.1f} MiB\n", "peak GPU memory", static_cast<double>(report.frame.peak_gpu_bytes) / (1024.0 * 1024.0));
     return table;
 }
 

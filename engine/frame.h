@@ -53,10 +53,10 @@ struct FrameResult {
     PassTimes gpu_ms;           // in frame order; "dominant 7_rasterize", "both 1_cull", or the bare pass where there is one eye
     double gpu_total_ms = 0.0;  // from the first pass to the last
     std::map<std::string, std::uint64_t> counters;
-    Traffic stereo_bytes_per_pixel;     // of the passes that make one eye from the other, where the mode has any
+    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, where the mode has any
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
-    std::uint64_t peak_gpu_bytes = 0;   // of the device memory this program ever held at a time
-    std::vector<std::string> left_out;  // what this scene and mode did not need
+    std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time
+    std::vector<std::string> left_out;                 // what this scene and mode did not need
 };
 
 // What a frame starts with; the defaults suit every device.

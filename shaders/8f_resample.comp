@@ -44,20 +44,24 @@ void listTiles(uint first_tile, uint tiles, bool moves) {
     }
 }
 
+// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
 void loadRow(uint row, uint width) {
-    const uint thread = threadIndex(), lanes = laneCount();
-    for (uint begin = 0; begin < width; begin += kStereoGroup) {
-        const uint x = begin + thread;
-        const uint arrival = x < width ? pass.arrivals.at[row + x] : 0;
-        if (kSharedRow != 0 && x < width) { row_arrivals[x] = arrival; }
-        const uvec4 arrived = subgroupBallot(arrival != 0);
-        // A subgroup's pixels follow one another; 32 divides its first or is divided by its width.
-        if (subgroupElect()) {
-            for (uint word = 0; word < (lanes + 31) / 32; ++word) {
-                if (arrived[word] != 0) { atomicOr(arrived_bits[x / 32 + word], arrived[word] << (x & 31)); }
-            }
+    uint x = 4 * gl_LocalInvocationIndex;
+    [[dont_unroll]] do {
+        uvec4 four = uvec4(0);
+        if (x + 4 <= width) {
+            four = uvec4(pass.arrivals.at[row + x], pass.arrivals.at[row + x + 1], pass.arrivals.at[row + x + 2], pass.arrivals.at[row + x + 3]);
+        } else {
+            [[unroll]] for (uint i = 0; i < 3; ++i) { four[i] = x + i < width ? pass.arrivals.at[row + x + i] : 0; }
         }
-    }
+        if (kSharedRow != 0 && x < width) {
+            [[unroll]] for (uint i = 0; i < 4; ++i) { row_arrivals[x + i] = four[i]; }
+        }
+        const uvec4 arrived = mix(uvec4(0), uvec4(1, 2, 4, 8), notEqual(four, uvec4(0)));
+        const uint bits = arrived.x | arrived.y | arrived.z | arrived.w;
+        if (bits != 0) { atomicOr(arrived_bits[x / 32], bits << (x & 31)); }
+        x += 4 * kStereoGroup;
+    } while (x < width);
 }
 
 // The nearest pixel to the left, or right, of `x` that something reached; -1: there is none.
@@ -236,7 +240,8 @@ void main() {
     barrier();
 
     uvec3 classes = uvec3(0);
-    for (uint begin = 0; begin < items; begin += kStereoGroup) {
+    uint begin = 0;
+    [[dont_unroll]] do {
         const uint item = begin + thread, slot = item / kTileSize;
         const uint x = item < items ? moved_tiles[slot] * kTileSize + item % kTileSize : width;
         uint steps = 0;
@@ -250,7 +255,8 @@ void main() {
             }
         }
         if (kPredictErrors) { addErrors(first_tile, subgroupBroadcastFirst(slot), slot, steps, lanes); }
-    }
+        begin += kStereoGroup;
+    } while (begin < items);
     if (hidden_count > 0) { hideTiles(y, first_tile, width); }
     if (!kClasses) { return; }
     barrier();

@@ -18,9 +18,7 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
     const double moving = kWord, arrival = kWord, depth = facts.affiliated_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
     // Only predicted leaves tiles out before it moves anything.
-    const double moved = !predict                     ? 1.0
-                         : facts.counters.moves == 0 ? 0.0
-                                                     : facts.counters.moved_tiles / tiles;
+    const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
     Traffic traffic{{"dominant 7_rasterize, for moving", moving + arrival}};
@@ -39,8 +37,8 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     }
     // A row of pixels reads its tiles' kinds, and adds to their errors.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
-    traffic.emplace_back("8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
-                                            moved * (2 * colour + depth));
+    traffic.emplace_back(
+        "8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (components) { traffic.emplace_back("8g_components", 3 * pixel_class); }
     if (predict) {
         traffic.emplace_back("8h_price", perTile(4));  // kinds, costs, errors; prices
