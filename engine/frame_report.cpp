@@ -53,6 +53,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
         counters["splats_newcomers"] = stereo.newcomers;
         counters["stereo_bytes"] = stereo_buffers_.bytes();
         result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
+                                                       .may_move = may_move_,
                                                        .half_floats = settings.half_floats,
                                                        .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
                                                        .classes = stereo_buffers_.classesBuffer().bytes() > 0,

@@ -21,7 +21,7 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
-    Traffic traffic{{"dominant 7_rasterize, for moving", moving + arrival}};
+    Traffic traffic{{"dominant 7_rasterize, for moving", facts.may_move ? moving + arrival : 0.0}};
     if (predict) {
         // moving, ranges; kinds (in and out), costs, errors, a bit of the mask
         traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1.0 / 32));

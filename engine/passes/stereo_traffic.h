@@ -16,6 +16,7 @@ using Traffic = std::vector<std::pair<std::string, double>>;
 // What a frame was like that traffic depends on.
 struct StereoFrameFacts {
     StereoSettings settings;
+    bool may_move = true;            // the dominant picture came with what moving needs
     bool half_floats = false;        // what pictures consist of
     bool affiliated_depth = false;   // its D is kept
     bool classes = false;            // of pixels are kept
