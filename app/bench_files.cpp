@@ -15,9 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
-constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
-
 Json timesJson(const NamedTimes& times) {
     Json json = Json::object();
     for (const auto& [name, ms] : times) { json[name] = json.contains(name) ? json[name].get<double>() + ms : ms; }

@@ -22,7 +22,7 @@ namespace binosplat {
 namespace {
 
 // What is recorded for one method between frames.
-struct Sequence {
+struct MethodHistory {
     BenchMethod method;
     Image error;  // picture less full render, of the frame before
 };
@@ -72,7 +72,7 @@ public:
 
     void warmUp(const Cameras& cameras, std::uint32_t count) {
         for (std::uint32_t i = 0; i < count; ++i) {
-            for (const Sequence& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo); }
+            for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo); }
         }
     }
 
@@ -80,7 +80,7 @@ public:
         const int affiliated = 1 - shared_.stereo.dominant;
         const Image full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated);
         const double full_change = meanChange(full, full_before_);
-        for (Sequence& sequence : sequences_) {
+        for (MethodHistory& sequence : sequences_) {
             const std::string& mode = sequence.method.stereo.mode;
             const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
             MotionFrame row{name_, sequence.method.name, mode, time_s, rendered.gpu_total_ms, stagesOf(mode, rendered.gpu_ms), 0.0,
@@ -102,7 +102,7 @@ private:
     BenchMethod shared_;
     MethodFrames frames_;
     std::string name_;
-    std::vector<Sequence> sequences_;
+    std::vector<MethodHistory> sequences_;
     Image full_before_;
 };
 

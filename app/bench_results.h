@@ -14,6 +14,10 @@
 
 namespace binosplat {
 
+// What the tables have columns for: `stagesOf` and `OriginScores` by these names.
+inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
+inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
+
 using NamedTimes = std::vector<std::pair<std::string, double>>;
 
 // One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those of the mode "twin" are

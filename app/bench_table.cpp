@@ -11,9 +11,6 @@ namespace binosplat {
 
 namespace {
 
-constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
-constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
-
 std::string ratioText(const std::optional<double>& ratio) { return ratio ? fmt::format("{:.3f}", *ratio) : "-"; }
 
 std::string psnrText(const OriginScores* scores) {

@@ -16,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
-
 // All frames of one method at one point, in the order of time.
 struct Sequence {
     std::string point, method;

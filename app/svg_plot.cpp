@@ -12,7 +12,7 @@ namespace {
 
 // All lengths in SVG user units (pixels at 100 %).
 constexpr double kPanelWidth = 680.0, kPanelHeight = 420.0, kTitleHeight = 46.0;
-constexpr double kLeft = 70.0, kRight = 210.0, kTop = 34.0, kBottom = 54.0;
+constexpr double kLeftMargin = 70.0, kRightMargin = 210.0, kTopMargin = 34.0, kBottomMargin = 54.0;
 
 // Colours that the colour-blind tell apart (Okabe and Ito, 2008), and a dash for the second round.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#7f7f7f"};
@@ -32,10 +32,10 @@ public:
           y_axis_(panel.y_scale),
           left_(left),
           top_(top),
-          x0_(left + kLeft),
-          x1_(left + kPanelWidth - kRight),
-          y0_(top + kPanelHeight - kBottom),
-          y1_(top + kTop) {
+          x0_(left + kLeftMargin),
+          x1_(left + kPanelWidth - kRightMargin),
+          y0_(top + kPanelHeight - kBottomMargin),
+          y1_(top + kTopMargin) {
         for (const PlotLine& line : panel.lines) {
             for (const auto& point : line.points) {
                 if (!isShown(point)) { continue; }
@@ -147,7 +147,7 @@ std::string drawPlot(const std::string& title, const std::vector<PlotPanel>& pan
     svg +=
         "<style>text{font:12px sans-serif;fill:#222} .title{font-size:17px;font-weight:bold} .panel{font-size:13px;font-weight:bold} "
         ".name{font-size:10px} .grid{stroke:#ddd} .frame{fill:none;stroke:#444}</style>\n<rect width='100%' height='100%' fill='white'/>\n";
-    svg += fmt::format("<text x='{:.1f}' y='30' class='title'>{}</text>\n", kLeft, escape(title));
+    svg += fmt::format("<text x='{:.1f}' y='30' class='title'>{}</text>\n", kLeftMargin, escape(title));
     for (std::size_t i = 0; i < panels.size(); ++i) {
         svg += PanelDrawing(panels[i], static_cast<double>(i % 2) * kPanelWidth, kTitleHeight + static_cast<double>(i / 2) * kPanelHeight)
                    .draw();

@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kLeastScale = 0.1, kMostScale = 2.0;
+constexpr double kLeastResolutionScale = 0.1, kMostResolutionScale = 2.0;
 
 glm::dquat readRotation(const Setting& setting) {
     std::vector<double> values;
@@ -55,7 +55,7 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
     for (const SettingsTable& table : tables) {
         for (const auto& [key, setting] : table.settings) {
             if (key == "resolution-scale") {
-                settings.resolution_scale = readNumber(setting, kLeastScale, kMostScale);
+                settings.resolution_scale = readNumber(setting, kLeastResolutionScale, kMostResolutionScale);
             } else if (key == "tint") {
                 settings.tint = readFlag(setting);
             } else if (key == "panel") {

@@ -7,7 +7,7 @@
 namespace binosplat::stability {
 namespace {
 
-StageBuilder makeRoom(glm::uvec2 size_px = kSizePx) {
+StageBuilder makeDiscRoom(glm::uvec2 size_px = kSizePx) {
     StageBuilder stage(size_px);
     stage.addWall();
     stage.addClutter(30, 1);
@@ -26,7 +26,7 @@ Disc placeDisc(Random& random, double nearest = 0.8) {
 }
 
 Stage makeDiscs(int count, unsigned seed, const std::function<void(Disc&, Random&)>& shape) {
-    StageBuilder stage = makeRoom();
+    StageBuilder stage = makeDiscRoom();
     Random random(seed);
     for (int i = 0; i < count; ++i) {
         Disc disc = placeDisc(random);
@@ -84,7 +84,7 @@ Stage makeScales(double scale) {
 }
 
 Stage makeThroughEye(double distance) {
-    StageBuilder stage = makeRoom();
+    StageBuilder stage = makeDiscRoom();
     Random random(6);
     for (int i = 0; i < 12; ++i) {
         Disc disc;

@@ -9,8 +9,6 @@ namespace binosplat::builtin {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-
 // Grain along x or z, by the longer side the caller names.
 MaterialAt wood(const glm::vec3& dark, const glm::vec3& light, bool along_x, std::uint32_t seed) {
     return [=](const glm::vec3& p, const glm::vec2&) {

@@ -8,7 +8,6 @@ namespace binosplat::builtin {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
 const glm::vec3 kHaze(0.62f, 0.74f, 0.86f);
 const glm::vec3 kEye(0.0f, -1.5f, 1.0f);  // what the window is seen from, about
 

@@ -11,7 +11,6 @@ namespace binosplat::builtin {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
 constexpr float kDadoHeight = 0.92f;  // top of the wooden panelling
 const glm::vec3 kWhitePaint(0.80f, 0.79f, 0.75f);
 

@@ -3,12 +3,11 @@
 #include "engine/scene/builtin/gloss.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace binosplat::builtin {
 
 namespace {
-
-constexpr float kPi = 3.14159265358979f;
 
 struct Quadrature {
     std::array<glm::vec3, 32> directions;
@@ -22,10 +21,11 @@ Quadrature makeQuadrature() {
     Quadrature result;
     for (std::size_t ring = 0; ring < 4; ++ring) {
         for (std::size_t i = 0; i < 8; ++i) {
-            const float angle = kPi / 4.0f * (static_cast<float>(i) + 0.5f), radius = std::sqrt(1.0f - kNodes[ring] * kNodes[ring]);
+            const float angle = std::numbers::pi_v<float> / 4.0f * (static_cast<float>(i) + 0.5f),
+                        radius = std::sqrt(1.0f - kNodes[ring] * kNodes[ring]);
             const std::size_t at = ring * 8 + i;
             result.directions[at] = {radius * std::cos(angle), radius * std::sin(angle), kNodes[ring]};
-            result.weights[at] = kWeights[ring] * kPi / 4.0f;
+            result.weights[at] = kWeights[ring] * std::numbers::pi_v<float> / 4.0f;
             result.sh[at] = evaluateSh(result.directions[at]);
         }
     }

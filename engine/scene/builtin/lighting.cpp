@@ -12,7 +12,6 @@ namespace binosplat::builtin {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
 constexpr float kFar = 1e9f;
 
 // The distance at which a ray enters the occluder; kFar if it misses or starts inside (a surface does not shade itself).

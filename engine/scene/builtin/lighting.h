@@ -4,10 +4,13 @@
 
 #include <glm/glm.hpp>
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
 namespace binosplat::builtin {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
 
 // What blocks light: boxes (turned about the vertical) and ellipsoids (upright).
 struct Occluder {

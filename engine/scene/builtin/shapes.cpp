@@ -10,8 +10,6 @@ namespace binosplat::builtin {
 
 namespace {
 
-constexpr float kPi = 3.14159265358979f;
-
 glm::vec3 turn(const glm::vec3& v, float yaw) {
     const float c = std::cos(yaw), s = std::sin(yaw);
     return {c * v.x + s * v.z, v.y, -s * v.x + c * v.z};
