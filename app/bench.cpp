@@ -1,5 +1,6 @@
 // `binosplat bench`: error against run time, over scenes, splat counts, sizes, headsets and views.
 #include "app/bench.h"
+#include "app/load.h"
 
 #include "app/bench_point.h"
 #include "app/commands.h"
@@ -84,7 +85,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
         for (const std::string& source : plan.scenes) {
             for (const BenchSeries& series : plan.series) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
-                    const Scene scene = loadScene(source, splats);
+                    const Scene scene = loadAs(options.run.draw, source, splats);
                     std::ranges::move(benchScene(context, options, plan, series, source, scene, progress), std::back_inserter(run.results));
                 }
             }

@@ -1,4 +1,4 @@
-// `binosplat convert`: any scene that can be read, as a 2DGS PLY or an SPZ file.
+// `binosplat convert`: any scene that can be read, as a PLY or an SPZ file.
 #include "app/commands.h"
 #include "app/load.h"
 #include "engine/error.h"
@@ -17,7 +17,7 @@ void runConvert(const ConvertOptions& options) {
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
 
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.scene, 0, notes);
+    const Scene scene = loadWithProgress(options.draw, options.scene, notes);
     {
         ProgressLine line("writing " + out);
         const Progress progress = [&](double share) { line.show(share); };
@@ -27,7 +27,8 @@ void runConvert(const ConvertOptions& options) {
             writePly(scene, out, progress);
         }
     }
-    fmt::print("{}: {} splats, SH degree {}, {} bytes\n", out, scene.size(), scene.sh_degree, std::filesystem::file_size(options.out));
+    fmt::print("{}: {} splats ({}), SH degree {}, {} bytes\n", out, scene.size(), scene.isGaussian3d() ? "3D Gaussians" : "discs",
+               scene.sh_degree, std::filesystem::file_size(options.out));
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
 }
 

@@ -19,11 +19,19 @@ void printQuantiles(const char* name, const std::array<float, 5>& quantiles) {
     printRow(name, "{:.4g}  {:.4g}  {:.4g}  {:.4g}  {:.4g}", quantiles[0], quantiles[1], quantiles[2], quantiles[3], quantiles[4]);
 }
 
+std::string nameKind(const Scene& scene, const LoadNotes& notes) {
+    if (!notes.three_scales) { return "2DGS: drawn as discs"; }
+    const std::string how = !scene.isGaussian3d() ? "flattened to discs"
+                            : scene.antialiased   ? "drawn as 3D Gaussians, antialiased"
+                                                  : "drawn as 3D Gaussians";
+    return fmt::format("3DGS: {}; the median splat is {:.3g} times as thick as its second axis", how, notes.median_flatness);
+}
+
 }  // namespace
 
 void runInfo(const InfoOptions& options) {
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.scene, 0, notes);
+    const Scene scene = loadWithProgress(options.draw, options.scene, notes);
     const SceneSummary summary = describeScene(scene, &notes);
 
     printRow("scene", "{}", options.scene);
@@ -36,8 +44,7 @@ void runInfo(const InfoOptions& options) {
     for (int band = 1; band <= summary.sh_degree; ++band) {
         printRow("", "band {}: {} splats", band, summary.splats_using_band[static_cast<std::size_t>(band)]);
     }
-    printRow("kind", "{}",
-             notes.three_scales ? fmt::format("3DGS; shortest axis dropped, median flatness {:.3g}", notes.median_flatness) : "2DGS");
+    printRow("kind", "{}", nameKind(scene, notes));
     printRow("invisible splats", "{} (opacity under 1/255)", summary.invisible_splats);
     printRow("quantiles", "0, 5, 50, 95, 100 % of the splats");
     printQuantiles("  opacity", summary.opacity_quantiles);
@@ -45,9 +52,9 @@ void runInfo(const InfoOptions& options) {
     printQuantiles("  aspect", summary.aspect_quantiles);
     printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes,
              static_cast<double>(summary.host_bytes) / (1024.0 * 1024.0));
-    const std::uint64_t device_bytes = summary.splats * deviceBytesPerSplat(summary.sh_degree);
+    const std::uint64_t device_bytes = summary.splats * deviceBytesPerSplat(summary.sh_degree, summary.gaussian_3d);
     printRow("", "{} bytes ({:.1f} MiB) on the GPU, {} a splat", device_bytes, static_cast<double>(device_bytes) / (1024.0 * 1024.0),
-             deviceBytesPerSplat(summary.sh_degree));
+             deviceBytesPerSplat(summary.sh_degree, summary.gaussian_3d));
     for (const std::string& phrase : summary.left_out) { printRow("left out", "{}", phrase); }
     for (const std::string& line : notes.lines) { printRow("note", "{}", line); }
 }

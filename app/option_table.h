@@ -10,6 +10,8 @@ struct OptionRow {
     const char* help;
 };
 
+inline constexpr const char* kFlattenHelp = "draw 3D Gaussians as discs, without the shortest axis of each";
+
 inline constexpr OptionRow kCameraRows[] = {
     {"eye", "camera", "x,y,z", "middle of the eyes (default: a view of the whole scene)"},
     {"look", "camera", "x,y,z", "point looked at"},
@@ -42,6 +44,8 @@ inline constexpr OptionRow kStereoRows[] = {
 };
 
 inline constexpr OptionRow kRunRows[] = {
+    {"flatten", "scene", "", kFlattenHelp},
+    {"antialiased", "scene", "", "dim small 3D Gaussians, as scenes trained with antialiasing want it (default: what the file says)"},
     {"metres-per-unit", "scene", "M", "metres in one scene unit (default 1)"},
     {"memory-limit", "run", "MIB", "device memory that may be used (default: all there is)"},
     {"device", "run", "NAME|INDEX", "GPU to use: part of its name, or its number (default: the most capable)"},

@@ -29,7 +29,7 @@ constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 struct CommandLine {
     std::map<std::string, std::string> values;
     std::map<std::string, CLI::Option*> given;
-    bool center_roi = false;
+    std::map<std::string, bool> flags;
 };
 
 void addRows(CLI::App& command, CommandLine& line, std::span<const OptionRow> rows, const char* group) {
@@ -37,7 +37,7 @@ void addRows(CLI::App& command, CommandLine& line, std::span<const OptionRow> ro
         const std::string name = std::string("--") + row.key;
         const bool is_flag = *row.value == '\0';
         CLI::Option* option =
-            is_flag ? command.add_flag(name, line.center_roi, row.help) : command.add_option(name, line.values[row.key], row.help);
+            is_flag ? command.add_flag(name, line.flags[row.key], row.help) : command.add_option(name, line.values[row.key], row.help);
         if (!is_flag) { option->type_name(row.value); }
         option->group(group);
         line.given[row.key] = option;
@@ -62,7 +62,7 @@ void addViewRows(CLI::App& command, CommandLine& line, std::string& config) {
     for (const OptionRow& row : kStereoRows) {
         if (std::string_view(row.key) != "ipd") { addRows(command, line, std::span(&row, 1), "Stereo"); }
     }
-    addRows(command, line, std::span(kRunRows, 2), "Run");  // without the last: the device is the headset's
+    addRows(command, line, std::span(kRunRows).first(std::size(kRunRows) - 1), "Run");  // without the last: the device is the headset's
     command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
 }
 
@@ -71,7 +71,7 @@ Settings commandLineLayer(const CommandLine& line) {
     for (const auto& [key, option] : line.given) {
         if (option->count() == 0) { continue; }
         const bool is_flag = !line.values.contains(key);
-        layer.emplace(key, Setting{"--" + key, {is_flag ? (line.center_roi ? "true" : "false") : line.values.at(key)}});
+        layer.emplace(key, Setting{"--" + key, {is_flag ? (line.flags.at(key) ? "true" : "false") : line.values.at(key)}});
     }
     return layer;
 }
@@ -154,6 +154,8 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });
     read("hole-error", [&](const Setting& s) { stereo.hole_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("newcomer-error", [&](const Setting& s) { stereo.newcomer_error = readNumber(s, 0.0, kMaxExpectedError); });
+    read("flatten", [&](const Setting& s) { options.draw.flatten = readFlag(s); });
+    read("antialiased", [&](const Setting& s) { options.draw.antialiased = readFlag(s); });
     read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
     read("memory-limit", [&](const Setting& s) { options.memory_limit_mib = readCount(s, 1, kMaxMemoryMib); });
     read("device", [&](const Setting& s) { options.device = readText(s); });
@@ -161,7 +163,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
 }
 
 Options parseOptions(int argument_count, const char* const* arguments) {
-    CLI::App app{"binosplat: stereo pictures of 2D Gaussian splatting scenes", "binosplat"};
+    CLI::App app{"binosplat: stereo pictures of Gaussian splatting scenes", "binosplat"};
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
@@ -202,6 +204,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     InfoOptions info;
     CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");
     info_command->add_option("SCENE", info.scene, "file, directory or builtin:NAME")->required();
+    info_command->add_flag("--flatten", info.draw.flatten, kFlattenHelp);
 
     SceneOptions scene;
     std::string splats;
@@ -212,9 +215,10 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     scene_command->add_option("--out", scene.out, "file to write")->required()->type_name("FILE.ply");
 
     ConvertOptions convert;
-    CLI::App* convert_command = app.add_subcommand("convert", "Write a scene as a 2DGS PLY or an SPZ file");
+    CLI::App* convert_command = app.add_subcommand("convert", "Write a scene as a PLY or an SPZ file");
     convert_command->add_option("SCENE", convert.scene, "file, directory or builtin:NAME")->required();
     convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
+    convert_command->add_flag("--flatten", convert.draw.flatten, kFlattenHelp);
 
     StabilityOptions stability;
     CLI::App* stability_command = app.add_subcommand("stability", "Hold stiff and extreme cases against the float64 twin");

@@ -46,10 +46,17 @@ struct StereoOptions {
 
 inline constexpr double kDefaultIpdMetres = 0.063;
 
+// How a scene of 3D Gaussians is drawn; discs have no choice.
+struct DrawOptions {
+    bool flatten = false;      // as discs, without their shortest axis
+    bool antialiased = false;  // with opacities that the low-pass dims, also where the file does not say so
+};
+
 // What `render` and `bench` have in common.
 struct RunOptions {
     CameraOptions camera;
     StereoOptions stereo;
+    DrawOptions draw;
     double metres_per_unit = 1.0;
     std::string device;
     std::uint64_t memory_limit_mib = 0;  // of device memory; 0: none
@@ -88,6 +95,7 @@ struct ViewOptions {
 
 struct InfoOptions {
     std::string scene;
+    DrawOptions draw;
 };
 
 struct SceneOptions {
@@ -98,6 +106,7 @@ struct SceneOptions {
 
 struct ConvertOptions {
     std::string scene;
+    DrawOptions draw;
     std::filesystem::path out;
 };
 

@@ -61,6 +61,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["edge-bounds"] = stereo.edge_bounds;
     json["hole-error"] = stereo.hole_error;
     json["newcomer-error"] = stereo.newcomer_error;
+    json["flatten"] = options.run.draw.flatten;
+    json["antialiased"] = options.run.draw.antialiased;
     json["metres-per-unit"] = options.run.metres_per_unit;
     return json;
 }

@@ -1,5 +1,6 @@
 // 1: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
-// the planes of the view by its support function, and its low-pass by the projected centre. The last workgroup states the list of them.
+// the planes of the view by its support function, and its low-pass by the projected centre; a 3D Gaussian by its box on the screen.
+// The last workgroup states the list of them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -8,7 +9,11 @@
 #include "lib/last_group.glsl"
 #include "lib/list.glsl"
 #include "lib/sums.glsl"
+
+layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
+
 #include "lib/splat.glsl"
+#include "lib/gaussian.glsl"
 #include "lib/eye.glsl"
 
 layout(local_size_x = kGroupSize) in;
@@ -26,10 +31,21 @@ float reachAlong(CameraSplat splat, float radius, vec3 normal) {
 // Whether any of the disc lies on the side of the plane through the eye that `normal` points to.
 bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return dot(splat.centre, normal) + reachAlong(splat, radius, normal) >= 0; }
 
+// Whether a box around the projected centre meets the picture.
+bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
+    const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
+    return all(greaterThan(centre_px, -half_px)) && all(lessThan(centre_px, vec2(eye.size_px) + half_px));
+}
+
 // Comparisons are written so that NaN is not visible.
 bool isVisible(CameraSplat splat, EyeView eye) {
     const float cut = cutOf(splat.opacity);
     if (!(cut > 0)) { return false; }
+    if (kSplatKind != kDiscs) {
+        if (!(splat.centre.z > eye.near)) { return false; }
+        const ScreenGaussian g = screenGaussian(splat, eye);
+        return isOnScreen(splat, eye, sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding);
+    }
     const float radius = sqrt(cut);
     if (!(splat.centre.z + reachAlong(splat, radius, vec3(0, 0, 1)) >= eye.near)) { return false; }
     const vec2 to_far_edge = vec2(eye.size_px) - eye.principal_px;
@@ -39,9 +55,7 @@ bool isVisible(CameraSplat splat, EyeView eye) {
         reachesInside(splat, radius, vec3(0, -eye.focal_px.y, to_far_edge.y))) {
         return true;
     }
-    const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
-    const vec2 circle_px = vec2(sqrt(cut / kLowPass));
-    return splat.centre.z > eye.near && all(greaterThan(centre_px, -circle_px)) && all(lessThan(centre_px, vec2(eye.size_px) + circle_px));
+    return splat.centre.z > eye.near && isOnScreen(splat, eye, vec2(sqrt(cut / kLowPass)));
 }
 
 void main() {

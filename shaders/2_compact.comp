@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
+const uint kSplatKind = kDiscs;  // of all kinds the centre alone
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 

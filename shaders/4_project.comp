@@ -7,7 +7,14 @@
 #include "lib/last_group.glsl"
 #include "lib/list.glsl"
 #include "lib/sums.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { ProjectPass pass; };
+layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
+layout(constant_id = 2) const uint kSplatKind = kDiscs;
+
 #include "lib/splat.glsl"
+#include "lib/gaussian.glsl"
 #include "lib/eye.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
@@ -16,16 +23,26 @@
 #include "lib/tile_mask.glsl"
 #include "lib/sh.glsl"
 
-layout(local_size_x = kGroupSize) in;
-layout(push_constant, scalar) uniform Push { ProjectPass pass; };
-layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
-
 shared uint group_tiles;
 
 // How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
-// the middle of the disc's box, whatever the opacity (as the rasterizer of Huang et al. 2024 bins). For the report alone.
+// the middle of its box, whatever the opacity (as the rasterizers of Huang et al. 2024 and Kerbl et al. 2023 bin). For the report alone.
+uint squareTiles(vec2 middle_px, float radius_px, EyeView eye) {
+    const vec2 tiles = vec2(eye.size_tiles);
+    if (any(isnan(middle_px)) || isnan(radius_px) || isinf(radius_px)) { return eye.size_tiles.x * eye.size_tiles.y; }
+    const vec2 first = clamp(floor((middle_px - radius_px) / float(kTileSize)), vec2(0), tiles);
+    const vec2 end = clamp(floor((middle_px + radius_px + float(kTileSize - 1)) / float(kTileSize)), vec2(0), tiles);
+    const vec2 size = max(end - first, vec2(0));
+    return uint(size.x * size.y);
+}
+
 uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     if (splat.centre.z <= eye.near) { return 0; }
+    if (kSplatKind != kDiscs) {
+        const ScreenGaussian g = screenGaussian(splat, eye);
+        const float middle = 0.5 * (g.xx + g.yy), away = length(vec2(0.5 * (g.xx - g.yy), g.xy));
+        return squareTiles(eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px, ceil(3 * sqrt(middle + away)), eye);
+    }
     const vec3 a = splat.scale.x * splat.t_u, b = splat.scale.y * splat.t_v, c = splat.centre;
     const vec3 f = vec3(9, 9, -1) / dot(vec3(9, 9, -1), vec3(a.z * a.z, b.z * b.z, c.z * c.z));
     const vec3 w = vec3(a.z, b.z, c.z);
@@ -34,13 +51,7 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     const vec2 extent = sqrt(max(middle * middle - vec2(dot(f, x * x), dot(f, y * y)), vec2(0)));
     const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
     const vec2 extent_px = eye.focal_px * extent;
-    const float radius_px = ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678));
-    const vec2 tiles = vec2(eye.size_tiles);
-    if (any(isnan(middle_px)) || isnan(radius_px) || isinf(radius_px)) { return eye.size_tiles.x * eye.size_tiles.y; }
-    const vec2 first = clamp(floor((middle_px - radius_px) / float(kTileSize)), vec2(0), tiles);
-    const vec2 end = clamp(floor((middle_px + radius_px + float(kTileSize - 1)) / float(kTileSize)), vec2(0), tiles);
-    const vec2 size = max(end - first, vec2(0));
-    return uint(size.x * size.y);
+    return squareTiles(middle_px, ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678)), eye);
 }
 
 // How many tiles the splat meets that count; `small` has a bit for each where the box is small enough.
@@ -71,7 +82,7 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
 
     const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
     bool has_reference;
-    ProjectedSplat p = projectGeometry(splat, eye, has_reference);
+    ProjectedSplat p = projectSplat(splat, eye, has_reference);
     if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);

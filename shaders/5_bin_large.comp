@@ -4,15 +4,16 @@
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
-#include "lib/splat.glsl"
-#include "lib/outline.glsl"
 #include "lib/tile_set.glsl"
 #include "lib/tile_mask.glsl"
 
 layout(local_size_x = kBinLargeSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
 layout(constant_id = 0) const bool kMasked = false;  // pairs in tiles of the mask alone
+layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
 
+#include "lib/splat.glsl"
+#include "lib/outline.glsl"
 #include "lib/pair.glsl"
 
 void main() {

@@ -8,8 +8,6 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "passes.h"
 #include "lib/group.glsl"
-#include "lib/splat.glsl"
-#include "lib/outline.glsl"
 #include "lib/moving_pixel.glsl"
 
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
@@ -20,8 +18,11 @@ layout(constant_id = 4) const bool kSpread = false;   // and how far its pixels'
 layout(constant_id = 5) const bool kMasked = false;   // the tiles of pass.tile_list alone
 layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // what a moving pixel's depth is
 layout(constant_id = 7) const bool kHalfColours = false;
-layout(local_size_x_id = 8) in;  // kCellsPerTile * kThreadsPerCell
+layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
+layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
 
+#include "lib/splat.glsl"
+#include "lib/outline.glsl"
 #include "lib/picture.glsl"
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
@@ -63,12 +64,12 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
 
 void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px) {
     const ProjectedSplat splat = pass.splats.at[rank];
-    const bool has_reference = hasReference(splat);
+    const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     // Relative to the tile, single precision places the centre to 1e-6 px.
     batch_reference[slot] = has_reference ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
                                           : vec4(middle_px - vec2(tile_px), scale * splat.reference_px);
-    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, has_reference ? kLog2PerRho * kLowPass : 0);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * kLowPass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
     // A subgroup's slots follow one another, so that one lane can set the bits of all; 32 divides the slot of lane 0 or is
@@ -157,7 +158,7 @@ void main() {
                 const float u = reference.z + plane.x * d.x;
                 const float q = depth_form.x + depth_form.y * d.x;
                 // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not even 0.
-                const bool low_pass = plane.w > 0;
+                const bool low_pass = kSplatKind != kDiscs || plane.w > 0;
                 const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
                 const float centre_z = low_pass ? 1 / depth_form.x : 0;
                 float most_open = 0;
@@ -169,10 +170,11 @@ void main() {
                     const float q_p = q + depth_form.z * dy;
                     // A hit beyond the near plane has 0 < 1/z <= 1/near. As bits, negative values and NaN are above that.
                     const float z = 1 / q_p;
-                    const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? (u_p * u_p + v_p * v_p) * (z * z) : kFar;
+                    const float square = u_p * u_p + v_p * v_p;
+                    const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? square * (z * z) : kFar;
                     const float rho2 = rho2_x + plane.w * (dy * dy);
-                    const bool on_disc = rho3 <= rho2;
-                    const float exponent = depth_form.w + (on_disc ? rho3 : rho2);
+                    const bool on_disc = kSplatKind == kDiscs && rho3 <= rho2;
+                    const float exponent = depth_form.w + (kSplatKind != kDiscs ? square : on_disc ? rho3 : rho2);
                     const float opacity = exp2(-exponent);
                     const float alpha = min(kMaxAlpha, opacity);
                     const float full_weight = exponent <= kLog2Of255 ? alpha * max(transmittance[p], 0) : 0;

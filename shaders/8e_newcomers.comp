@@ -4,7 +4,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
+
+layout(constant_id = 1) const uint kSplatKind = kDiscs;
+
 #include "lib/splat.glsl"
+#include "lib/gaussian.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
@@ -56,7 +60,7 @@ void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
     SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
     const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
     bool has_reference;
-    ProjectedSplat p = projectGeometry(splat, eye, has_reference);
+    ProjectedSplat p = projectSplat(splat, eye, has_reference);
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));
@@ -66,7 +70,8 @@ void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
     atomicAdd(pass.counters.at[0].newcomers, 1);
 
     // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen and that of the low-pass.
-    const float area_px = 3.14159265 * (1 / kLowPass + p.inverse_depth * p.inverse_depth / (p.plane_from_pixel.x * abs(p.plane_from_pixel.z)));
+    const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
+    const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / kLowPass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
     const float error = stereo.newcomer_error * splat.opacity;
     const uint steps = uint(min(error * error * pixels, kMaxTileError) * kErrorSteps);

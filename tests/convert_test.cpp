@@ -27,7 +27,7 @@ TEST_CASE("a scene goes through PLY unchanged and through SPZ within its quanta"
     REQUIRE(work.run("convert builtin:slanted-wall a.ply").exit_code == 0);
     const Outcome outcome = work.run("convert a.ply b.spz");
     REQUIRE(outcome.exit_code == 0);
-    CHECK(outcome.output.find("b.spz: 1681 splats, SH degree 0") == 0);
+    CHECK(outcome.output.find("b.spz: 1681 splats (discs), SH degree 0") == 0);
     REQUIRE(work.run("convert b.spz c.ply").exit_code == 0);
     CHECK(fileCount(work) == 3);
 

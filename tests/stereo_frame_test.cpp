@@ -222,8 +222,8 @@ TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
 }
 
 TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a pair and a pixel") {
-    CHECK(deviceBytesPerSplat(0) <= 64);
-    CHECK(deviceBytesPerSplat(3) <= 160);
+    CHECK(deviceBytesPerSplat(0, false) <= 64);
+    CHECK(deviceBytesPerSplat(3, false) <= 160);
     const FrameCapacity capacity{1024, 1024};  // and so both lists grow to what is needed
     for (const auto& [view, most_bytes] :
          {std::pair(viewAtelier(), 160.0), std::pair(test::viewBuiltin("builtin:fence", {256, 256}), 64.0)}) {

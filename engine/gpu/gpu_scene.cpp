@@ -24,7 +24,7 @@ std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (sh
 
 // Where the arrays of a chunk of `capacity` splats lie in its buffer.
 struct ChunkLayout {
-    explicit ChunkLayout(std::uint64_t capacity, int sh_degree) {
+    ChunkLayout(std::uint64_t capacity, int sh_degree, bool gaussian_3d) {
         const auto place = [&](std::uint64_t bytes_per_splat) {
             const std::uint64_t at = bytes;
             bytes += (capacity * bytes_per_splat + 15) / 16 * 16;
@@ -33,11 +33,12 @@ struct ChunkLayout {
         positions = place(sizeof(glm::vec3));
         rotations = place(sizeof(glm::vec4));
         scales = place(sizeof(glm::vec2));
+        thicknesses = place(gaussian_3d ? sizeof(float) : 0);
         opacities = place(sizeof(float));
         base_colours = place(sizeof(glm::uvec2));
         sh = place(shWords(sh_degree) * sizeof(std::uint32_t));
     }
-    std::uint64_t positions = 0, rotations = 0, scales = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
+    std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
 };
 
 // Half floats end at 65504; what lies beyond stays finite.
@@ -52,6 +53,7 @@ std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat)
     const auto values = static_cast<std::uint64_t>(3 * shCoefficientCount(scene.sh_degree));
     // v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN.
     float zero = (p.x + p.y + p.z) * 0.0f + (scale.x + scale.y) * 0.0f + scene.opacities[splat] * 0.0f;
+    if (scene.isGaussian3d()) { zero += scene.thicknesses[splat] * 0.0f; }
     for (std::uint64_t i = splat * values; i < (splat + 1) * values; ++i) { zero += scene.sh[i] * 0.0f; }
     const glm::quat& q = scene.rotations[splat];
     const glm::dvec4 rotation(q.x, q.y, q.z, q.w);
@@ -73,6 +75,7 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
         put(layout.positions, i, scene.positions[splat]);
         put(layout.rotations, i, rotation.value_or(glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)));
         put(layout.scales, i, scene.scales[splat]);
+        if (scene.isGaussian3d()) { put(layout.thicknesses, i, scene.thicknesses[splat]); }
         put(layout.opacities, i, rotation ? scene.opacities[splat] : 0.0f);
         const float* sh = scene.sh.data() + splat * static_cast<std::uint64_t>(coefficients) * 3;
         put(layout.base_colours, i, glm::uvec2(packHalves(sh[0], sh[1]), packHalves(sh[2], 0.0f)));
@@ -85,31 +88,38 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
 
 }  // namespace
 
-std::uint64_t deviceBytesPerSplat(int sh_degree) { return 48 + shWords(sh_degree) * sizeof(std::uint32_t); }
+std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d) {
+    return (gaussian_3d ? 52 : 48) + shWords(sh_degree) * sizeof(std::uint32_t);
+}
 
 GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : sh_degree_(scene.sh_degree) {
+    const bool gaussian_3d = scene.isGaussian3d();
+    if (gaussian_3d) { splat_kind_ = scene.antialiased ? gpu::kAntialiasedGaussians : gpu::kGaussians; }
     check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);
     splat_count_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
     const std::uint64_t most_bytes = std::min(context.maxAllocationBytes(), kMaxChunkBytes);
-    while (chunk_bits_ > 0 && ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_).bytes > most_bytes) {
+    while (chunk_bits_ > 0 &&
+           ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), sh_degree_, gaussian_3d).bytes > most_bytes) {
         --chunk_bits_;
     }
 
     std::vector<gpu::SceneChunk> table;
     const std::uint64_t chunk_splats = 1ull << chunk_bits_;
-    const std::uint64_t upload_splats = std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(sh_degree_)), 1,
-                                                                  std::min(kUploadSplats, std::max(splat_count_, 1u)));
-    const ChunkLayout upload_layout(upload_splats, sh_degree_);
+    const std::uint64_t upload_splats =
+        std::clamp<std::uint64_t>(context.maxAllocationBytes() / (2 * deviceBytesPerSplat(sh_degree_, gaussian_3d)), 1,
+                                  std::min(kUploadSplats, std::max(splat_count_, 1u)));
+    const ChunkLayout upload_layout(upload_splats, sh_degree_, gaussian_3d);
     const Buffer upload(context, "scene upload", upload_layout.bytes, MemoryKind::kUpload);
     Commands commands(context);
     for (std::uint64_t first = 0; first < splat_count_; first += chunk_splats) {
         const std::uint64_t count = std::min<std::uint64_t>(chunk_splats, splat_count_ - first);
-        const ChunkLayout layout(count, sh_degree_);
+        const ChunkLayout layout(count, sh_degree_, gaussian_3d);
         const Buffer& buffer = buffers_.emplace_back(context, fmt::format("scene chunk {}", buffers_.size()), layout.bytes);
         table.push_back({buffer.address<gpu::vec3>(layout.positions), buffer.address<gpu::vec4>(layout.rotations),
-                         buffer.address<gpu::vec2>(layout.scales), buffer.address<float>(layout.opacities),
-                         buffer.address<gpu::uvec2>(layout.base_colours), buffer.address<std::uint32_t>(layout.sh)});
+                         buffer.address<gpu::vec2>(layout.scales), buffer.address<float>(layout.thicknesses),
+                         buffer.address<float>(layout.opacities), buffer.address<gpu::uvec2>(layout.base_colours),
+                         buffer.address<std::uint32_t>(layout.sh)});
         for (std::uint64_t done = 0; done < count; done += upload_splats) {
             const std::uint64_t block = std::min<std::uint64_t>(upload_splats, count - done);
             packSplats(scene, first + done, block, upload_layout, upload.mapped<std::uint8_t>().data());
@@ -120,6 +130,7 @@ GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& p
             copyArray(upload_layout.positions, layout.positions, sizeof(glm::vec3));
             copyArray(upload_layout.rotations, layout.rotations, sizeof(glm::vec4));
             copyArray(upload_layout.scales, layout.scales, sizeof(glm::vec2));
+            if (gaussian_3d) { copyArray(upload_layout.thicknesses, layout.thicknesses, sizeof(float)); }
             copyArray(upload_layout.opacities, layout.opacities, sizeof(float));
             copyArray(upload_layout.base_colours, layout.base_colours, sizeof(glm::uvec2));
             copyArray(upload_layout.sh, layout.sh, shWords(sh_degree_) * sizeof(std::uint32_t));

@@ -1,4 +1,4 @@
-// A scene in device memory: 48 bytes a splat, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
+// A scene in device memory: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -18,6 +18,10 @@ public:
 
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     [[nodiscard]] int shDegree() const { return sh_degree_; }
+    // kDiscs, kGaussians or kAntialiasedGaussians.
+    [[nodiscard]] std::uint32_t splatKind() const { return splat_kind_; }
+    // Likewise for passes that dimming does not matter to: kDiscs or kGaussians.
+    [[nodiscard]] std::uint32_t splatShape() const { return splat_kind_ == gpu::kDiscs ? gpu::kDiscs : gpu::kGaussians; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
@@ -27,12 +31,13 @@ public:
 private:
     std::uint32_t splat_count_ = 0;
     int sh_degree_ = 0;
+    std::uint32_t splat_kind_ = gpu::kDiscs;
     std::uint32_t chunk_bits_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
 };
 
 // Device bytes of one splat.
-std::uint64_t deviceBytesPerSplat(int sh_degree);
+std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d);
 
 }  // namespace binosplat

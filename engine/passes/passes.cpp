@@ -19,29 +19,30 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
 }  // namespace
 
 KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per_cell) {
-    KernelTable table = everyVariant("1_cull", sizeof(gpu::CullPass));
+    KernelTable table = everyVariant("1_cull", sizeof(gpu::CullPass), {{"kSplatKind", 2}});
     append(table, everyVariant("2_compact", sizeof(gpu::CompactPass)));
     append(table, sortKernels(context));
-    append(table, everyVariant("4_project", sizeof(gpu::ProjectPass), {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}}));
+    append(table,
+           everyVariant("4_project", sizeof(gpu::ProjectPass), {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}, {"kSplatKind", 3}}));
     append(table, everyVariant("5_bin", sizeof(gpu::BinPass)));
-    append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}}));
+    append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}, {"kSplatKind", 2}}));
     append(table, everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass)));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
     const auto rasterize = [&](const Kept& kept, std::uint32_t masked) {
-        for (const std::uint32_t depth : {0u, 1u}) {
-            for (const std::uint32_t half_floats : {0u, 1u}) {
-                table.push_back({"7_rasterize",
-                                 sizeof(gpu::RasterizePass),
-                                 {{"kThreadsPerCell", threads},
-                                  {"kDepth", depth},
-                                  {"kMoments", kept.moments},
-                                  {"kMoving", kept.moving},
-                                  {"kSpread", kept.spread},
-                                  {"kMasked", masked},
-                                  {"kDepthChoice", kept.depth_choice},
-                                  {"kHalfColours", half_floats},
-                                  {"local_size_x", gpu::kCellsPerTile * threads}}});
-            }
+        for (std::uint32_t choices = 0; choices < 8; ++choices) {
+            const std::uint32_t depth = choices & 1, half_floats = choices >> 1 & 1, kind = choices >> 2;
+            table.push_back({"7_rasterize",
+                             sizeof(gpu::RasterizePass),
+                             {{"kThreadsPerCell", threads},
+                              {"kDepth", depth},
+                              {"kMoments", kept.moments},
+                              {"kMoving", kept.moving},
+                              {"kSpread", kept.spread},
+                              {"kMasked", masked},
+                              {"kDepthChoice", kept.depth_choice},
+                              {"kHalfColours", half_floats},
+                              {"kSplatKind", kind},
+                              {"local_size_x", gpu::kCellsPerTile * threads}}});
         }
     };
     rasterize({}, 1);
@@ -71,7 +72,7 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
                            const std::string& role) {
     commands.beginPass(role + "1_cull");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass)),
+    commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass), {scene.splatShape()}),
                           gpu::CullPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,
                                         scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(eyes.first),
                                         static_cast<gpu::uint>(eyes.count), buffers.visible.capacity()},
@@ -94,10 +95,10 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                  FrameBuffers::visibleList(list), 32);
 }
 
-const Kernel& Passes::rasterizeKernel(Kept kept, bool masked) {
+const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool masked) {
     return kernels_.get("7_rasterize", sizeof(gpu::RasterizePass),
                         {threads_per_cell_, kept.depth, kept.moments, kept.moving, kept.spread, masked, kept.depth_choice, kept.half_floats,
-                         gpu::kCellsPerTile * threads_per_cell_});
+                         scene.splatShape(), gpu::kCellsPerTile * threads_per_cell_});
 }
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
@@ -125,11 +126,12 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
 
     commands.beginPass(role + "4_project");
     const std::uint32_t masked = tiles.mask.value != 0 ? 1 : 0;
-    commands.dispatchIndirect(kernels_.get("4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(scene.shDegree()), masked}),
-                              gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible,
-                                               buffers.visible.splats(), buffers.visible.tileSets(), buffers.visible.tileCounts(), scratch,
-                                               pairs, counters, tiles.mask, scene.chunkBits(), eye, target.pairs.capacity},
-                              buffers.state, per_visible);
+    commands.dispatchIndirect(
+        kernels_.get("4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(scene.shDegree()), masked, scene.splatKind()}),
+        gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
+                         buffers.visible.tileSets(), buffers.visible.tileCounts(), scratch, pairs, counters, tiles.mask, scene.chunkBits(),
+                         eye, target.pairs.capacity},
+        buffers.state, per_visible);
     commands.beginPass(role + "5_bin");
     const KeyValues& unsorted = target.pairs.pairs;
     const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
@@ -148,7 +150,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
                            ranges,
                            target.size_tiles};
     commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass)), bin, buffers.state, per_visible);
-    commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked}), bin, gpu::kBinLargeGroups);
+    commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked, scene.splatShape()}), bin, gpu::kBinLargeGroups);
     commands.beginPass(role + "6_sort_tiles");
     const KeyValues sorted =
         sort_.record(commands, unsorted, target.pairs.spare, scratch, buffers.state, pair_list, tileBits(target.size_tiles));
@@ -171,9 +173,9 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
                                        .eye = eye,
                                        .row_words = target.row_words};
     if (mask == nullptr) {  // hidden tiles have no pairs, and so become background
-        commands.dispatch(rasterizeKernel(target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
+        commands.dispatch(rasterizeKernel(scene, target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
     } else {
-        commands.dispatchIndirect(rasterizeKernel(target.kept, true), rasterize, buffers.state,
+        commands.dispatchIndirect(rasterizeKernel(scene, target.kept, true), rasterize, buffers.state,
                                   offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
     }
 }

@@ -86,7 +86,7 @@ public:
 private:
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
                 const std::string& role);
-    const Kernel& rasterizeKernel(Kept kept, bool masked);
+    const Kernel& rasterizeKernel(const GpuScene& scene, Kept kept, bool masked);
 
     std::uint32_t threads_per_cell_;
     Sort sort_;

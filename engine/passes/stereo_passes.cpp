@@ -45,7 +45,7 @@ KernelTable stereoKernels() {
     append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
     append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
     append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
-    append(table, everyVariant("8e_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}}));
+    append(table, everyVariant("8e_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
     for (const KernelVariant& variant : everyVariant("8f_resample", sizeof(gpu::ResamplePass),
                                                      {{"kRectified", 2},
                                                       {"kPredictErrors", 2},
@@ -137,7 +137,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
                                       .counters = counters,
                                       .chunk_bits = in.scene.chunkBits(),
                                       .eye = static_cast<gpu::uint>(1 - in.dominant_eye)};
-        commands.dispatchIndirect(kernel("8e_newcomers", pass, {along_rows}), pass, state,
+        commands.dispatchIndirect(kernel("8e_newcomers", pass, {along_rows, in.scene.splatKind()}), pass, state,
                                   counterOffset(offsetof(gpu::StereoCounters, per_visible)));
     }
     {

@@ -1,5 +1,5 @@
 // 1: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside a half-space
-// n.p >= d of the frustum if h(n) < d; r = sqrt(cut) is as far as its opacity lets it reach.
+// n.p >= d of the frustum if h(n) < d; r = sqrt(cut) is as far as its opacity lets it reach. A 3D Gaussian has a box on the screen.
 #include "engine/reference/parallel.h"
 #include "engine/reference/splat.h"
 
@@ -17,7 +17,8 @@ struct Frustum {
     }
 
     // Written so that NaN fails.
-    [[nodiscard]] bool mayTouch(const CameraSplat& splat) const {
+    [[nodiscard]] bool mayTouch(const CameraSplat& splat, bool gaussian) const {
+        if (gaussian) { return splat.c.z > near && gaussianTouches(splat); }
         const double reach = std::sqrt(splat.cut);
         const auto support = [&](const glm::dvec3& normal) {
             return glm::dot(normal, splat.c) + reach * std::hypot(glm::dot(normal, splat.a), glm::dot(normal, splat.b));
@@ -35,10 +36,21 @@ private:
     static constexpr double kSlackPx = 1e-6;
 
     [[nodiscard]] bool lowPassTouches(const CameraSplat& splat) const {
+        const glm::dvec2 beyond = beyondPicture(splat);
+        return kLowPassFactor * glm::dot(beyond, beyond) <= splat.cut;
+    }
+
+    [[nodiscard]] bool gaussianTouches(const CameraSplat& splat) const {
+        const ScreenGaussian g = screenGaussian(splat, frame);
+        const glm::dvec2 beyond = glm::abs(beyondPicture(splat)), reach = glm::sqrt(splat.cut * glm::dvec2(g.xx, g.yy));
+        return beyond.x <= reach.x && beyond.y <= reach.y;
+    }
+
+    // From the picture to the projected centre, where that lies outside.
+    [[nodiscard]] glm::dvec2 beyondPicture(const CameraSplat& splat) const {
         const Intrinsics& k = frame.intrinsics;
         const glm::dvec2 centre(k.fx * splat.c.x / splat.c.z + k.cx, k.fy * splat.c.y / splat.c.z + k.cy);
-        const glm::dvec2 beyond = centre - glm::clamp(centre, first, last);
-        return kLowPassFactor * glm::dot(beyond, beyond) <= splat.cut;
+        return centre - glm::clamp(centre, first, last);
     }
 
     double near;
@@ -58,7 +70,7 @@ std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, co
         for (std::size_t i = begin; i < end; ++i) {
             for (const Frustum& frustum : frusta) {
                 const std::optional<CameraSplat> splat = toCamera(scene, i, frustum.frame);
-                if (splat && frustum.mayTouch(*splat)) {
+                if (splat && frustum.mayTouch(*splat, scene.isGaussian3d())) {
                     visible[i] = 1;
                     break;
                 }

@@ -13,6 +13,7 @@ constexpr double kInFrontRatio = 1.01;  // a wall that goes on beyond the border
 
 // The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
+    if (splat.gaussian) { return std::numbers::pi / (splat.plane_from_pixel.x * splat.plane_from_pixel.z); }
     const double low_pass = std::numbers::pi / kLowPassFactor;
     if (!splat.disc) { return low_pass; }
     const double jacobian = splat.plane_from_pixel.x * std::abs(splat.plane_from_pixel.z) / (splat.inverse_depth * splat.inverse_depth);

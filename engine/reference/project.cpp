@@ -41,6 +41,24 @@ void reduce(ProjectedSplat& splat, const CameraSplat& camera, const Intrinsics& 
     }
 }
 
+// The ellipse of a 3D Gaussian, and its opacity after dimming. False where that shows nowhere.
+bool placeGaussian(ProjectedSplat& splat, const CameraSplat& camera, const EyeFrame& eye, bool dimmed) {
+    const ScreenGaussian g = screenGaussian(camera, eye);
+    if (dimmed) {
+        splat.opacity *= std::sqrt(g.sharp_det / g.det);
+        splat.cut = 2.0 * std::log(255.0 * splat.opacity);
+    }
+    if (!(splat.cut > 0.0)) { return false; }
+    splat.gaussian = splat.disc = true;
+    // rho = (yy dx^2 - 2 xy dx dy + xx dy^2) / det as (A dx + B dy)^2 + (D dy)^2.
+    const double a = std::sqrt(g.yy / g.det);
+    splat.plane_from_pixel = {a, -g.xy / g.yy * a, 1.0 / std::sqrt(g.yy)};
+    splat.plane_offset = splat.perspective = glm::dvec2(0.0);
+    splat.inverse_depth = 1.0 / camera.c.z;
+    splat.reach_px = {std::sqrt(splat.cut * g.xx), std::sqrt(splat.cut * g.yy)};
+    return true;
+}
+
 ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame& eye, glm::uvec2 size_px, const Settings& settings) {
     ProjectedSplat splat{};
     const std::optional<CameraSplat> camera = toCamera(scene, index, eye);
@@ -58,7 +76,11 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
     splat.row_w = {a.z, b.z, c.z};
     splat.row_u = k.fx * glm::dvec3(a.x, b.x, c.x) + k.cx * splat.row_w;
     splat.row_v = k.fy * glm::dvec3(a.y, b.y, c.y) + k.cy * splat.row_w;
-    if (splat.disc) { reduce(splat, *camera, k); }
+    if (scene.isGaussian3d()) {
+        if (!splat.low_pass || !placeGaussian(splat, *camera, eye, scene.antialiased)) { return {}; }
+    } else if (splat.disc) {
+        reduce(splat, *camera, k);
+    }
     splat.box_px = boxOfReach(splat, settings, size_px);
     splat.square_box_tiles = countSquareBoxTiles(splat, settings, size_px);
     return splat;

@@ -102,14 +102,19 @@ Span chordOfDisc(const RayPlane& plane, int y, int x0, int x1) {
 
 glm::ivec4 boxOfReach(const ProjectedSplat& splat, const Settings& settings, glm::uvec2 size_px) {
     Interval x, y;
-    if (splat.disc) {
+    if (splat.gaussian) {
+        for (const double side : {-1.0, 1.0}) {
+            x.add(splat.reference_px.x + side * splat.reach_px.x);
+            y.add(splat.reference_px.y + side * splat.reach_px.y);
+        }
+    } else if (splat.disc) {
         const PixelRows rows = pixelRows(splat, size_px);
         x = extremesOfDisc(rows.u, rows.w, splat.cut, settings.near);
         y = extremesOfDisc(rows.v, rows.w, splat.cut, settings.near);
         x = {x.low + rows.origin_px.x, x.high + rows.origin_px.x};
         y = {y.low + rows.origin_px.y, y.high + rows.origin_px.y};
     }
-    if (splat.low_pass) {
+    if (splat.low_pass && !splat.gaussian) {
         const double radius = std::sqrt(splat.cut / kLowPassFactor);
         for (const double side : {-radius, radius}) {
             x.add(splat.reference_px.x + side);
@@ -122,17 +127,9 @@ glm::ivec4 boxOfReach(const ProjectedSplat& splat, const Settings& settings, glm
     return {columns.begin, lines.begin, columns.end, lines.end};
 }
 
-std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& settings, glm::uvec2 size_px) {
-    if (!(splat.depth > settings.near)) { return 0; }
-    // The public rasterizer's box, flaws included: the conic at 3 sigma, no smaller than 3 sigma of the low-pass.
-    constexpr double kSigmas = 3.0;
-    const glm::dvec3 signs(kSigmas * kSigmas, kSigmas * kSigmas, -1.0);
-    const glm::dvec3& w = splat.row_w;
-    const glm::dvec3 f = signs / glm::dot(signs, w * w);
-    const glm::dvec2 centre(glm::dot(f, splat.row_u * w), glm::dot(f, splat.row_v * w));
-    const double extent_x = centre.x * centre.x - glm::dot(f, splat.row_u * splat.row_u);
-    const double extent_y = centre.y * centre.y - glm::dot(f, splat.row_v * splat.row_v);
-    const double radius = std::ceil(std::max(std::sqrt(std::max({extent_x, extent_y, 1e-4})), kSigmas * std::sqrt(0.5)));
+namespace {
+
+std::uint64_t countTilesOfSquare(const glm::dvec2& centre, double radius, glm::uvec2 size_px) {
     const glm::dvec2 grid(tileGrid(size_px));
     const auto countTiles = [&](double middle, double last) {
         const double begin = std::clamp(std::floor((middle - radius) / kTileSize), 0.0, last);
@@ -143,6 +140,29 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
         return static_cast<std::uint64_t>(grid.x * grid.y);
     }
     return countTiles(centre.x, grid.x) * countTiles(centre.y, grid.y);
+}
+
+}  // namespace
+
+std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& settings, glm::uvec2 size_px) {
+    if (!(splat.depth > settings.near)) { return 0; }
+    constexpr double kSigmas = 3.0;
+    if (splat.gaussian) {
+        const glm::dvec2 variance = splat.reach_px * splat.reach_px / splat.cut;
+        // xy = -B/A yy, from the form.
+        const double xy = -splat.plane_from_pixel.y / splat.plane_from_pixel.x * variance.y;
+        const double longest = 0.5 * (variance.x + variance.y) + std::hypot(0.5 * (variance.x - variance.y), xy);
+        return countTilesOfSquare(splat.reference_px, std::ceil(kSigmas * std::sqrt(longest)), size_px);
+    }
+    // The public rasterizer's box, flaws included: the conic at 3 sigma, no smaller than 3 sigma of the low-pass.
+    const glm::dvec3 signs(kSigmas * kSigmas, kSigmas * kSigmas, -1.0);
+    const glm::dvec3& w = splat.row_w;
+    const glm::dvec3 f = signs / glm::dot(signs, w * w);
+    const glm::dvec2 centre(glm::dot(f, splat.row_u * w), glm::dot(f, splat.row_v * w));
+    const double extent_x = centre.x * centre.x - glm::dot(f, splat.row_u * splat.row_u);
+    const double extent_y = centre.y * centre.y - glm::dot(f, splat.row_v * splat.row_v);
+    const double radius = std::ceil(std::max(std::sqrt(std::max({extent_x, extent_y, 1e-4})), kSigmas * std::sqrt(0.5)));
+    return countTilesOfSquare(centre, radius, size_px);
 }
 
 std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1) {

@@ -1,6 +1,6 @@
 // The float64 twins of the GPU passes: same names, same order, no shared arithmetic. They are the truth tests compare with.
 // Each function is one pass of shaders/N_name.comp; `render` runs them all. Source of the equations: DESIGN "what a pixel is"
-// (2DGS, Huang et al. 2024, section 4).
+// (2DGS, Huang et al. 2024, section 4; 3DGS, Kerbl et al. 2023, section 4).
 #pragma once
 
 #include "engine/geometry.h"
@@ -29,6 +29,8 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
 // unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
 // plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
+// Of a 3D Gaussian (`gaussian`) u and v themselves stand there for u/z and v/z; 1/z is the centre's, and there is no low-pass beside the
+// one in its plane_from_pixel.
 // A splat that can show nowhere (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
@@ -37,11 +39,13 @@ struct ProjectedSplat {
     glm::dvec2 perspective;
     double inverse_depth;
     bool low_pass;
-    bool disc;     // false: the plane holds the eye, so no ray meets it; only the low-pass is left
-    double depth;  // c.z, camera z of the centre
-    double cut;    // rho at which alpha falls to 1/255: 2 ln(255 o)
-    double opacity;
-    glm::dvec3 colour;  // max(0, 0.5 + SH(d))
+    bool gaussian;
+    bool disc;            // false: the plane holds the eye, so no ray meets it; only the low-pass is left
+    double depth;         // c.z, camera z of the centre
+    double cut;           // rho at which alpha falls to 1/255: 2 ln(255 o)
+    double opacity;       // dimmed, where the scene says so
+    glm::dvec2 reach_px;  // of a 3D Gaussian: half its box on the screen
+    glm::dvec3 colour;    // max(0, 0.5 + SH(d))
     // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W likewise; the twin's own
     // rasterizer uses these and not the reduced form above.
     glm::dvec3 row_u, row_v, row_w;

@@ -14,6 +14,8 @@ inline constexpr double kMaxAlpha = 0.99;
 inline constexpr double kMinTransmittance = 1e-4;
 // sigma = sqrt(2)/2 px, so rho2 = |offset|^2 / sigma^2 = 2 |offset|^2.
 inline constexpr double kLowPassFactor = 2.0;
+// 3DGS's low-pass: variance in px^2 that is added on the screen.
+inline constexpr double kScreenVariance = 0.3;
 // Below this sine between the line of sight and the plane, the plane holds the eye as far as float64 can tell.
 inline constexpr double kMinPlaneSine = 1e-14;
 
@@ -37,11 +39,39 @@ struct EyeFrame {
     glm::dvec2 size_px;
 };
 
-// The disc u a + v b + c in camera space, u^2 + v^2 < cut.
+// The disc u a + v b + c in camera space, u^2 + v^2 < cut; or a 3D Gaussian about c with the axes a, b and w.
 struct CameraSplat {
     glm::dvec3 a, b, c;
     double cut;  // 2 ln(255 o), positive
+    glm::dvec3 w;
 };
+
+// A 3D Gaussian on the screen: Sigma2 = J Sigma J^T + kScreenVariance, with J the projection's derivative at the centre, x/z and y/z held
+// within the picture enlarged by 0.3 of its half width and height on each side.
+struct ScreenGaussian {
+    double xx, xy, yy, det;
+    double sharp_det;  // without the low-pass
+};
+
+inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& eye) {
+    const Intrinsics& k = eye.intrinsics;
+    const glm::dvec2 focal(k.fx, k.fy), principal(k.cx, k.cy), border = 0.3 * 0.5 * eye.size_px;
+    const glm::dvec2 slope =
+        glm::clamp(glm::dvec2(splat.c) / splat.c.z, (-principal - border) / focal, (eye.size_px - principal + border) / focal);
+    const auto project = [&](const glm::dvec3& axis) { return focal / splat.c.z * (glm::dvec2(axis) - slope * axis.z); };
+    const glm::dvec2 a = project(splat.a), b = project(splat.b), w = project(splat.w);
+    const auto cross = [](const glm::dvec2& p, const glm::dvec2& q) { return p.x * q.y - p.y * q.x; };
+    ScreenGaussian g{};
+    const double sharp_xx = a.x * a.x + b.x * b.x + w.x * w.x, sharp_yy = a.y * a.y + b.y * b.y + w.y * w.y;
+    g.xx = sharp_xx + kScreenVariance;
+    g.xy = a.x * a.y + b.x * b.y + w.x * w.y;
+    g.yy = sharp_yy + kScreenVariance;
+    // xx yy - xy^2 as a sum of squares (Cauchy and Binet): of a needle the difference would keep no digit.
+    const double ab = cross(a, b), aw = cross(a, w), bw = cross(b, w);
+    g.sharp_det = ab * ab + aw * aw + bw * bw;
+    g.det = g.sharp_det + kScreenVariance * (sharp_xx + sharp_yy) + kScreenVariance * kScreenVariance;
+    return g;
+}
 
 // Nothing for a splat that can show nowhere: opacity at or below 1/255, or an attribute that is not finite.
 inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat, const EyeFrame& eye) {
@@ -53,10 +83,11 @@ inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat
     const glm::dmat3 disc = glm::mat3_cast(glm::dquat(stored.w, stored.x, stored.y, stored.z) /
                                            std::sqrt(static_cast<double>(stored.w) * stored.w + static_cast<double>(stored.x) * stored.x +
                                                      static_cast<double>(stored.y) * stored.y + static_cast<double>(stored.z) * stored.z));
-    const CameraSplat result{static_cast<double>(scene.scales[splat].x) * (eye.camera_from_world * disc[0]),
-                             static_cast<double>(scene.scales[splat].y) * (eye.camera_from_world * disc[1]),
-                             eye.camera_from_world * from_eye, cut};
-    if (!isFinite(result.a) || !isFinite(result.b) || !isFinite(result.c)) { return std::nullopt; }
+    const CameraSplat result{
+        static_cast<double>(scene.scales[splat].x) * (eye.camera_from_world * disc[0]),
+        static_cast<double>(scene.scales[splat].y) * (eye.camera_from_world * disc[1]), eye.camera_from_world * from_eye, cut,
+        scene.isGaussian3d() ? static_cast<double>(scene.thicknesses[splat]) * (eye.camera_from_world * disc[2]) : glm::dvec3(0.0)};
+    if (!isFinite(result.a) || !isFinite(result.b) || !isFinite(result.c) || !isFinite(result.w)) { return std::nullopt; }
     return result;
 }
 
@@ -88,6 +119,20 @@ struct RayPlane {
 };
 
 inline RayPlane rayPlane(const ProjectedSplat& splat, glm::uvec2 size_px, double near) {
+    if (splat.gaussian) {
+        const glm::dvec3& plane = splat.plane_from_pixel;
+        const double inverse_depth = splat.inverse_depth;
+        return {splat.reference_px,
+                {0.0, 0.0, inverse_depth},
+                {plane.x * inverse_depth, 0.0, 0.0},
+                {plane.y * inverse_depth, plane.z * inverse_depth, 0.0},
+                splat.reference_px,
+                splat.depth,
+                splat.cut,
+                near,
+                true,
+                false};
+    }
     const PixelRows rows = pixelRows(splat, size_px);
     const glm::dvec3 across = glm::cross(rows.u, rows.v);
     const double inverse_det = 1.0 / glm::dot(rows.w, across);

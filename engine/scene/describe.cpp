@@ -43,7 +43,7 @@ void listLeftOut(const LoadNotes* notes, SceneSummary& summary) {
         summary.left_out.push_back(fmt::format("{} splats of opacity under 1/255", summary.invisible_splats));
     }
     if (notes == nullptr) { return; }
-    if (notes->three_scales) { summary.left_out.emplace_back("the shortest axis of each splat"); }
+    if (notes->three_scales && !summary.gaussian_3d) { summary.left_out.emplace_back("the shortest axis of each splat"); }
     const std::uint64_t broken = notes->skipped_not_finite + notes->skipped_zero_rotation;
     if (broken > 0) { summary.left_out.push_back(fmt::format("{} broken splats", broken)); }
 }
@@ -52,13 +52,14 @@ void listLeftOut(const LoadNotes* notes, SceneSummary& summary) {
 
 std::uint64_t sceneMemoryBytes(const Scene& scene) {
     return scene.positions.size() * sizeof(glm::vec3) + scene.rotations.size() * sizeof(glm::quat) +
-           scene.scales.size() * sizeof(glm::vec2) + (scene.opacities.size() + scene.sh.size()) * sizeof(float);
+           scene.scales.size() * sizeof(glm::vec2) + (scene.thicknesses.size() + scene.opacities.size() + scene.sh.size()) * sizeof(float);
 }
 
 SceneSummary describeScene(const Scene& scene, const LoadNotes* notes) {
     SceneSummary summary;
     summary.splats = scene.size();
     summary.sh_degree = scene.sh_degree;
+    summary.gaussian_3d = scene.isGaussian3d();
     summary.host_bytes = sceneMemoryBytes(scene);
     if (scene.size() > 0) { summary.min_position = summary.max_position = scene.positions[0]; }
     for (const glm::vec3& position : scene.positions) {

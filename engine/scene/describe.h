@@ -14,6 +14,7 @@ struct SceneSummary {
     std::uint64_t splats = 0;
     glm::vec3 min_position{0.0f}, max_position{0.0f};  // of the centres; zero for an empty scene
     int sh_degree = 0;
+    bool gaussian_3d = false;                                         // otherwise all splats are discs
     std::array<std::uint64_t, kMaxShDegree + 1> splats_using_band{};  // splats with a non-zero coefficient in each SH band
     // Quantiles 0, 0.05, 0.5, 0.95, 1 over the splats; scale is the longer axis, aspect the shorter over the longer.
     std::array<float, 5> opacity_quantiles{}, scale_quantiles{}, aspect_quantiles{};

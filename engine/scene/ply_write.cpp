@@ -18,7 +18,9 @@ std::string makeHeader(const Scene& scene) {
     const auto property = [&header](const std::string& name) { header += "property float " + name + "\n"; };
     for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) { property(name); }
     for (int i = 0; i < 3 * (shCoefficientCount(scene.sh_degree) - 1); ++i) { property(fmt::format("f_rest_{}", i)); }
-    for (const char* name : {"opacity", "scale_0", "scale_1", "rot_0", "rot_1", "rot_2", "rot_3"}) { property(name); }
+    for (const char* name : {"opacity", "scale_0", "scale_1"}) { property(name); }
+    if (scene.isGaussian3d()) { property("scale_2"); }
+    for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) { property(name); }
     return header + "end_header\n";
 }
 
@@ -34,8 +36,9 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
         for (std::size_t k = 1; k < coefficients; ++k) { *row++ = sh[3 * k + channel]; }
     }
-    put({storedOpacity(scene.opacities[splat]), storedScale(scene.scales[splat].x), storedScale(scene.scales[splat].y), q.w, q.x, q.y,
-         q.z});
+    put({storedOpacity(scene.opacities[splat]), storedScale(scene.scales[splat].x), storedScale(scene.scales[splat].y)});
+    if (scene.isGaussian3d()) { put({storedScale(scene.thicknesses[splat])}); }
+    put({q.w, q.x, q.y, q.z});
     return row;
 }
 
@@ -47,7 +50,7 @@ void writePly(const Scene& scene, const std::string& path, const Progress& progr
     file.write(header.data(), header.size());
 
     constexpr std::size_t kBlockRows = 4096;
-    const std::size_t width = 16 + 3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
+    const std::size_t width = (scene.isGaussian3d() ? 17 : 16) + 3 * (static_cast<std::size_t>(shCoefficientCount(scene.sh_degree)) - 1);
     std::vector<float> rows(kBlockRows * width);
     for (std::size_t done = 0; done < scene.size();) {
         if (progress) { progress(static_cast<double>(done) / static_cast<double>(scene.size())); }

@@ -79,6 +79,16 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 
 }  // namespace
 
+void flatten(Scene& scene, LoadNotes& notes) {
+    if (!scene.isGaussian3d()) { return; }
+    scene.thicknesses = {};
+    scene.antialiased = false;
+    notes.lines.push_back(fmt::format(
+        "{}: three scales a splat (3DGS), flattened to discs by dropping the shortest axis of each; the median splat is {:.2f} times "
+        "as thick as its second axis, so surfaces may look more translucent than as trained",
+        scene.name, notes.median_flatness));
+}
+
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNotes* notes, const Progress& progress) {
     LoadNotes ignored;
     LoadNotes& met = notes != nullptr ? *notes : ignored;

@@ -1,4 +1,4 @@
-// A scene of 2D Gaussian splats on the host, as float32 after the activations of DESIGN's "what a pixel is".
+// A scene of Gaussian splats on the host, 2D (discs) or 3D, as float32 after the activations of DESIGN's "what a pixel is".
 #pragma once
 
 #include <glm/glm.hpp>
@@ -22,11 +22,14 @@ struct Scene {
     std::vector<glm::vec3> positions;  // centre p, world, scene units
     std::vector<glm::quat> rotations;  // unit; columns of its matrix are t_u, t_v, t_w
     std::vector<glm::vec2> scales;     // s_u, s_v = exp(stored), scene units
+    std::vector<float> thicknesses;    // of 3D Gaussians: s_w, the shortest of the three, along t_w; empty: all splats are discs
     std::vector<float> opacities;      // o = sigmoid(stored), 0 to 1
     std::vector<float> sh;             // sh[(splat * shCoefficientCount(sh_degree) + k) * 3 + channel]
     int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
+    bool antialiased = false;          // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
+    [[nodiscard]] bool isGaussian3d() const { return !thicknesses.empty(); }
 };
 
 // What loading met on the way, for `info`, the report and the user.
@@ -35,7 +38,7 @@ struct LoadNotes {
     std::uint64_t skipped_not_finite = 0;     // a NaN or infinity in position, scale, rotation, opacity or colour
     std::uint64_t skipped_zero_rotation = 0;  // a quaternion of length zero
     int sh_degree_in_file = 0;                // bands above Scene::sh_degree were all zero and were left out
-    bool three_scales = false;                // a 3DGS scene: the shortest axis was dropped
+    bool three_scales = false;                // a 3DGS scene
     double median_flatness = 0.0;             // 3DGS only: median of shortest / second shortest axis
     std::vector<std::string> lines;           // one sentence each, for the user
 };
@@ -46,5 +49,8 @@ using Progress = std::function<void(double)>;
 // Loads `source`: a file, a directory, or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {});
+
+// Makes discs of 3D Gaussians by dropping the shortest axis of each, and says so in `notes`; discs stay as they are.
+void flatten(Scene& scene, LoadNotes& notes);
 
 }  // namespace binosplat

@@ -40,10 +40,10 @@ SceneBuilder::SceneBuilder(std::string name, std::uint64_t splats, int sh_degree
         reserveLarge(scene_.scales, splats);
         reserveLarge(scene_.opacities, splats);
         reserveLarge(scene_.sh, splats * sh_count);
-        if (three_scales) { flatness_.reserve(splats); }
+        if (three_scales) { reserveLarge(scene_.thicknesses, splats); }
     } catch (const std::exception&) {
         fail("{}: {} splats need {} MiB of memory, more than this machine gives", scene_.name, splats,
-             splats * (10 + sh_count) * sizeof(float) >> 20);
+             splats * (10 + (three_scales ? 1 : 0) + sh_count) * sizeof(float) >> 20);
     }
 }
 
@@ -67,7 +67,7 @@ void SceneBuilder::append(const StoredBlock& block, const ActiveBlock& active) {
     appendTo(scene_.rotations, active.rotations);
     appendTo(scene_.scales, active.scales);
     appendTo(scene_.opacities, active.opacities);
-    if (notes_.three_scales) { appendTo(flatness_, active.flatness); }
+    if (notes_.three_scales) { appendTo(scene_.thicknesses, active.thicknesses); }
     notes_.skipped_not_finite += active.skipped_not_finite;
     notes_.skipped_zero_rotation += active.skipped_zero_rotation;
     appendSh(block, active);
@@ -116,20 +116,22 @@ void SceneBuilder::growShTo(int sh_degree) {
     scene_.sh_degree = sh_degree;
 }
 
-Scene SceneBuilder::finish(LoadNotes& notes) {
-    if (notes_.three_scales) {
-        if (!flatness_.empty()) {
-            const auto middle = flatness_.begin() + static_cast<std::ptrdiff_t>(flatness_.size() / 2);
-            std::nth_element(flatness_.begin(), middle, flatness_.end());
-            notes_.median_flatness = *middle;
-        }
-        notes_.lines.push_back(
-            fmt::format("{}: three scales per splat (3DGS): the shortest axis of each was dropped; the median splat is {:.2f} times as "
-                        "thick as its second axis, "
-                        "so surfaces may show a little more translucent than as trained",
-                        scene_.name, notes_.median_flatness));
-        flatness_ = {};
+// Of up to a hundred thousand splats, evenly picked: a median needs no more.
+void SceneBuilder::measureFlatness() {
+    const std::size_t step = scene_.size() / 100'000 + 1;
+    std::vector<float> flatness;
+    for (std::size_t i = 0; i < scene_.size(); i += step) {
+        const float second = std::min(scene_.scales[i].x, scene_.scales[i].y);
+        flatness.push_back(second > 0.0f ? scene_.thicknesses[i] / second : 1.0f);
     }
+    if (flatness.empty()) { return; }
+    const auto middle = flatness.begin() + static_cast<std::ptrdiff_t>(flatness.size() / 2);
+    std::nth_element(flatness.begin(), middle, flatness.end());
+    notes_.median_flatness = static_cast<double>(*middle);
+}
+
+Scene SceneBuilder::finish(LoadNotes& notes) {
+    if (notes_.three_scales) { measureFlatness(); }
     if (notes_.skipped_not_finite > 0) {
         notes_.lines.push_back(fmt::format("{}: {} of {} splats skipped: NaN or infinity in an attribute", scene_.name,
                                            notes_.skipped_not_finite, notes_.splats_in_file));

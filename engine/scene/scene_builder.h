@@ -1,4 +1,4 @@
-// From attributes as files store them to a Scene: activations, skipped splats, the dropped axis, the SH bands worth keeping.
+// From attributes as files store them to a Scene: activations, skipped splats, the order of axes, the SH bands worth keeping.
 // A format fills blocks column by column and hands them over; all formats share what happens next.
 #pragma once
 
@@ -29,12 +29,12 @@ public:
 
 private:
     void growShTo(int sh_degree);
+    void measureFlatness();
     void appendSh(const StoredBlock& block, const ActiveBlock& active);
 
     Scene scene_;
     LoadNotes notes_;
     ActiveBlock active_;
-    std::vector<float> flatness_;  // shortest / second shortest axis of each kept splat, three scales only
 };
 
 }  // namespace binosplat

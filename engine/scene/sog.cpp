@@ -147,7 +147,9 @@ Scene readSog(const std::string& source, SogFiles& files, LoadNotes& notes, cons
         builder.append(block);
     }
     if (progress) { progress(1.0); }
-    return builder.finish(notes);
+    Scene scene = builder.finish(notes);
+    scene.antialiased = meta.antialiased;
+    return scene;
 }
 
 void requireWebp(const std::string& source) {

@@ -45,6 +45,10 @@ struct Node {
               value.is_number() ? value.dump() : value.type_name());
         return value.get<std::uint64_t>();
     }
+    [[nodiscard]] bool flag() const {
+        check(value.is_boolean(), "{}: is {}, expected true or false", place, value.type_name());
+        return value.get<bool>();
+    }
     [[nodiscard]] std::string text() const {
         check(value.is_string(), "{}: is {}, expected a text", place, value.type_name());
         return value.get<std::string>();
@@ -132,6 +136,7 @@ SogMeta parseSogMeta(std::span<const std::byte> text, const std::string& place) 
     check(version == 1 || version == 2, "{}: version: is {}, expected 1 or 2", place, version);
 
     SogMeta meta;
+    meta.antialiased = root.has("antialias") && root.at("antialias").flag();
     const Node means = root.at("means"), mins = means.at("mins"), maxs = means.at("maxs");
     mins.requireArray(3);
     maxs.requireArray(3);

@@ -24,6 +24,7 @@ struct SogPalette {
 
 struct SogMeta {
     std::uint64_t count = 0;
+    bool antialiased = false;
     std::array<float, 3> mins{}, maxs{};     // of the positions after x -> sign(x) ln(1 + |x|)
     std::array<std::string, 2> means_files;  // low bytes, high bytes
     std::array<ByteTable, 3> scales{};

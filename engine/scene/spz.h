@@ -19,14 +19,15 @@ bool isSpz(InputFile& file);
 // Of SH of degree 4, degree 3 is kept. Records of extensions are passed over.
 Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress);
 
-// Positions get as many fractional bits, 16 at most, as the scene's extent leaves; SH keep eight bits in every band; the third scale is the
-// smallest there is. The file appears whole or not at all. Throws Error for positions beyond 2^23 units.
+// Positions get as many fractional bits, 16 at most, as the scene's extent leaves; SH keep eight bits in every band; the third scale of
+// discs is the smallest there is. The file appears whole or not at all. Throws Error for positions beyond 2^23 units.
 void writeSpz(const Scene& scene, const std::string& path, const Progress& progress = {});
 
 namespace spz {
 
 inline constexpr std::uint32_t kMagic = 0x5053474e;  // "NGSP"
 inline constexpr std::size_t kHeaderBytes = 16;      // magic, version, count; one byte each: SH degree, fractional bits, flags, reserved
+inline constexpr int kAntialiased = 1;               // of the flags
 inline constexpr float kColourScale = 0.15f;         // a colour byte is 255 * (0.5 + kColourScale * f_dc)
 
 // Whether SH coefficient k, from 1 on, changes sign with y and z: whether its polynomial is odd in them together.

@@ -23,6 +23,7 @@ struct Header {
     std::uint64_t splats = 0;
     int sh_degree = 0;  // kept; see sh_bytes for what is there
     int fractional_bits = 0;
+    bool antialiased = false;
     std::size_t rotation_bytes = 0, sh_bytes = 0;  // per splat
 
     [[nodiscard]] std::uint64_t bytesPerSplat() const { return 16 + rotation_bytes + sh_bytes; }
@@ -42,6 +43,7 @@ Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bo
     header.sh_bytes = 3 * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
     header.rotation_bytes = header.version == 2 ? 3 : 4;
     header.fractional_bits = std::to_integer<int>(bytes[13]);
+    header.antialiased = (std::to_integer<int>(bytes[14]) & spz::kAntialiased) != 0;
     check(header.fractional_bits <= 23, "{}: header: {} fractional bits of 24, expected 0 to 23", file, header.fractional_bits);
     return header;
 }
@@ -211,6 +213,7 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     }
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
+    scene.antialiased = header.antialiased;
     if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
     return scene;
 }

@@ -45,9 +45,10 @@ std::byte* putColour(const float* f_dc, std::byte* at) {
     return at;
 }
 
-// The third scale is the smallest, so that it is the one that readers of surfaces drop.
-std::byte* putScale(const glm::vec2& scale, std::byte* at) {
-    for (const float axis : {scale.x, scale.y, 0.0f}) {
+// The third scale is the smallest, so that it is the one that readers of surfaces drop; of discs the smallest there is.
+std::byte* putScale(const Scene& scene, std::size_t splat, std::byte* at) {
+    const glm::vec2& scale = scene.scales[splat];
+    for (const float axis : {scale.x, scale.y, scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f}) {
         *at++ = axis > 0.0f ? nearestByte((std::log(axis) + 10.0f) * 16.0f) : std::byte{0};
     }
     return at;
@@ -91,7 +92,8 @@ void writeSpz(const Scene& scene, const std::string& path, const Progress& progr
     at = putWord(at, 3, 4);
     at = putWord(at, static_cast<std::uint32_t>(scene.size()), 4);
     at = putWord(at, static_cast<std::uint32_t>(scene.sh_degree), 1);
-    putWord(at, static_cast<std::uint32_t>(fractional_bits), 1);
+    at = putWord(at, static_cast<std::uint32_t>(fractional_bits), 1);
+    putWord(at, scene.antialiased ? spz::kAntialiased : 0, 1);
     stream.write(header);
 
     const int coefficients = shCoefficientCount(scene.sh_degree);
@@ -101,7 +103,7 @@ void writeSpz(const Scene& scene, const std::string& path, const Progress& progr
         [&](std::size_t splat, std::byte* to) { return putPosition(scene.positions[splat], fractional_bits, to); },
         [&](std::size_t splat, std::byte* to) { return *to = nearestByte(255.0f * scene.opacities[splat]), to + 1; },
         [&](std::size_t splat, std::byte* to) { return putColour(shOf(splat), to); },
-        [&](std::size_t splat, std::byte* to) { return putScale(scene.scales[splat], to); },
+        [&](std::size_t splat, std::byte* to) { return putScale(scene, splat, to); },
         [&](std::size_t splat, std::byte* to) { return putRotation(scene.rotations[splat], to); },
         [&](std::size_t splat, std::byte* to) { return putSh(shOf(splat), coefficients, to); },
     };

@@ -1,4 +1,4 @@
-// Activations, skipped splats, the dropped axis, the SH bands in use.
+// Activations, skipped splats, the order of axes, the SH bands in use.
 #include "engine/scene/stored_block.h"
 
 #include "engine/scene/scene.h"
@@ -43,16 +43,15 @@ bool normaliseRotation(double w, double x, double y, double z, glm::dquat& unit)
     return true;
 }
 
-struct Flattened {
+struct Turned {
     glm::dquat rotation;
-    float log_scale_u, log_scale_v;
-    float flatness;
+    float log_scale_u, log_scale_v, log_scale_w;
 };
 
-// Drops the shortest of three axes. The two others follow it in cyclic order, so (t_u, t_v, t_w) is a cyclic permutation of
-// the columns of the rotation: right-handed, with t_w along the dropped axis. Such a permutation is a turn by 120 degrees about
+// Makes the shortest of three axes the last. The two others follow it in cyclic order, so (t_u, t_v, t_w) is a cyclic permutation of
+// the columns of the rotation: right-handed, with t_w along the shortest axis. Such a permutation is a turn by 120 degrees about
 // (1, 1, 1), hence the product with (1/2, +-1/2, +-1/2, +-1/2).
-Flattened dropShortestAxis(const glm::dquat& rotation, const std::array<float, 3>& log_scales) {
+Turned turnShortestLast(const glm::dquat& rotation, const std::array<float, 3>& log_scales) {
     std::size_t shortest = 2;  // ties keep the order of the file
     for (const std::size_t axis : {std::size_t{1}, std::size_t{0}}) {
         if (log_scales[axis] < log_scales[shortest]) { shortest = axis; }
@@ -64,7 +63,7 @@ Flattened dropShortestAxis(const glm::dquat& rotation, const std::array<float, 3
         turn.w = 0.5;
         turn.x = turn.y = turn.z = sign * 0.5;
     }
-    return {rotation * turn, u, v, std::exp(log_scales[shortest] - std::min(u, v))};
+    return {rotation * turn, u, v, log_scales[shortest]};
 }
 
 // The highest band with a value that is not zero, of the rows that are kept.
@@ -96,12 +95,12 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
         glm::dquat rotation = glm::identity<glm::dquat>();
         const bool turned =
             finite[row] && normaliseRotation(value(kStoredRot0), value(kStoredRot1), value(kStoredRot2), value(kStoredRot3), rotation);
-        float flatness = 0.0f;
+        float thickness = 0.0f;
         if (turned && three_scales) {
-            const Flattened flat = dropShortestAxis(rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
-            rotation = flat.rotation;
-            scale = {std::exp(flat.log_scale_u), std::exp(flat.log_scale_v)};
-            flatness = flat.flatness;
+            const Turned axes = turnShortestLast(rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
+            rotation = axes.rotation;
+            scale = {std::exp(axes.log_scale_u), std::exp(axes.log_scale_v)};
+            thickness = std::exp(axes.log_scale_w);
         }
         if (!finite[row] || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 is an infinite float32 scale
             ++active.skipped_not_finite;
@@ -117,7 +116,7 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
         active.rotations[i] = glm::quat(rotation);
         active.scales[i] = scale;
         active.opacities[i] = 1.0f / (1.0f + std::exp(-value(kStoredOpacity)));
-        active.flatness[i] = flatness;
+        active.thicknesses[i] = thickness;
     }
     active.sh_degree = findUsedDegree(block, active, sh_degree);
 }

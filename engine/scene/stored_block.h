@@ -65,8 +65,8 @@ struct ActiveBlock {
     std::array<glm::quat, StoredBlock::kRows> rotations;
     std::array<glm::vec2, StoredBlock::kRows> scales;
     std::array<float, StoredBlock::kRows> opacities{};
-    std::array<float, StoredBlock::kRows> flatness{};  // shortest / second shortest axis; three scales only
-    int sh_degree = 0;                                 // the highest band that one of them uses
+    std::array<float, StoredBlock::kRows> thicknesses{};  // the shortest axis; three scales only
+    int sh_degree = 0;                                    // the highest band that one of them uses
     std::size_t skipped_not_finite = 0, skipped_zero_rotation = 0;
 };
 

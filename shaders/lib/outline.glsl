@@ -91,6 +91,12 @@ ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
 
 Outline outlineOfProjected(ProjectedSplat p) {
     const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
+    if (kSplatKind != kDiscs) {  // an ellipse around its centre, if there is anything of it
+        Outline o = outlineOf(p.reference_px, p.plane_from_pixel, vec2(0), 1, cut);
+        o.circle_px = 0;
+        o.ellipse = o.ellipse && cut > 0 && hasReference(p);
+        return o;
+    }
     Outline o = outlineOf(p.reference_px, p.plane_from_pixel, p.perspective, p.inverse_depth, cut);
     if (!hasReference(p)) {
         o.ellipse = false;

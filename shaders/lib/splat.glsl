@@ -1,4 +1,4 @@
-// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the
+// Wants kSplatKind: whether the scene's splats are discs. A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the
 // form that ProjectedSplat holds.
 //
 // A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
@@ -14,6 +14,7 @@ struct CameraSplat {
     vec3 centre;
     vec3 t_u, t_v;
     vec2 scale;
+    float thickness;  // of 3D Gaussians
     float opacity;
 };
 
@@ -33,6 +34,7 @@ CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
     tangents(chunk.rotations.at[i], splat.t_u, splat.t_v);
     splat.centre = chunk.positions.at[i];
     splat.scale = chunk.scales.at[i];
+    splat.thickness = kSplatKind != kDiscs ? chunk.thicknesses.at[i] : 0;
     splat.opacity = chunk.opacities.at[i];
     return splat;
 }

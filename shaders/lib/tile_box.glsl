@@ -14,6 +14,7 @@ vec4 ellipseBounds(Outline outline) {
 }
 
 ivec4 tileBox(CameraSplat splat, EyeView eye, Outline outline) {
+    if (kSplatKind != kDiscs) { return outline.ellipse ? tilesWithin(ellipseBounds(outline), eye.size_tiles) : ivec4(0); }
     vec4 bounds_px = outline.ellipse ? ellipseBounds(outline) : vec4(-1e9, -1e9, 1e9, 1e9);
     const float radius = sqrt(outline.cut);
     const float reach = radius * length(splat.scale * vec2(splat.t_u.z, splat.t_v.z));

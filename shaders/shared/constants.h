@@ -43,6 +43,16 @@ BINOSPLAT_CONSTANT uint kMaxItems = 0x7fffffffu;
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 
+// What a scene's splats are: discs (2DGS), or 3D Gaussians, of which some were trained with an opacity that the low-pass dims.
+BINOSPLAT_CONSTANT uint kDiscs = 0;
+BINOSPLAT_CONSTANT uint kGaussians = 1;
+BINOSPLAT_CONSTANT uint kAntialiasedGaussians = 2;
+// The low-pass of 3DGS: so much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
+BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
+// The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: beside the eye
+// the linear projection breaks down (likewise).
+BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
+
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
 // kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
 // and two such hits leave exactly 1e-4, which is not under it.

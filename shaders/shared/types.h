@@ -18,11 +18,12 @@ BINOSPLAT_ARRAY_OF(vec4, Vec4s);
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
 BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
-// A run of splats that lies in one allocation: 48 bytes a splat, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
+// A run of splats that lies in one allocation: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
 struct SceneChunk {
     Vec3s positions;
     Vec4s rotations;  // x, y, z, w
     Vec2s scales;
+    Floats thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
     Floats opacities;
     UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
     Uints sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
@@ -57,7 +58,8 @@ BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
 //   u/z = plane_from_pixel.x dx + plane_from_pixel.y dy
 //   v/z =                         plane_from_pixel.z dy
 // (u, v) in standard deviations, turned within the disc so that v does not depend on dx. All three are linear in the pixel.
-// A centre that is not beyond the near plane has no such reference: then (see `opacity`) reference_px holds the
+// Of a 3D Gaussian u and v themselves stand there for u/z and v/z, so that rho = u^2 + v^2 needs no depth.
+// A disc whose centre is not beyond the near plane has no such reference: then (see `opacity`) reference_px holds the
 // constant terms of u/z and v/z instead, and offsets count from the middle of the image.
 struct ProjectedSplat {
     vec2 reference_px;

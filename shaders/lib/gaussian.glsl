@@ -1,0 +1,72 @@
+// A 3D Gaussian on the screen, as it was trained: its covariance through the projection's derivative at its centre, and a low-pass
+// (Zwicker et al. 2001, sections 4 and 5; Kerbl et al. 2023, section 4). Needs lib/splat.glsl.
+//
+// The axes s_u t_u, s_v t_v, s_w t_w become three vectors m on the screen, and Sigma2 = sum m m^T + kScreenVariance. Its determinant is a
+// sum of squares, kScreenVariance^2 + kScreenVariance sum |m|^2 + sum (m_i x m_j)^2 (Cauchy and Binet), which keeps its digits for
+// needles and for sheets seen edge-on, and needs roots and no squares of large numbers.
+
+struct ScreenGaussian {
+    float xx, xy, yy;  // Sigma2, px^2
+    float root_det;    // of Sigma2
+    float root_sharp;  // likewise, without the low-pass
+};
+
+float lengthOfFive(float a, float b, float c, float d, float e) {
+    const float most = max(max(max(abs(a), abs(b)), max(abs(c), abs(d))), max(abs(e), 1e-30));
+    const vec3 first = vec3(a, b, c) / most;
+    const vec2 rest = vec2(d, e) / most;
+    return most * sqrt(dot(first, first) + dot(rest, rest));
+}
+
+// Of a centre beyond the eye's plane.
+ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
+    const vec2 size_px = vec2(eye.size_px);
+    const vec2 low = -(eye.principal_px + kDerivativeBorder * size_px) / eye.focal_px;
+    const vec2 high = (size_px - eye.principal_px + kDerivativeBorder * size_px) / eye.focal_px;
+    const vec2 slope = clamp(splat.centre.xy / splat.centre.z, low, high);
+    const vec2 px_per_unit = eye.focal_px / splat.centre.z;
+    const vec3 t_w = cross(splat.t_u, splat.t_v);
+    const vec3 scales = vec3(splat.scale, splat.thickness);
+    const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
+    const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
+    const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);
+    // u x v and its likes: the area that two axes span, seen along the line of sight.
+    const vec3 along = vec3(dot(splat.t_u, vec3(slope, 1)), dot(splat.t_v, vec3(slope, 1)), dot(t_w, vec3(slope, 1)));
+    const vec3 areas = vec3(scales.y * px_per_unit.x, scales.x * px_per_unit.x, scales.x * px_per_unit.x) *
+                       (vec3(scales.z, scales.z, scales.y) * px_per_unit.y) * along;
+    ScreenGaussian g;
+    g.xx = u.x * u.x + v.x * v.x + w.x * w.x + kScreenVariance;
+    g.xy = u.x * u.y + v.x * v.y + w.x * w.y;
+    g.yy = u.y * u.y + v.y * v.y + w.y * w.y + kScreenVariance;
+    // The low-pass's own part twice over in xx + yy.
+    const float blurred = sqrt(kScreenVariance) * sqrt(g.xx + g.yy - kScreenVariance);
+    g.root_det = lengthOfFive(areas.x, areas.y, areas.z, blurred, 0);
+    g.root_sharp = lengthOfFive(areas.x, areas.y, areas.z, 0, 0);
+    return g;
+}
+
+// What the low-pass leaves of an opacity that was trained with it in mind (Yu et al. 2024, section 5.2).
+float dimmedOpacity(float opacity, ScreenGaussian g) { return opacity * min(g.root_sharp / g.root_det, 1); }
+
+// The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane, and the splat is seen at all.
+ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out bool has_reference) {
+    const vec3 c = splat.centre;
+    has_reference = c.z > eye.near;
+    const ScreenGaussian g = screenGaussian(splat, eye);
+    ProjectedSplat p;
+    p.reference_px = eye.focal_px * c.xy / c.z + eye.principal_px;
+    p.inverse_depth = 1 / c.z;
+    // rho = d^T Sigma2^-1 d = u^2 + v^2, where v does not depend on dx.
+    const float a = sqrt(g.yy) / g.root_det;
+    p.plane_from_pixel = vec3(a, -(g.xy / g.yy) * a, 1 / sqrt(g.yy));
+    p.perspective = vec2(0);
+    p.opacity = packOpacity(dimmed ? dimmedOpacity(splat.opacity, g) : splat.opacity, has_reference);
+    p.colour = uvec2(0);
+    return p;
+}
+
+// Of a splat of the scene's kind.
+ProjectedSplat projectSplat(CameraSplat splat, EyeView eye, out bool has_reference) {
+    if (kSplatKind == kDiscs) { return projectGeometry(splat, eye, has_reference); }
+    return projectGaussian(splat, eye, kSplatKind == kAntialiasedGaussians, has_reference);
+}
