@@ -343,7 +343,8 @@ TEST_CASE("benchComparesWithPhotographs") {
 
 TEST_CASE("helpExitsWithZero") {
     const Workplace work;
-    for (const char* command : {"--help", "render --help", "bench --help", "view --help", "info --help", "scene --help"}) {
+    for (const char* command :
+         {"--help", "render --help", "bench --help", "view --help", "info --help", "scene --help", "convert --help", "compare --help"}) {
         const Outcome outcome = work.run(command);
         CHECK(outcome.exit_code == 0);
         CHECK(!outcome.output.empty());
