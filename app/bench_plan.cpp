@@ -125,7 +125,10 @@ BenchPlan planBench(const BenchOptions& options) {
     std::vector<std::string> modes;
     SettingsTable bench;
     for (const SettingsTable& table : options.tables) {
-        if (table.name == "bench") { modes = readBench(bench = table, plan); }
+        if (table.name == "bench") {
+            bench = table;
+            modes = readBench(table, plan);
+        }
         if (table.name == "series") { plan.series.push_back(readSeries(table, default_size_px)); }
         if (table.name == "views") { plan.views.push_back(readView(table, options.run)); }
         if (table.name == "methods") { std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods)); }

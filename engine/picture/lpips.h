@@ -7,6 +7,8 @@
 #include "engine/picture/squeezenet.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
