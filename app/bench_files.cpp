@@ -29,6 +29,7 @@ Json qualityJson(const std::vector<OriginScores>& quality) {
         if (!std::isfinite(scores.psnrDb())) { one["psnr_db"] = nullptr; }
         if (scores.ssim) { one["ssim"] = *scores.ssim; }
         if (scores.flip) { one["flip"] = *scores.flip; }
+        if (scores.lpips) { one["lpips"] = *scores.lpips; }
         json[scores.origin] = one;
     }
     return json;
@@ -131,6 +132,9 @@ std::vector<Column> allColumns(const BenchRun& run) {
         add("psnr_db", [](const OriginScores& s) { return std::optional(s.psnrDb()); });
         add("ssim", [](const OriginScores& s) { return s.ssim; });
         add("flip", [](const OriginScores& s) { return s.flip; });
+        if (origin == "all" && hasLpips(run.results)) {
+            add("lpips", [](const OriginScores& s) { return s.lpips; });
+        }
     }
     for (const std::string stage : kStages) {
         columns.push_back({stage + " ms", [stage](const BenchResult& r) { return timeCell(stagesOf(r.mode, r.pass_ms), stage); }});

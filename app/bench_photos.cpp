@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
+#include <optional>
 
 namespace binosplat {
 
@@ -29,6 +31,7 @@ struct PhotoRow {
     double total_ms = 0.0;
     double psnr_db = 0.0, ssim = 0.0;  // against the photograph, both clamped to 0 to 1
     double mean_square_to_full = 0.0;  // against the full render of the same eye
+    std::optional<double> lpips;       // against the photograph, where its weights are given
 };
 
 // Camera files name pictures with or without their extension.
@@ -54,7 +57,7 @@ struct Means {
     std::string scene, method, mode;
     std::size_t cameras = 0;
     double psnr_db = 0.0, ssim = 0.0;
-    std::vector<double> total_ms;
+    std::vector<double> total_ms, lpips;  // of each camera; no LPIPS without its weights
 };
 
 // Means over the cameras, by scene and method.
@@ -63,11 +66,12 @@ std::vector<Means> meansOf(const std::vector<PhotoRow>& rows) {
     for (const PhotoRow& row : rows) {
         const auto found =
             std::ranges::find_if(means, [&](const Means& one) { return one.scene == row.scene && one.method == row.method; });
-        Means& one = found != means.end() ? *found : means.emplace_back(Means{row.scene, row.method, row.mode, 0, 0.0, 0.0, {}});
+        Means& one = found != means.end() ? *found : means.emplace_back(Means{row.scene, row.method, row.mode, 0, 0.0, 0.0, {}, {}});
         ++one.cameras;
         one.psnr_db += row.psnr_db;
         one.ssim += row.ssim;
         one.total_ms.push_back(row.total_ms);
+        if (row.lpips) { one.lpips.push_back(*row.lpips); }
     }
     for (Means& one : means) {
         one.psnr_db /= static_cast<double>(one.cameras);
@@ -76,15 +80,29 @@ std::vector<Means> meansOf(const std::vector<PhotoRow>& rows) {
     return means;
 }
 
+// Nothing where LPIPS was not measured.
+std::optional<double> meanLpips(const Means& means) {
+    if (means.lpips.empty()) { return std::nullopt; }
+    return std::accumulate(means.lpips.begin(), means.lpips.end(), 0.0) / static_cast<double>(means.lpips.size());
+}
+
+bool anyLpips(const std::vector<PhotoRow>& rows) {
+    return std::ranges::any_of(rows, [](const PhotoRow& row) { return row.lpips.has_value(); });
+}
+
 const Means& fullOf(const std::vector<Means>& means, const Means& like) {
     return *std::ranges::find_if(means, [&](const Means& one) { return one.scene == like.scene && one.mode == "shared"; });
 }
 
 std::string photosCsv(const std::string& device, const std::vector<PhotoRow>& rows) {
-    std::string csv = "device,scene,camera,method,mode,gpu_total_ms,psnr_db_to_photo,ssim_to_photo,psnr_db_to_full\n";
+    std::string csv = "device,scene,camera,method,mode,gpu_total_ms,psnr_db_to_photo,ssim_to_photo,psnr_db_to_full";
+    const bool with_lpips = anyLpips(rows);
+    csv += with_lpips ? ",lpips_to_photo\n" : "\n";
     for (const PhotoRow& row : rows) {
-        csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}\n", csvCell(device), csvCell(row.scene), csvCell(row.camera),
+        csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}", csvCell(device), csvCell(row.scene), csvCell(row.camera),
                            csvCell(row.method), row.mode, row.total_ms, row.psnr_db, row.ssim, psnrOf(row.mean_square_to_full));
+        if (with_lpips) { csv += row.lpips ? fmt::format(",{:.6g}", *row.lpips) : ","; }
+        csv += "\n";
     }
     return csv;
 }
@@ -102,17 +120,25 @@ std::string photosJson(const std::string& device, const std::vector<Means>& mean
                            {"ssim_to_photo", one.ssim},
                            {"psnr_db_lost", full.psnr_db - one.psnr_db},
                            {"ssim_lost", full.ssim - one.ssim}});
+        if (const std::optional<double> ours = meanLpips(one), theirs = meanLpips(full); ours && theirs) {
+            results.back()["lpips_to_photo"] = *ours;
+            results.back()["lpips_lost"] = *ours - *theirs;
+        }
     }
     return Json{{"device", device}, {"results", results}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string photosTable(const std::string& device, const std::vector<Means>& means) {
-    std::string table = fmt::format("device: {}; against photographs, means over cameras; lost: less than the full render\n", device);
+    std::string table = fmt::format("device: {}; against photographs, means over cameras; lost: worse than the full render\n", device);
     for (const Means& one : means) {
         const Means& full = fullOf(means, one);
-        table += fmt::format("  {:<24} {:<28} {:>4} cameras  {:>10.3f} ms  {:>6.2f} dB  SSIM {:.4f}  lost {:>6.2f} dB, {:.4f}\n", one.scene,
+        table += fmt::format("  {:<24} {:<28} {:>4} cameras  {:>10.3f} ms  {:>6.2f} dB  SSIM {:.4f}  lost {:>6.2f} dB, {:.4f}", one.scene,
                              one.method, one.cameras, median(one.total_ms), one.psnr_db, one.ssim, full.psnr_db - one.psnr_db,
                              full.ssim - one.ssim);
+        if (const std::optional<double> ours = meanLpips(one), theirs = meanLpips(full); ours && theirs) {
+            table += fmt::format("  LPIPS {:.4f}  lost {:.4f}", *ours, *ours - *theirs);
+        }
+        table += "\n";
     }
     return table;
 }
@@ -147,9 +173,9 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
                 }
                 const auto [result, frame] = frames.render(eyes, options.run.camera, method.stereo);
                 const Image picture = frame->readPicture(affiliated);
-                const PhotoScores scores = compareWithPhoto(picture, photo);
+                const PhotoScores scores = compareWithPhoto(picture, photo, plan.lpips ? &*plan.lpips : nullptr);
                 rows.push_back({fs::path(source).filename().string(), camera.name, method.name, method.stereo.mode, result.gpu_total_ms,
-                                scores.psnr_db, scores.ssim, compare(picture, full).mean_square});
+                                scores.psnr_db, scores.ssim, compare(picture, full).mean_square, scores.lpips});
             }
             progress.show(static_cast<double>(i + 1) / static_cast<double>(photos.size()));
         }

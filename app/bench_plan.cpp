@@ -36,7 +36,7 @@ std::string readMode(const Setting& setting) {
 void readScores(const Setting& setting, BenchPlan& plan) {
     plan.psnr = plan.ssim = plan.flip = false;
     for (const std::string& score : readEach(setting, [](const Setting& one) {
-             return readChoice(one, {"none", "psnr", "ssim", "flip"});
+             return readChoice(one, {"none", "psnr", "ssim", "flip", "lpips"});
          })) {
         plan.ssim |= score == "ssim";
         plan.flip |= score == "flip";
@@ -44,9 +44,25 @@ void readScores(const Setting& setting, BenchPlan& plan) {
     }
 }
 
+// The file of LPIPS's weights; empty where it is not measured. The config's file counts unless its scores leave LPIPS out, that of the
+// command line always.
+std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options) {
+    if (!options.lpips_weights.empty()) { return options.lpips_weights; }
+    const auto scores = bench.settings.find("scores"), weights = bench.settings.find("lpips");
+    const bool chosen = scores != bench.settings.end();
+    const bool asked = chosen && std::ranges::count(scores->second.items, "lpips") > 0;
+    if (weights == bench.settings.end()) {
+        check(!asked, "{} holds lpips, must come with a file of its weights: --lpips, or lpips in [bench]",
+              asked ? scores->second.origin : "");
+        return "";
+    }
+    const std::string file = readText(weights->second);
+    return chosen && !asked ? "" : (std::filesystem::path(options.run.config).parent_path() / file).string();
+}
+
 // Returns the modes, which become methods.
 std::vector<std::string> readBench(const SettingsTable& table, BenchPlan& plan) {
-    refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up", "headsets", "scores", "twin"});
+    refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up", "headsets", "scores", "lpips", "twin"});
     std::vector<std::string> modes;
     for (const auto& [key, setting] : table.settings) {
         if (key == "scenes") { plan.scenes = readEach(setting, readText); }
@@ -107,8 +123,12 @@ BenchPlan planBench(const BenchOptions& options) {
     const glm::uvec2 default_size_px = options.run.camera.size_px.value_or(glm::uvec2(0));
     BenchPlan plan;
     std::vector<std::string> modes;
+    SettingsTable bench;
     for (const SettingsTable& table : options.tables) {
-        if (table.name == "bench") { modes = readBench(table, plan); }
+        if (table.name == "bench") {
+            bench = table;
+            modes = readBench(table, plan);
+        }
         if (table.name == "series") { plan.series.push_back(readSeries(table, default_size_px)); }
         if (table.name == "views") { plan.views.push_back(readView(table, options.run)); }
         if (table.name == "methods") { std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods)); }
@@ -124,6 +144,10 @@ BenchPlan planBench(const BenchOptions& options) {
         throw Error(ExitCode::kUsage, "SCENE is required: on the command line or as `scenes` in the config's [bench]");
     }
     if (plan.series.empty()) { plan.series.push_back({"frame", {0}, {default_size_px}}); }
+    if (const std::string weights = lpipsWeights(bench, options); !weights.empty()) {
+        plan.lpips.emplace(weights);
+        plan.psnr = true;  // the command line asks for pictures to be compared, though the config may not
+    }
     const CameraOptions& camera = options.run.camera;
     if (camera.eye || camera.look || !camera.cameras_file.empty()) { plan.views.clear(); }
     return plan;

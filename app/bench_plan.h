@@ -2,10 +2,12 @@
 #pragma once
 
 #include "app/bench_methods.h"
+#include "engine/picture/lpips.h"
 
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +36,8 @@ struct BenchPlan {
     std::uint32_t repeats = 5;
     std::uint32_t warm_up = 1;  // frames of each method before those that count
     bool psnr = true, ssim = true, flip = true;
-    bool twin = false;  // also the float64 twin on the CPU, for one eye
+    std::optional<Lpips> lpips;  // where it is among the scores
+    bool twin = false;           // also the float64 twin on the CPU, for one eye
 };
 
 // Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own size; a scene without a

@@ -79,7 +79,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
         const int affiliated = 1 - method.stereo.dominant;
         const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
         runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
-                                        {plan.ssim, plan.flip, focal_px});
+                                        {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
     }
     return runner;
 }

@@ -30,6 +30,12 @@ std::uint8_t groupOf(PixelOrigin origin) {
     }
 }
 
+// Nothing where it is not asked for, or where the network needs more pixels.
+std::optional<double> lpipsOf(const Image& a, const Image& b, const Lpips* lpips) {
+    const bool fits = std::min(a.size_px.x, a.size_px.y) >= kLpipsLeastSide_px;
+    return lpips != nullptr && fits ? std::optional(lpips->measure(a, b)) : std::nullopt;
+}
+
 // Mean squared error of R, G and B of one pixel.
 double squareOf(const Image& a, const Image& b, std::size_t pixel) {
     double sum = 0.0;
@@ -47,10 +53,10 @@ double psnrOf(double mean_square) { return mean_square > 0.0 ? -10.0 * std::log1
 
 double OriginScores::psnrDb() const { return psnrOf(mean_square); }
 
-PhotoScores compareWithPhoto(const Image& picture, const Image& photo) {
+PhotoScores compareWithPhoto(const Image& picture, const Image& photo, const Lpips* lpips) {
     Image shown = picture;
     for (float& value : shown.values) { value = std::clamp(value, 0.0f, 1.0f); }
-    return {compare(shown, photo).psnrDb(), ssim(shown, photo, Border::kZero).mean().value_or(1.0)};
+    return {compare(shown, photo).psnrDb(), ssim(shown, photo, Border::kZero).mean().value_or(1.0), lpipsOf(shown, photo, lpips)};
 }
 
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
@@ -59,9 +65,12 @@ std::vector<OriginScores> measureQuality(const Image& full, const Image& picture
     if (options.ssim) { ssim_scores = ssim(full, picture); }
     // FLIP is not defined for pictures whose pixels are wider than a degree.
     const double pixels_per_degree = pixelsPerDegree(options.focal_px);
-    if (options.flip && pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0) { flip_scores = flip(full, picture, pixels_per_degree); }
+    if (options.flip && pixels_per_degree >= kFlipLeastPixelsPerDegree && pixels_per_degree <= kFlipMostPixelsPerDegree) {
+        flip_scores = flip(full, picture, pixels_per_degree);
+    }
 
-    std::vector<OriginScores> scores{{"all", full.pixelCount(), compare(full, picture).mean_square, {}, {}}};
+    std::vector<OriginScores> scores{
+        {"all", full.pixelCount(), compare(full, picture).mean_square, {}, {}, lpipsOf(full, picture, options.lpips)}};
     if (ssim_scores) { scores[0].ssim = ssim_scores->mean(); }
     if (flip_scores) { scores[0].flip = flip_scores->mean(); }
 
@@ -76,7 +85,7 @@ std::vector<OriginScores> measureQuality(const Image& full, const Image& picture
     for (std::uint8_t group = 0; group < kGroups.size(); ++group) {
         if (counts[group] == 0) { continue; }
         OriginScores& one =
-            scores.emplace_back(OriginScores{kGroups[group], counts[group], sums[group] / static_cast<double>(counts[group]), {}, {}});
+            scores.emplace_back(OriginScores{kGroups[group], counts[group], sums[group] / static_cast<double>(counts[group]), {}, {}, {}});
         if (ssim_scores) { one.ssim = ssim_scores->meanWhere(groups, group); }
         if (flip_scores) { one.flip = flip_scores->meanWhere(groups, group); }
     }

@@ -1,7 +1,7 @@
 // How far the affiliated eye's picture is from its own full render: over all pixels, and by what made them.
 #pragma once
 
-#include "engine/picture/image.h"
+#include "engine/picture/lpips.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,6 +17,7 @@ struct OriginScores {
     std::uint64_t pixels = 0;
     double mean_square = 0.0;  // of R, G and B, as encoded, 0 to 1
     std::optional<double> ssim, flip;
+    std::optional<double> lpips;  // of all pixels alone: the network sees the whole picture
 
     // Infinity where the pictures are equal.
     [[nodiscard]] double psnrDb() const;
@@ -24,18 +25,21 @@ struct OriginScores {
 
 struct QualityOptions {
     bool ssim = true, flip = true;
-    double focal_px = 3840.0;  // what FLIP takes for the distance of the eye: as a headset shows the picture
+    double focal_px = 3840.0;      // what FLIP takes for the distance of the eye: as a headset shows the picture
+    const Lpips* lpips = nullptr;  // null: not asked for
 };
 
-// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty.
+// "all" first; then every origin that occurs. The lists are those of StereoFrame and may be empty. What is not defined for pictures of
+// this size or angle (FLIP, LPIPS) is left out.
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
 // Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the border for SSIM.
 struct PhotoScores {
     double psnr_db, ssim;
+    std::optional<double> lpips;
 };
-PhotoScores compareWithPhoto(const Image& picture, const Image& photo);
+PhotoScores compareWithPhoto(const Image& picture, const Image& photo, const Lpips* lpips);
 
 // PSNR against a peak of 1.
 double psnrOf(double mean_square);

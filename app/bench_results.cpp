@@ -147,6 +147,13 @@ const OriginScores* scoresOf(const BenchResult& result, const std::string& origi
     return found == result.quality.end() ? nullptr : &*found;
 }
 
+bool hasLpips(const std::vector<BenchResult>& results) {
+    return std::ranges::any_of(results, [](const BenchResult& result) {
+        const OriginScores* all = scoresOf(result, "all");
+        return all != nullptr && all->lpips.has_value();
+    });
+}
+
 std::string csvCell(const std::string& value) {
     if (value.find_first_of(",\"\n") == std::string::npos) { return value; }
     std::string quoted = "\"";

@@ -71,6 +71,9 @@ void markFront(std::vector<BenchResult>& results);
 // The result's scores over one origin; null where it has none.
 const OriginScores* scoresOf(const BenchResult& result, const std::string& origin);
 
+// Whether LPIPS was measured: its column is absent otherwise.
+bool hasLpips(const std::vector<BenchResult>& results);
+
 std::string benchTable(const BenchRun& run);
 std::string benchJson(const BenchRun& run);
 std::string benchCsv(const BenchRun& run);

@@ -30,11 +30,15 @@ std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
     return sum;
 }
 
-std::string methodsTable(const std::vector<const BenchResult*>& point) {
+std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips) {
     TextColumns columns;
-    columns.addRow({"method",      "front",     "ms",          "least",        "most",     "/ two-pass", "/ shared",
-                    "peak MiB",    "PSNR dB",   "reprojected", "interpolated", "patched",  "SSIM",       "FLIP",
-                    "tiles again", "% of work", "bytes a px",  "commands",     "holes px", "gaps px",    "pairs"});
+    std::vector<std::string> head{"method",   "front",   "ms",          "least",        "most",    "/ two-pass", "/ shared",
+                                  "peak MiB", "PSNR dB", "reprojected", "interpolated", "patched", "SSIM",       "FLIP"};
+    if (with_lpips) { head.emplace_back("LPIPS"); }
+    for (const char* rest : {"tiles again", "% of work", "bytes a px", "commands", "holes px", "gaps px", "pairs"}) {
+        head.emplace_back(rest);
+    }
+    columns.addRow(std::move(head));
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method, r->on_front ? "*" : ""};
         for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
@@ -45,6 +49,7 @@ std::string methodsTable(const std::vector<const BenchResult*>& point) {
         const OriginScores* all = scoresOf(*r, "all");
         row.push_back(scoreText(all != nullptr ? all->ssim : std::nullopt));
         row.push_back(scoreText(all != nullptr ? all->flip : std::nullopt));
+        if (with_lpips) { row.push_back(scoreText(all != nullptr ? all->lpips : std::nullopt)); }
         const bool reprojects = r->counters.contains("tiles_patched");
         row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, "tiles_patched")) : "-");
         row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered) : "-");
@@ -94,7 +99,7 @@ std::string benchTable(const BenchRun& run) {
             point.push_back(&run.results[end]);
         }
         table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]), point[0]->frames);
-        table += methodsTable(point) + timesTable(point);
+        table += methodsTable(point, hasLpips(run.results)) + timesTable(point);
         for (const BenchResult* r : point) {
             if (r->move_cost) {
                 table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);

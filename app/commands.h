@@ -11,6 +11,7 @@ void runView(const ViewOptions& options);
 void runInfo(const InfoOptions& options);
 void runScene(const SceneOptions& options);
 void runConvert(const ConvertOptions& options);
+void runCompare(const CompareOptions& options);
 void runKernels(const KernelsOptions& options);
 void runStability(const StabilityOptions& options);
 

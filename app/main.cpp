@@ -26,12 +26,13 @@ template <typename... Handlers>
 Match(Handlers...) -> Match<Handlers...>;  // clang needs it before its 17th version
 
 void run(int argument_count, const char* const* arguments) {
-    std::visit(Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
-                     [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
-                     [](const SceneOptions& options) { runScene(options); }, [](const ConvertOptions& options) { runConvert(options); },
-                     [](const StabilityOptions& options) { runStability(options); },
-                     [](const KernelsOptions& options) { runKernels(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
-               parseOptions(argument_count, arguments));
+    std::visit(
+        Match{[](const RenderOptions& options) { runRender(options); }, [](const BenchOptions& options) { runBench(options); },
+              [](const ViewOptions& options) { runView(options); }, [](const InfoOptions& options) { runInfo(options); },
+              [](const SceneOptions& options) { runScene(options); }, [](const ConvertOptions& options) { runConvert(options); },
+              [](const CompareOptions& options) { runCompare(options); }, [](const StabilityOptions& options) { runStability(options); },
+              [](const KernelsOptions& options) { runKernels(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
+        parseOptions(argument_count, arguments));
     if (std::fflush(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
 }
 

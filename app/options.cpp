@@ -4,6 +4,7 @@
 #include "app/option_layers.h"
 #include "app/option_table.h"
 #include "engine/error.h"
+#include "engine/picture/flip.h"
 #include "engine/setup/values.h"
 
 #include <CLI/CLI.hpp>
@@ -49,6 +50,10 @@ void addCommonRows(CLI::App& command, CommandLine& line, std::string& config) {
     addRows(command, line, kStereoRows, "Stereo");
     addRows(command, line, kRunRows, "Run");
     command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
+}
+
+CLI::Option* addLpipsOption(CLI::App& command, std::string& weights) {
+    return command.add_option("--lpips", weights, "also measure LPIPS, with this file of weights (squeeze, 0.1)")->type_name("WEIGHTS");
 }
 
 // Of the camera only what a headset leaves open.
@@ -114,6 +119,8 @@ void requireBenchKind(const BenchOptions& bench) {
     refuse(!bench.photos_folder.empty() && !cameras, "--photos is given without --cameras");
     refuse(!bench.photos_folder.empty() && bench.run.camera.size_px.has_value(),
            "--photos and --size contradict each other: pictures have the photographs' size");
+    refuse(!bench.motion_file.empty() && !bench.lpips_weights.empty(),
+           "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
     refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
 }
 
@@ -185,6 +192,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     std::string every;
     CLI::Option* every_option =
         bench_command->add_option("--every", every, "only every Nth pose of --motion or camera of --photos (default 1)")->type_name("N");
+    CLI::Option* bench_lpips = addLpipsOption(*bench_command, bench.lpips_weights);
     addCommonRows(*bench_command, bench_line, bench.run.config);
 
     ViewOptions view;
@@ -220,6 +228,21 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
     convert_command->add_flag("--flatten", convert.draw.flatten, kFlattenHelp);
 
+    CompareOptions compare;
+    std::string pixels_per_degree;
+    CLI::App* compare_command = app.add_subcommand("compare", "Say how much two pictures differ: PSNR, SSIM, FLIP and LPIPS");
+    compare_command->add_option("A", compare.first, "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two)")->required();
+    compare_command->add_option("B", compare.second, "picture of the same size")->required();
+    CLI::Option* compare_lpips = addLpipsOption(*compare_command, compare.lpips_weights);
+    CLI::Option* degree_option =
+        compare_command
+            ->add_option("--pixels-per-degree", pixels_per_degree,
+                         "how large FLIP takes the picture to be seen (default 67.02; bench: focal length in pixels times pi / 180)")
+            ->type_name("N");
+    compare_command->footer(
+        "Prints a line for each score, its name and its value: psnr in dB, of R, G and B as they are stored, inf for equal\n"
+        "pictures; ssim, 1 for equal pictures; flip and lpips, 0 for equal pictures. The last three clamp values to 0 to 1.");
+
     StabilityOptions stability;
     CLI::App* stability_command = app.add_subcommand("stability", "Hold stiff and extreme cases against the float64 twin");
     stability_command->add_option("--out", stability.out, "directory for stability.txt, stability.csv and stability.svg")
@@ -249,6 +272,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         bench.run = readRun(bench_line, bench.run.config, {"bench", "series", "methods", "views", "view"}, &bench.tables);
         if (every_option->count() > 0) { bench.every = static_cast<std::uint32_t>(readCount({"--every", {every}}, 1, 1000000)); }
         bench.motion_axes = readChoice({"--motion-axes", {bench.motion_axes}}, {"openxr", "unity"});
+        if (bench_lpips->count() > 0) { bench.lpips_weights = readText({"--lpips", {bench.lpips_weights}}); }
         requireBenchKind(bench);
         return bench;
     }
@@ -269,6 +293,15 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     }
     if (info_command->parsed()) { return info; }
     if (convert_command->parsed()) { return convert; }
+    if (compare_command->parsed()) {
+        compare.pixels_per_degree = kFlipPixelsPerDegree;
+        if (degree_option->count() > 0) {
+            compare.pixels_per_degree =
+                readNumber({"--pixels-per-degree", {pixels_per_degree}}, kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree);
+        }
+        if (compare_lpips->count() > 0) { compare.lpips_weights = readText({"--lpips", {compare.lpips_weights}}); }
+        return compare;
+    }
     if (splats_option->count() > 0) { scene.splats = readCount({"--splats", {splats}}, 1, std::uint64_t{1} << 31); }
     return scene;
 }

@@ -78,6 +78,7 @@ struct BenchOptions {
     std::string motion_axes = "openxr";  // --motion-axes: of the recording
     std::string photos_folder;           // --photos: what the cameras of --cameras saw
     std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
+    std::string lpips_weights;           // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
 };
 
 struct ViewOptions {
@@ -110,6 +111,12 @@ struct ConvertOptions {
     std::filesystem::path out;
 };
 
+struct CompareOptions {
+    std::filesystem::path first, second;
+    std::string lpips_weights;       // empty: no LPIPS
+    double pixels_per_degree = 0.0;  // of FLIP
+};
+
 struct StabilityOptions {
     std::filesystem::path out;
     std::string device;
@@ -124,8 +131,8 @@ struct HelpText {
     std::string text;
 };
 
-using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, StabilityOptions,
-                             KernelsOptions, HelpText>;
+using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, CompareOptions,
+                             StabilityOptions, KernelsOptions, HelpText>;
 
 // Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);

@@ -1,5 +1,6 @@
 // Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
 #include "engine/picture/image_io.h"
+#include "tests/lpips_weights.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
@@ -46,6 +47,7 @@ TEST_CASE("usageErrorsExitWithTwo") {
     checkRefused(work.run("stability"), 2, "--out");
     checkRefused(work.run("bench builtin:one-splat --out out --photos p"), 2, "--cameras");
     checkRefused(work.run("bench builtin:one-splat --out out --every 2"), 2, "--motion or --photos");
+    checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --lpips w.bin"), 2, "--motion and --lpips");
     checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --cameras c.json --photos p"), 2, "--motion and --photos");
     CHECK(work.isEmpty());
 }
@@ -301,6 +303,50 @@ TEST_CASE("benchComparesMethodsByOriginOfPixels") {
     CHECK(results[4]["mode"] == "twin");
 }
 
+TEST_CASE("benchHasLpipsWhereItsWeightsAreGiven") {
+    const Workplace work;
+    const auto benchWith = [&](const std::string& keys, const std::string& arguments) {
+        write(work.path / "b.toml", "[bench]\nmodes = [\"reproject\"]\nrepeats = 1\nwarm-up = 0\n" + keys);
+        return work.run("bench builtin:step-edge --size 48x48 --out out --config b.toml " + arguments);
+    };
+    const auto qualityOf = [&](const Outcome& outcome) {
+        INFO(outcome.errors);
+        REQUIRE(outcome.exit_code == 0);
+        return nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"))["results"][2]["affiliated_against_full"];
+    };
+    const auto headOf = [&] {
+        std::string head;
+        std::getline(std::ifstream(work.path / "out" / "bench.csv") >> std::ws, head);
+        return head;
+    };
+    checkRefused(benchWith("", "--lpips none.bin"), 1, "none.bin: cannot be read");
+    checkRefused(benchWith("lpips = \"none.bin\"\n", ""), 1, "none.bin: cannot be read");
+    checkRefused(benchWith("scores = [\"ssim\", \"lpips\"]\n", ""), 1,
+                 "b.toml:5: scores holds lpips, must come with a file of its weights");
+    checkRefused(benchWith("", "--lpips b.toml"), 1, "b.toml: has 54 bytes, must have the 2898944");
+    CHECK(!fs::exists(work.path / "out"));
+
+    Outcome outcome = benchWith("", "");
+    CHECK(!qualityOf(outcome)["all"].contains("lpips"));
+    CHECK(headOf().find("lpips") == std::string::npos);
+    CHECK(outcome.output.find("LPIPS") == std::string::npos);
+
+    writeFloats(work.path / "w.bin", makeLpipsWeights(9));
+    outcome = benchWith("scores = [\"lpips\"]\nlpips = \"w.bin\"\n", "");
+    const nlohmann::json quality = qualityOf(outcome);
+    CHECK(quality["all"]["lpips"] > 0.0);
+    CHECK(!quality["all"].contains("ssim"));
+    CHECK(!quality["reprojected"].contains("lpips"));
+    CHECK(headOf().find(",all lpips,") != std::string::npos);
+    CHECK(outcome.output.find("LPIPS") != std::string::npos);
+    CHECK(qualityOf(benchWith("scores = [\"none\"]\n", "--lpips w.bin"))["all"]["lpips"] == quality["all"]["lpips"]);
+    CHECK(!qualityOf(benchWith("scores = [\"psnr\"]\nlpips = \"none.bin\"\n", ""))["all"].contains("lpips"));
+    // Too small for the network: the other scores are there.
+    outcome = work.run("bench builtin:step-edge --size 16x48 --out out --config b.toml --lpips w.bin");
+    CHECK(!qualityOf(outcome)["all"].contains("lpips"));
+    CHECK(qualityOf(outcome)["all"].contains("psnr_db"));
+}
+
 TEST_CASE("benchPlaysHeadMotion") {
     const Workplace work;
     write(work.path / "m.csv", "time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.01,0,0,0,0,0,1\n0.2,0.02,0,0,0,0,0,1\n");
@@ -337,13 +383,20 @@ TEST_CASE("benchComparesWithPhotographs") {
     CHECK(results[1]["psnr_db_to_photo"] > 50.0);  // 8 bits
     CHECK(results[1]["psnr_db_lost"] == 0.0);
     CHECK(results[2]["psnr_db_lost"] > 0.0);
+    CHECK(!results[2].contains("lpips_to_photo"));
+    writeFloats(work.path / "w.bin", makeLpipsWeights(9));
+    REQUIRE(work.run("bench builtin:step-edge --cameras c.json --photos photos --out out --lpips w.bin").exit_code == 0);
+    const nlohmann::json with_lpips = nlohmann::json::parse(std::ifstream(work.path / "out" / "photos.json"))["results"];
+    CHECK(with_lpips[1]["lpips_lost"] == 0.0);
+    CHECK(with_lpips[2]["lpips_to_photo"] > with_lpips[1]["lpips_to_photo"]);
     fs::remove_all(work.path / "photos");
     checkRefused(work.run("bench builtin:step-edge --cameras c.json --photos photos --out out"), 1, "photos/a");
 }
 
 TEST_CASE("helpExitsWithZero") {
     const Workplace work;
-    for (const char* command : {"--help", "render --help", "bench --help", "view --help", "info --help", "scene --help"}) {
+    for (const char* command :
+         {"--help", "render --help", "bench --help", "view --help", "info --help", "scene --help", "convert --help", "compare --help"}) {
         const Outcome outcome = work.run(command);
         CHECK(outcome.exit_code == 0);
         CHECK(!outcome.output.empty());

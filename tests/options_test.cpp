@@ -200,7 +200,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
 TEST_CASE("theFrontHoldsWhatIsWorthItsTime") {
     const auto withError = [](double total_ms, double mean_square) {
         BenchResult result = makeResult("a", "paper", 1, total_ms);
-        result.quality = {{"all", 64, mean_square, {}, {}}};
+        result.quality = {{"all", 64, mean_square, {}, {}, {}}};
         return result;
     };
     std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 9.0),

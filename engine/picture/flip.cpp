@@ -181,8 +181,8 @@ float flipColourDifference(const glm::vec3& linear_a, const glm::vec3& linear_b)
 
 PixelScores flip(const Image& a, const Image& b, double pixels_per_degree, int threads) {
     requireComparable(a, b);
-    check(pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0, "FLIP: pixels per degree is {}, must be from 1 to 1000",
-          pixels_per_degree);
+    check(pixels_per_degree >= kFlipLeastPixelsPerDegree && pixels_per_degree <= kFlipMostPixelsPerDegree,
+          "FLIP: pixels per degree is {}, must be from {} to {}", pixels_per_degree, kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree);
     const Seen seen_a = see(a, pixels_per_degree, threads), seen_b = see(b, pixels_per_degree, threads);
     const float largest = largestDifference();
     PixelScores scores{a.size_px, std::vector<float>(a.pixelCount())};

@@ -1,0 +1,49 @@
+// Weights for LPIPS that come from no training, and their files.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <vector>
+
+namespace binosplat::test {
+
+inline constexpr std::size_t kNetworkWeights = 722'496, kHeadWeights = 2'240;
+
+// Of either sign in the network, so large that features stay of one size from layer to layer; heads from 0 to 1.
+inline std::vector<float> makeLpipsWeights(unsigned seed) {
+    std::mt19937 random(seed);  // its numbers are the same everywhere; those of the standard's distributions are not
+    const auto next = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+    std::vector<float> values;
+    const auto add = [&](std::size_t inputs, std::size_t outputs, std::size_t taps) {
+        const float reach = std::sqrt(6.0f / static_cast<float>(inputs * taps));
+        for (std::size_t i = 0; i < inputs * taps * outputs; ++i) { values.push_back(reach * (2.0f * next() - 1.0f)); }
+        for (std::size_t i = 0; i < outputs; ++i) { values.push_back(0.2f * (next() - 0.5f)); }
+    };
+    add(3, 64, 9);
+    const std::size_t fires[][3] = {{64, 16, 64},   {128, 16, 64},  {128, 32, 128}, {256, 32, 128},
+                                    {256, 48, 192}, {384, 48, 192}, {384, 64, 256}, {512, 64, 256}};
+    for (const auto& [inputs, squeezed, expanded] : fires) {
+        add(inputs, squeezed, 1);
+        add(squeezed, expanded, 1);
+        add(squeezed, expanded, 9);
+    }
+    for (std::size_t i = 0; i < kHeadWeights; ++i) { values.push_back(next()); }
+    return values;
+}
+
+inline void writeFloats(const std::filesystem::path& file, const std::vector<float>& values) {
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+}
+
+inline std::vector<float> readFloats(const std::filesystem::path& file) {
+    std::vector<float> values(std::filesystem::file_size(file) / sizeof(float));
+    std::ifstream(file, std::ios::binary)
+        .read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+    return values;
+}
+
+}  // namespace binosplat::test
