@@ -4,6 +4,7 @@
 #include "engine/picture/image.h"
 #include "engine/reference/reference.h"
 #include "engine/scene/procedural.h"
+#include "shaders/shared/constants.h"
 #include "tests/reference_scenes.h"
 
 #include <map>
@@ -47,6 +48,25 @@ inline ViewedScene viewCloud(glm::uvec2 size_px) {
     for (std::size_t i = 300; i < 340; ++i) { scene.scales[i] *= 100.0f; }
     for (std::size_t i = 340; i < 380; ++i) { scene.scales[i] *= 0.001f; }
     return {"cloud", std::move(scene), eye};
+}
+
+// For the constant kSplatKind of passes that dimming does not matter to.
+inline std::uint32_t shapeOf(const Scene& scene) { return scene.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
+
+// The same as 3D Gaussians from as thick as their second axis to flat; needles of 1e6; some within the near plane's reach and beside the
+// eye, where the linear projection breaks down; opacities that dimming takes under 1/255.
+inline ViewedScene viewGaussians(glm::uvec2 size_px, bool antialiased) {
+    ViewedScene view = viewCloud(size_px);
+    view.name = antialiased ? "antialiased Gaussians" : "Gaussians";
+    view.scene.antialiased = antialiased;
+    std::mt19937 random(5);
+    const auto draw = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+    for (std::size_t i = 380; i < 400; ++i) { view.scene.scales[i] = {1e-6f, 1.0f}; }
+    for (const glm::vec2& scale : view.scene.scales) {
+        const float share = draw();
+        view.scene.thicknesses.push_back(std::min(scale.x, scale.y) * (share < 0.1f ? 0.0f : share));
+    }
+    return view;
 }
 
 inline Image toImage(const reference::Picture& picture) {

@@ -106,7 +106,7 @@ public:
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
         const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
-        dispatch("8e_newcomers", {rectified()},
+        dispatch("8e_newcomers", {rectified(), scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
                                     .stereo = view(),

@@ -23,8 +23,12 @@ namespace {
 const reference::Settings kSettings{};
 
 std::vector<ViewedScene> allScenes() {
-    return {test::viewBuiltin("builtin:atelier", {256, 256}, 20000), test::viewBuiltin("builtin:fence", {250, 190}),
-            test::viewBuiltin("builtin:slanted-wall", {256, 256}), test::viewCloud({200, 150})};
+    return {test::viewBuiltin("builtin:atelier", {256, 256}, 20000),
+            test::viewBuiltin("builtin:fence", {250, 190}),
+            test::viewBuiltin("builtin:slanted-wall", {256, 256}),
+            test::viewCloud({200, 150}),
+            test::viewGaussians({200, 150}, false),
+            test::viewGaussians({200, 150}, true)};
 }
 
 bool inOrder(const TilePair& a, const TilePair& b) { return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile; }
@@ -36,7 +40,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const std::uint32_t masked = mask.empty() ? 0 : 1;
     const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass)),
-        large_kernel(gpu.context(), "5_bin_large", sizeof(gpu::BinPass), {masked});
+        large_kernel(gpu.context(), "5_bin_large", sizeof(gpu::BinPass), {masked, device.scene.splatShape()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
@@ -235,10 +239,10 @@ constexpr std::uint32_t kThreadsPerCell = 32;
 }  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "7_rasterize blends the twin's splats, pairs and ranges to the twin's picture") {
-    const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
-                        {kThreadsPerCell, /*depth=*/1, /*moments=*/1, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
-                         /*half_colours=*/0, gpu::kCellsPerTile * kThreadsPerCell});
     for (const ViewedScene& view : allScenes()) {
+        const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
+                            {kThreadsPerCell, /*depth=*/1, /*moments=*/1, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
+                             /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
         CAPTURE(view.name);
         reference::Settings settings = kSettings;
         settings.background = {0.2, 0.4, 0.1};
@@ -284,7 +288,7 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize rounds colours to half floats where these ar
         inputs.pass.half_colours = inputs.colours.address<gpu::uvec2>();
         const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
                             {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
-                             halves, gpu::kCellsPerTile * kThreadsPerCell});
+                             halves, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
         run([&](Commands& commands) {
             commands.dispatch(kernel, inputs.pass, inputs.eye_view.size_tiles.x, inputs.eye_view.size_tiles.y);
         });
@@ -323,9 +327,10 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize leaves the word that each pixel moves by, an
                 settings.inverse_depth_moments = true;
                 const TwinStages twin(view, settings);
                 RasterInputs inputs(*this, view, twin, settings);
-                const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
-                                    {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0,
-                                     test::depthChoiceOf(choice), /*half_colours=*/0, gpu::kCellsPerTile * kThreadsPerCell});
+                const Kernel kernel(
+                    context(), "7_rasterize", sizeof(gpu::RasterizePass),
+                    {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0, test::depthChoiceOf(choice),
+                     /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
                 // Rows of both, one after the other, as where they share memory with a picture.
                 const std::size_t width = view.eye.size_px.x;
                 const Buffer rows = upload("rows", std::vector<gpu::uint>(4 * inputs.pixels, 0xcdcdcdcdu));
