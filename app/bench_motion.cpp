@@ -3,6 +3,7 @@
 #include "app/bench_point.h"
 #include "app/device_options.h"
 #include "app/interrupt.h"
+#include "app/load.h"
 #include "app/modes.h"
 #include "app/motion_results.h"
 #include "app/progress.h"
@@ -116,7 +117,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
     for (const std::string& source : plan.scenes) {
-        const Scene scene = loadScene(source);
+        const Scene scene = loadScene(source, 0, nullptr, {}, levelChoice(options.run));
         const GpuScene gpu_scene(context, scene);
         for (const BenchView& view : viewsOf(plan, source, options.run)) {
             RunOptions view_run = view.run;

@@ -4,6 +4,7 @@
 #include "app/bench_point.h"
 #include "app/device_options.h"
 #include "app/interrupt.h"
+#include "app/load.h"
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
@@ -131,7 +132,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
 
     std::vector<PhotoRow> rows;
     for (const std::string& source : plan.scenes) {
-        const GpuScene gpu_scene(context, loadScene(source));
+        const GpuScene gpu_scene(context, loadScene(source, 0, nullptr, {}, levelChoice(options.run)));
         MethodFrames frames(context, gpu_scene);
         ProgressLine progress("photographs");
         for (std::size_t i = 0; i < photos.size(); ++i) {

@@ -17,7 +17,7 @@ void runConvert(const ConvertOptions& options) {
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
 
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.scene, 0, notes);
+    const Scene scene = loadWithProgress(options.scene, {options.lod, {}}, notes);
     {
         ProgressLine line("writing " + out);
         const Progress progress = [&](double share) { line.show(share); };

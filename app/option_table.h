@@ -42,6 +42,7 @@ inline constexpr OptionRow kStereoRows[] = {
 };
 
 inline constexpr OptionRow kRunRows[] = {
+    {"lod", "scene", "N", "level of detail of a streamed SOG scene, 0 the finest (default: the finest within --memory-limit)"},
     {"metres-per-unit", "scene", "M", "metres in one scene unit (default 1)"},
     {"memory-limit", "run", "MIB", "device memory that may be used (default: all there is)"},
     {"device", "run", "NAME|INDEX", "GPU to use: part of its name, or its number (default: the most capable)"},

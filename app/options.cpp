@@ -62,7 +62,7 @@ void addViewRows(CLI::App& command, CommandLine& line, std::string& config) {
     for (const OptionRow& row : kStereoRows) {
         if (std::string_view(row.key) != "ipd") { addRows(command, line, std::span(&row, 1), "Stereo"); }
     }
-    addRows(command, line, std::span(kRunRows, 2), "Run");  // without the last: the device is the headset's
+    addRows(command, line, std::span(kRunRows, 3), "Run");  // without the last: the device is the headset's
     command.add_option("--config", config, "TOML file with any of these options; the command line wins")->type_name("FILE")->group("Run");
 }
 
@@ -154,6 +154,8 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });
     read("hole-error", [&](const Setting& s) { stereo.hole_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("newcomer-error", [&](const Setting& s) { stereo.newcomer_error = readNumber(s, 0.0, kMaxExpectedError); });
+    read("lod",
+         [&](const Setting& s) { options.lod = static_cast<std::uint32_t>(readCount(s, 0, std::numeric_limits<std::uint32_t>::max())); });
     read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
     read("memory-limit", [&](const Setting& s) { options.memory_limit_mib = readCount(s, 1, kMaxMemoryMib); });
     read("device", [&](const Setting& s) { options.device = readText(s); });
@@ -165,7 +167,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
-    CommandLine render_line, bench_line, view_line, stability_line, kernels_line;
+    CommandLine render_line, bench_line, view_line, info_line, convert_line, stability_line, kernels_line;
     RenderOptions render;
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
@@ -202,6 +204,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     InfoOptions info;
     CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");
     info_command->add_option("SCENE", info.scene, "file, directory or builtin:NAME")->required();
+    addRows(*info_command, info_line, std::span(kRunRows).first(1), "Run");
 
     SceneOptions scene;
     std::string splats;
@@ -215,6 +218,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::App* convert_command = app.add_subcommand("convert", "Write a scene as a 2DGS PLY or an SPZ file");
     convert_command->add_option("SCENE", convert.scene, "file, directory or builtin:NAME")->required();
     convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
+    addRows(*convert_command, convert_line, std::span(kRunRows).first(1), "Run");
 
     StabilityOptions stability;
     CLI::App* stability_command = app.add_subcommand("stability", "Hold stiff and extreme cases against the float64 twin");
@@ -263,8 +267,14 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         kernels.device = runOptions(commandLineLayer(kernels_line)).device;
         return kernels;
     }
-    if (info_command->parsed()) { return info; }
-    if (convert_command->parsed()) { return convert; }
+    if (info_command->parsed()) {
+        info.lod = runOptions(commandLineLayer(info_line)).lod;
+        return info;
+    }
+    if (convert_command->parsed()) {
+        convert.lod = runOptions(commandLineLayer(convert_line)).lod;
+        return convert;
+    }
     if (splats_option->count() > 0) { scene.splats = readCount({"--splats", {splats}}, 1, std::uint64_t{1} << 31); }
     return scene;
 }

@@ -50,6 +50,7 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 struct RunOptions {
     CameraOptions camera;
     StereoOptions stereo;
+    std::optional<std::uint32_t> lod;  // level of detail, 0 the finest; absent: the finest that fits
     double metres_per_unit = 1.0;
     std::string device;
     std::uint64_t memory_limit_mib = 0;  // of device memory; 0: none
@@ -88,6 +89,7 @@ struct ViewOptions {
 
 struct InfoOptions {
     std::string scene;
+    std::optional<std::uint32_t> lod;
 };
 
 struct SceneOptions {
@@ -99,6 +101,7 @@ struct SceneOptions {
 struct ConvertOptions {
     std::string scene;
     std::filesystem::path out;
+    std::optional<std::uint32_t> lod;
 };
 
 struct StabilityOptions {

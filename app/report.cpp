@@ -36,6 +36,7 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     Json json{{"scene", options.scene},
               {"out", options.out.string()},
               {"config", given(options.run.config)},
+              {"lod", options.run.lod ? Json(*options.run.lod) : Json()},
               {"device", given(options.run.device)},
               {"memory-limit", options.run.memory_limit_mib > 0 ? Json(options.run.memory_limit_mib) : Json()}};
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();

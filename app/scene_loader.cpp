@@ -1,6 +1,8 @@
 // Loading beside the frames.
 #include "app/scene_loader.h"
 
+#include "app/load.h"
+
 #include <utility>
 
 namespace binosplat {
@@ -25,7 +27,8 @@ SceneLoader::~SceneLoader() {
 void SceneLoader::load(const Context& context, const std::string& name, const RunOptions& options) {
     try {
         LoadNotes notes;
-        const Scene scene = loadScene(name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; });
+        const Scene scene = loadScene(
+            name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; }, levelChoice(options));
         const Similarity start = startPlacement(options, scene);
         // Readers may report from threads of their own, which must not throw; the upload reports from this one.
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
