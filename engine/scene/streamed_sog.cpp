@@ -30,7 +30,8 @@ struct Level {
     std::size_t index = 0;
     std::vector<Chunk> chunks;  // the environment last
     std::uint64_t splats = 0;
-    int sh_degree = 0;  // the highest of the chunks'
+    int sh_degree = 0;        // the highest of the chunks'
+    const char* reason = "";  // why not the finest, if nobody asked for it
 };
 
 // lod-meta.json, and where it lies.
@@ -100,23 +101,25 @@ Level openLevel(const Streamed& scene, std::size_t index) {
 Level chooseLevel(const Streamed& scene, const LevelChoice& choice) {
     const std::size_t levels = scene.meta.levels.size();
     if (choice.level) {
-        check(*choice.level < levels, "{}: lod is {}, but the scene has {} levels of detail, expected 0 (the finest) to {}", scene.place,
-              *choice.level, levels, levels - 1);
+        check(*choice.level < levels, "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}", scene.place,
+              *choice.level, levels - 1);
         return openLevel(scene, *choice.level);
     }
     for (std::size_t index = 0;; ++index) {
         Level level = openLevel(scene, index);
-        if (index + 1 == levels || !choice.fits || choice.fits(level.splats, level.sh_degree)) { return level; }
+        const bool fits = !choice.fits || choice.fits(level.splats, level.sh_degree);
+        level.reason = !fits ? ", as none fits the memory limit" : index > 0 ? ", the finest that fits the memory limit" : "";
+        if (fits || index + 1 == levels) { return level; }
     }
 }
 
-void noteLevel(const std::string& source, const Streamed& scene, const Level& level, bool asked_for, LoadNotes& notes) {
+void noteLevel(const std::string& source, const Streamed& scene, const Level& level, LoadNotes& notes) {
     const LodMeta& meta = scene.meta;
     for (const LodLevel& each : meta.levels) { notes.level_splats.push_back(each.splats); }
     notes.level = static_cast<std::uint32_t>(level.index);
     notes.environment_splats = level.splats - meta.levels[level.index].splats;
-    notes.lines.push_back(fmt::format("{}: level of detail {} of 0 (the finest) to {}{}", source, level.index, meta.levels.size() - 1,
-                                      !asked_for && level.index > 0 ? ", the finest that fits the memory limit" : ""));
+    notes.lines.push_back(
+        fmt::format("{}: level of detail {} of 0 (the finest) to {}{}", source, level.index, meta.levels.size() - 1, level.reason));
     if (const std::uint64_t without = meta.leaves_without[level.index]; without > 0) {
         notes.lines.back() += fmt::format("; {} of {} leaves have no splats at this level", without, meta.leaves);
     }
@@ -141,7 +144,7 @@ Scene readStreamedSog(const std::string& source, const Streamed& scene, const Le
     }
     if (progress) { progress(1.0); }
     Scene whole = builder.finish(notes);
-    noteLevel(source, scene, level, choice.level.has_value(), notes);
+    noteLevel(source, scene, level, notes);
     return whole;
 }
 
