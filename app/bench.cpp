@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/device_options.h"
 #include "app/interrupt.h"
+#include "app/load.h"
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
@@ -85,7 +86,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
         for (const std::string& source : plan.scenes) {
             for (const BenchSeries& series : plan.series) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
-                    const Scene scene = loadAs(options.run.draw, source, splats);
+                    const Scene scene = loadAs(options.run, source, splats);
                     std::ranges::move(benchScene(context, options, plan, series, source, scene, progress), std::back_inserter(run.results));
                 }
             }

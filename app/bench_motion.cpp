@@ -117,7 +117,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
     for (const std::string& source : plan.scenes) {
-        const Scene scene = loadAs(options.run.draw, source);
+        const Scene scene = loadAs(options.run, source);
         const GpuScene gpu_scene(context, scene);
         for (const BenchView& view : viewsOf(plan, source, options.run)) {
             RunOptions view_run = view.run;

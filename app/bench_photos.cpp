@@ -158,7 +158,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
 
     std::vector<PhotoRow> rows;
     for (const std::string& source : plan.scenes) {
-        const GpuScene gpu_scene(context, loadAs(options.run.draw, source));
+        const GpuScene gpu_scene(context, loadAs(options.run, source));
         MethodFrames frames(context, gpu_scene);
         ProgressLine progress("photographs");
         for (std::size_t i = 0; i < photos.size(); ++i) {

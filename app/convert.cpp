@@ -17,7 +17,7 @@ void runConvert(const ConvertOptions& options) {
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
 
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.draw, options.scene, notes);
+    const Scene scene = loadWithProgress(options.scene, options.load, notes);
     {
         ProgressLine line("writing " + out);
         const Progress progress = [&](double share) { line.show(share); };

@@ -31,11 +31,16 @@ std::string nameKind(const Scene& scene, const LoadNotes& notes) {
 
 void runInfo(const InfoOptions& options) {
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.draw, options.scene, notes);
+    const Scene scene = loadWithProgress(options.scene, options.load, notes);
     const SceneSummary summary = describeScene(scene, &notes);
 
     printRow("scene", "{}", options.scene);
     printRow("splats", "{}", summary.splats);
+    for (std::size_t level = 0; level < notes.level_splats.size(); ++level) {
+        printRow(level == 0 ? "levels of detail" : "", "{}: {} splats{}", level, notes.level_splats[level],
+                 level == notes.level ? " (loaded)" : "");
+    }
+    if (notes.environment_splats > 0) { printRow("", "environment: {} splats (loaded)", notes.environment_splats); }
     printRow("splats in file", "{}", notes.splats_in_file);
     printRow("skipped", "{} not finite, {} with a rotation of length zero", notes.skipped_not_finite, notes.skipped_zero_rotation);
     const glm::vec3 &low = summary.min_position, &high = summary.max_position;

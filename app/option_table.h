@@ -1,6 +1,8 @@
 // Every option of `render` and its likes, once: the command line, the config files and their checks are made from these rows.
 #pragma once
 
+#include <cstddef>
+
 namespace binosplat {
 
 struct OptionRow {
@@ -9,8 +11,6 @@ struct OptionRow {
     const char* value;  // placeholder for the help; "" for a flag
     const char* help;
 };
-
-inline constexpr const char* kFlattenHelp = "draw 3D Gaussians as discs, without the shortest axis of each";
 
 inline constexpr OptionRow kCameraRows[] = {
     {"eye", "camera", "x,y,z", "middle of the eyes (default: a view of the whole scene)"},
@@ -43,8 +43,11 @@ inline constexpr OptionRow kStereoRows[] = {
      "predicted mode: error of a pixel that splats cover which the dominant eye does not see (default 0.3)"},
 };
 
+// The first of the following: those of every command that loads a scene.
+inline constexpr std::size_t kLoadRows = 3;
 inline constexpr OptionRow kRunRows[] = {
-    {"flatten", "scene", "", kFlattenHelp},
+    {"lod", "scene", "N", "level of detail of a streamed SOG scene, 0 the finest (default: the finest within --memory-limit)"},
+    {"flatten", "scene", "", "draw 3D Gaussians as discs, without the shortest axis of each"},
     {"antialiased", "scene", "", "dim small 3D Gaussians, as scenes trained with antialiasing want it (default: what the file says)"},
     {"metres-per-unit", "scene", "M", "metres in one scene unit (default 1)"},
     {"memory-limit", "run", "MIB", "device memory that may be used (default: all there is)"},

@@ -161,8 +161,11 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });
     read("hole-error", [&](const Setting& s) { stereo.hole_error = readNumber(s, 0.0, kMaxExpectedError); });
     read("newcomer-error", [&](const Setting& s) { stereo.newcomer_error = readNumber(s, 0.0, kMaxExpectedError); });
-    read("flatten", [&](const Setting& s) { options.draw.flatten = readFlag(s); });
-    read("antialiased", [&](const Setting& s) { options.draw.antialiased = readFlag(s); });
+    read("lod", [&](const Setting& s) {
+        options.load.lod = static_cast<std::uint32_t>(readCount(s, 0, std::numeric_limits<std::uint32_t>::max()));
+    });
+    read("flatten", [&](const Setting& s) { options.load.flatten = readFlag(s); });
+    read("antialiased", [&](const Setting& s) { options.load.antialiased = readFlag(s); });
     read("metres-per-unit", [&](const Setting& s) { options.metres_per_unit = readPositive(s); });
     read("memory-limit", [&](const Setting& s) { options.memory_limit_mib = readCount(s, 1, kMaxMemoryMib); });
     read("device", [&](const Setting& s) { options.device = readText(s); });
@@ -174,7 +177,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "binosplat 0.1");
 
-    CommandLine render_line, bench_line, view_line, stability_line, kernels_line;
+    CommandLine render_line, bench_line, view_line, info_line, convert_line, stability_line, kernels_line;
     RenderOptions render;
     CLI::App* render_command = app.add_subcommand("render", "Render one frame and write its pictures");
     render_command->add_option("SCENE", render.scene, "file, directory or builtin:NAME")->required();
@@ -212,7 +215,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     InfoOptions info;
     CLI::App* info_command = app.add_subcommand("info", "Say what a scene holds");
     info_command->add_option("SCENE", info.scene, "file, directory or builtin:NAME")->required();
-    info_command->add_flag("--flatten", info.draw.flatten, kFlattenHelp);
+    addRows(*info_command, info_line, std::span(kRunRows).first(kLoadRows), "Run");
 
     SceneOptions scene;
     std::string splats;
@@ -226,7 +229,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::App* convert_command = app.add_subcommand("convert", "Write a scene as a PLY or an SPZ file");
     convert_command->add_option("SCENE", convert.scene, "file, directory or builtin:NAME")->required();
     convert_command->add_option("OUT", convert.out, "file to write, by its name: .ply or .spz")->required();
-    convert_command->add_flag("--flatten", convert.draw.flatten, kFlattenHelp);
+    addRows(*convert_command, convert_line, std::span(kRunRows).first(kLoadRows), "Run");
 
     CompareOptions compare;
     std::string pixels_per_degree;
@@ -291,8 +294,14 @@ Options parseOptions(int argument_count, const char* const* arguments) {
         kernels.device = runOptions(commandLineLayer(kernels_line)).device;
         return kernels;
     }
-    if (info_command->parsed()) { return info; }
-    if (convert_command->parsed()) { return convert; }
+    if (info_command->parsed()) {
+        info.load = runOptions(commandLineLayer(info_line)).load;
+        return info;
+    }
+    if (convert_command->parsed()) {
+        convert.load = runOptions(commandLineLayer(convert_line)).load;
+        return convert;
+    }
     if (compare_command->parsed()) {
         compare.pixels_per_degree = kFlipPixelsPerDegree;
         if (degree_option->count() > 0) {

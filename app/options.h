@@ -46,17 +46,18 @@ struct StereoOptions {
 
 inline constexpr double kDefaultIpdMetres = 0.063;
 
-// How a scene of 3D Gaussians is drawn; discs have no choice.
-struct DrawOptions {
-    bool flatten = false;      // as discs, without their shortest axis
-    bool antialiased = false;  // with opacities that the low-pass dims, also where the file does not say so
+// What of a scene is loaded, and how: 3D Gaussians can be drawn in more than one way.
+struct LoadOptions {
+    std::optional<std::uint32_t> lod;  // level of detail, 0 the finest; absent: the finest that fits
+    bool flatten = false;              // 3D Gaussians as discs, without their shortest axis
+    bool antialiased = false;          // with opacities that the low-pass dims, also where the file does not say so
 };
 
 // What `render` and `bench` have in common.
 struct RunOptions {
     CameraOptions camera;
     StereoOptions stereo;
-    DrawOptions draw;
+    LoadOptions load;
     double metres_per_unit = 1.0;
     std::string device;
     std::uint64_t memory_limit_mib = 0;  // of device memory; 0: none
@@ -96,7 +97,7 @@ struct ViewOptions {
 
 struct InfoOptions {
     std::string scene;
-    DrawOptions draw;
+    LoadOptions load;
 };
 
 struct SceneOptions {
@@ -107,7 +108,7 @@ struct SceneOptions {
 
 struct ConvertOptions {
     std::string scene;
-    DrawOptions draw;
+    LoadOptions load;
     std::filesystem::path out;
 };
 

@@ -48,7 +48,7 @@ void runRender(const RenderOptions& options) {
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
 
     LoadNotes notes;
-    Scene scene = loadWithProgress(options.run.draw, options.scene, notes);
+    Scene scene = loadWithProgress(options.scene, options.run.load, notes, options.run.memory_limit_mib);
     const Cameras cameras = makeCameras(options.run, camera_files, scene);
     const Context context(contextOptions(options.run));
     const GpuScene gpu_scene = [&] {

@@ -36,6 +36,7 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     Json json{{"scene", options.scene},
               {"out", options.out.string()},
               {"config", given(options.run.config)},
+              {"lod", options.run.load.lod ? Json(*options.run.load.lod) : Json()},
               {"device", given(options.run.device)},
               {"memory-limit", options.run.memory_limit_mib > 0 ? Json(options.run.memory_limit_mib) : Json()}};
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
@@ -61,8 +62,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["edge-bounds"] = stereo.edge_bounds;
     json["hole-error"] = stereo.hole_error;
     json["newcomer-error"] = stereo.newcomer_error;
-    json["flatten"] = options.run.draw.flatten;
-    json["antialiased"] = options.run.draw.antialiased;
+    json["flatten"] = options.run.load.flatten;
+    json["antialiased"] = options.run.load.antialiased;
     json["metres-per-unit"] = options.run.metres_per_unit;
     return json;
 }

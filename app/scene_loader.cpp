@@ -1,5 +1,6 @@
 // Loading beside the frames.
 #include "app/scene_loader.h"
+
 #include "app/load.h"
 
 #include <utility>
@@ -26,8 +27,10 @@ SceneLoader::~SceneLoader() {
 void SceneLoader::load(const Context& context, const std::string& name, const RunOptions& options) {
     try {
         LoadNotes notes;
-        Scene scene = loadScene(name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; });
-        drawAs(options.draw, scene, notes);
+        Scene scene = loadScene(
+            name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; },
+            levelChoice(options.load, options.memory_limit_mib));
+        drawAs(options.load, scene, notes);
         const Similarity start = startPlacement(options, scene);
         // Readers may report from threads of their own, which must not throw; the upload reports from this one.
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {

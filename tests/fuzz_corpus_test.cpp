@@ -2,7 +2,7 @@
 #include "tests/fuzz/targets.h"
 #include "tests/hostile_scenes.h"
 #ifdef BINOSPLAT_OPENIMAGEIO
-#include "tests/sog_scenes.h"
+#include "tests/streamed_scenes.h"
 #endif
 
 #include <iterator>
@@ -40,6 +40,7 @@ std::multimap<std::string, std::string> makeSeeds() {
         seeds.emplace("sog_meta", files["meta.json"]);
         seeds.emplace("sog_bundle", makeZip(files, true));
     }
+    seeds.emplace("lod_meta", makeLodMeta());
 #endif
     seeds.emplace("settings", settingsText("default.toml"));
     seeds.emplace("settings", settingsText("bench/pareto.toml"));

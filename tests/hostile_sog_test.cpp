@@ -1,6 +1,6 @@
 // Broken SOG scenes: each loads or is refused in one line.
 #include "tests/hostile.h"
-#include "tests/sog_scenes.h"
+#include "tests/streamed_scenes.h"
 
 using namespace binosplat;
 using namespace binosplat::test;
@@ -11,8 +11,9 @@ struct SogAttempts {
     Folder folder;
     Tally tally;
     std::string name;
+    std::size_t most_splats;
 
-    explicit SogAttempts(std::string what) : name(std::move(what)) {}
+    explicit SogAttempts(std::string what, std::size_t most = 9) : name(std::move(what)), most_splats(most) {}
     ~SogAttempts() {
         MESSAGE(fmt::format("{}: {} broken files, {} loaded, {} refused", name, tally.inputs, tally.read, tally.refused));
         CHECK(tally.refused > tally.inputs / 8);
@@ -23,7 +24,7 @@ struct SogAttempts {
     void load(const std::string& what, const std::string& source) {
         tally.attempt(name + ", " + what, [&] {
             const std::size_t splats = loadScene(source).size();
-            CHECK(splats <= 9);
+            CHECK(splats <= most_splats);
         });
     }
 };
@@ -51,6 +52,22 @@ TEST_CASE("broken meta.json files") {
         attempt("deeply nested", std::string(1'000'000, '['));
         attempt("deeply nested and closed", R"({"version":2,"count":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
     }
+}
+
+TEST_CASE("broken lod-meta.json files") {
+    SogAttempts attempts("lod-meta.json", 32);  // of four chunks
+    const std::string good = makeLodMeta();
+    const std::string source = writeStreamed(attempts.folder, "scene", good);
+    const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
+        (void)attempts.folder.write("scene/lod-meta.json", bytes);
+        attempts.load(what, source);
+    };
+    truncate(good, attempt);
+    flipBits(good, 800, attempt);
+    spliceBytes(good, 800, attempt);
+    replaceNumbers(good, good.size(), attempt);
+    attempt("deeply nested", std::string(1'000'000, '['));
+    attempt("deeply nested and closed", R"({"lodLevels":1,"tree":)" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
 }
 
 TEST_CASE("broken pictures") {

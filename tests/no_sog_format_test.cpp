@@ -8,7 +8,10 @@ TEST_CASE("a SOG scene names the build that reads it") {
     const Folder folder;
     const std::string meta = R"({"version":2,"count":0,"means":{"mins":[0,0,0],"maxs":[0,0,0],"files":["l.webp","u.webp"]}})";
     (void)folder.write("meta.json", meta);
-    for (const std::string& source : {folder.file("."), folder.file("meta.json"), folder.write("a.sog", "PK\x03\x04 and so on")}) {
+    std::filesystem::create_directory(folder.file("streamed"));
+    (void)folder.write("streamed/lod-meta.json", "{}");
+    for (const std::string& source : {folder.file("."), folder.file("streamed"), folder.file("streamed/lod-meta.json"),
+                                      folder.file("meta.json"), folder.write("a.sog", "PK\x03\x04 and so on")}) {
         const std::string message = loadError(source);
         CHECK(contains(message, "a SOG scene, which this build cannot read: configure with BINOSPLAT_OPENIMAGEIO=ON"));
         CHECK(message.find('\n') == std::string::npos);

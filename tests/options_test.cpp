@@ -3,6 +3,7 @@
 #include "app/bench_plan.h"
 #include "app/bench_results.h"
 #include "app/camera_options.h"
+#include "app/load.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 #include "tests/run_program.h"
@@ -93,6 +94,33 @@ TEST_CASE("commandLineWinsOverConfig") {
     CHECK(both.camera.fov_x_deg == 90.0);
     CHECK(both.camera.headset.empty());  // an angle and a headset contradict each other
     CHECK(both.stereo.ipd_m == 0.0);
+}
+
+TEST_CASE("theLevelOfDetailIsAnOptionOfEveryCommandThatReadsAScene") {
+    const Workplace work;
+    writeText(work.path / "a.toml", "[scene]\nlod = 3\n");
+    const std::string file = (work.path / "a.toml").string();
+    CHECK(!render({}).load.lod);
+    CHECK(render({"--lod", "2"}).load.lod == 2u);
+    CHECK(render({"--config", file}).load.lod == 3u);
+    CHECK(render({"--config", file, "--lod", "0"}).load.lod == 0u);
+    CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--lod", "1"}).run.load.lod == 1u);
+    CHECK(parse<ViewOptions>({"view", "a", "--lod", "1"}).run.load.lod == 1u);
+    CHECK(parse<InfoOptions>({"info", "a", "--lod", "1"}).load.lod == 1u);
+    CHECK(parse<ConvertOptions>({"convert", "a", "b.ply", "--lod", "1"}).load.lod == 1u);
+    CHECK(!parse<InfoOptions>({"info", "a"}).load.lod);
+    CHECK_THROWS_AS(render({"--lod", "-1"}), Error);
+    CHECK_THROWS_AS(render({"--lod", "0.5"}), Error);
+}
+
+TEST_CASE("aLevelFitsIfItsSplatsDo") {
+    CHECK(!levelChoice(render({"--lod", "1"})).fits);  // as fine as there is
+    CHECK(levelChoice(render({"--lod", "1"})).level == 1u);
+    const LevelChoice choice = levelChoice(render({"--memory-limit", "3"}));
+    CHECK(choice.fits(65536, 0));  // of 48 bytes
+    CHECK(!choice.fits(65537, 0));
+    CHECK(!choice.fits(65536, 1));
+    CHECK(!choice.fits(std::uint64_t{1} << 60, 3));
 }
 
 TEST_CASE("vectorsMayBeginWithAMinus") {

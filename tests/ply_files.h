@@ -162,6 +162,7 @@ inline void checkSameScene(const Scene& a, const Scene& b) {
     CHECK(a.positions == b.positions);
     CHECK(a.rotations == b.rotations);
     CHECK(a.scales == b.scales);
+    CHECK(a.thicknesses == b.thicknesses);
     CHECK(a.opacities == b.opacities);
     CHECK(a.sh == b.sh);
 }

@@ -9,6 +9,7 @@
 #include "engine/scene/sog.h"
 #include "engine/scene/splat_file.h"
 #include "engine/scene/spz.h"
+#include "engine/scene/streamed_sog.h"
 
 #include <array>
 #include <filesystem>
@@ -24,6 +25,7 @@ namespace {
 struct Source {
     std::string path;
     std::unique_ptr<InputFile> file;  // null for a directory
+    const LevelChoice& level;
 };
 
 // A format is known by its content, never by its name; the first that matches reads. A new one is one more file and one more line below.
@@ -31,12 +33,23 @@ struct SceneFormat {
     const char* name;
     bool (*matches)(Source& source);
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
+    bool has_levels = false;
 };
-constexpr std::array<SceneFormat, 6> kSceneFormats{{
+constexpr std::array<SceneFormat, 8> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readPly(*source.file, notes, progress); }},
+    {"streamed SOG (directory)", [](Source& source) { return !source.file && isStreamedSogFolder(source.path); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readStreamedSogFolder(source.path, source.level, notes, progress);
+     },
+     true},
+    {"streamed SOG (lod-meta.json)", [](Source& source) { return source.file && isStreamedSogFile(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) {
+         return readStreamedSogFile(*source.file, source.level, notes, progress);
+     },
+     true},
     {"SOG (directory)", [](Source& source) { return !source.file && isSogFolder(source.path); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFolder(source.path, notes, progress); }},
     {"SOG (.sog)", [](Source& source) { return source.file && isSogFile(*source.file); },
@@ -68,9 +81,16 @@ Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, con
     }
 }
 
+void requireNoLevel(const std::string& source, const char* kind, const LevelChoice& choice) {
+    check(!choice.level, "{}: lod is {}, but a scene of this kind ({}) has no levels of detail, expected a streamed SOG scene", source,
+          choice.level.value_or(0), kind);
+}
+
 Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
     for (const SceneFormat& format : kSceneFormats) {
-        if (format.matches(source)) { return readWhole(format, source, notes, progress); }
+        if (!format.matches(source)) { continue; }
+        if (!format.has_levels) { requireNoLevel(source.path, format.name, source.level); }
+        return readWhole(format, source, notes, progress);
     }
     check(source.file != nullptr, "{}: is a directory, expected a scene file: {}", source.path, listFormats());
     check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
@@ -89,19 +109,21 @@ void flatten(Scene& scene, LoadNotes& notes) {
         scene.name, notes.median_flatness));
 }
 
-Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNotes* notes, const Progress& progress) {
+Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNotes* notes, const Progress& progress,
+                const LevelChoice& level) {
     LoadNotes ignored;
     LoadNotes& met = notes != nullptr ? *notes : ignored;
     met = {};
     std::error_code unreadable;  // InputFile says why
     try {
         if (isBuiltin(source)) {
+            requireNoLevel(source, "built-in", level);
             Scene scene = makeBuiltin(source, builtin_splats, progress);
             met.splats_in_file = scene.size();
             met.sh_degree_in_file = scene.sh_degree;
             return scene;
         }
-        Source opened{source, std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source)};
+        Source opened{source, std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source), level};
         return loadFrom(opened, met, progress);
     } catch (const std::bad_alloc&) { fail("{}: needs more memory than this machine gives", source); }
 }

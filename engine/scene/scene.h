@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,17 @@ struct LoadNotes {
     int sh_degree_in_file = 0;                // bands above Scene::sh_degree were all zero and were left out
     bool three_scales = false;                // a 3DGS scene
     double median_flatness = 0.0;             // 3DGS only: median of shortest / second shortest axis
+    std::vector<std::uint64_t> level_splats;  // of each level of detail, the finest first; empty: a scene without levels
+    std::uint32_t level = 0;                  // the one that was loaded
+    std::uint64_t environment_splats = 0;     // loaded with every level
     std::vector<std::string> lines;           // one sentence each, for the user
+};
+
+// Which level of detail is loaded of a scene that has several.
+struct LevelChoice {
+    std::optional<std::uint32_t> level;  // 0: the finest; an error if there is no such level
+    // Without `level`: whether so many splats fit. The finest level that does is loaded, or the coarsest; absent: the finest.
+    std::function<bool(std::uint64_t splats, int sh_degree)> fits;
 };
 
 // Called now and then with the share done, 0 to 1.
@@ -48,7 +59,8 @@ using Progress = std::function<void(double)>;
 
 // Loads `source`: a file, a directory, or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
-Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {});
+Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
+                const LevelChoice& level = {});
 
 // Makes discs of 3D Gaussians by dropping the shortest axis of each, and says so in `notes`; discs stay as they are.
 void flatten(Scene& scene, LoadNotes& notes);

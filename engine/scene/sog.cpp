@@ -1,15 +1,10 @@
-// From the bytes of pixels to stored attributes.
+// A SOG scene as a whole.
 #include "engine/scene/sog.h"
 
 #include "engine/error.h"
-#include "engine/picture/webp.h"
-#include "engine/scene/quantized.h"
 #include "engine/scene/scene_builder.h"
-#include "engine/scene/sog_files.h"
-#include "engine/scene/sog_meta.h"
+#include "engine/scene/sog_splats.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -17,144 +12,17 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t kMaxMetaBytes = std::uint64_t{1} << 22;
-constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{1} << 30;
-constexpr std::size_t kPaletteColumns = 64;  // entries per row of the centroids
-
-// A picture read but not decoded, so that all sizes can be judged first.
-struct Packed {
-    std::string place;
-    std::vector<std::byte> bytes;
-    glm::uvec2 size_px{0, 0};
-
-    [[nodiscard]] std::uint64_t pixels() const { return std::uint64_t{size_px.x} * size_px.y; }
-};
-
-Packed readPacked(SogFiles& files, const std::string& name) {
-    Packed packed{files.place(name), files.read(name, kMaxPictureBytes), {}};
-    packed.size_px = webpSize(packed.bytes, packed.place);
-    return packed;
-}
-
-// All pictures of a scene.
-struct Pictures {
-    Pixels means_low, means_high, scales, quats, sh0, centroids, labels;
-};
-
-// The SH degree that version 1 tells by the width of its palette.
-int paletteDegree(const SogPalette& palette, const Packed& centroids) {
-    for (int degree = 1; degree <= kMaxShDegree; ++degree) {
-        const std::size_t width = kPaletteColumns * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
-        if (centroids.size_px.x == width && (palette.sh_degree == 0 || palette.sh_degree == degree)) { return degree; }
-    }
-    fail("{}: is {} pixels wide, expected 192, 512 or 960 for SH of degree 1, 2 or 3", centroids.place, centroids.size_px.x);
-}
-
-Pictures decodePictures(SogFiles& files, SogMeta& meta) {
-    Packed means_low = readPacked(files, meta.means_files[0]), means_high = readPacked(files, meta.means_files[1]);
-    Packed scales = readPacked(files, meta.scales_file), quats = readPacked(files, meta.quats_file);
-    Packed sh0 = readPacked(files, meta.sh0_file), centroids, labels;
-    std::vector<const Packed*> per_splat{&means_low, &means_high, &scales, &quats, &sh0};
-    std::vector<const Packed*> all = per_splat;
-    if (meta.palette) {
-        centroids = readPacked(files, meta.palette->centroids_file);
-        labels = readPacked(files, meta.palette->labels_file);
-        per_splat.push_back(&labels);
-        all.insert(all.end(), {&centroids, &labels});
-        meta.palette->sh_degree = paletteDegree(*meta.palette, centroids);
-        const std::uint64_t entries = std::uint64_t{kPaletteColumns} * centroids.size_px.y;
-        if (meta.palette->count == std::numeric_limits<std::uint64_t>::max()) { meta.palette->count = entries; }
-        check(meta.palette->count <= entries, "{}: has room for {} entries, expected the {} of meta.json", centroids.place, entries,
-              meta.palette->count);
-    }
-    std::uint64_t total_bytes = 0;
-    for (const Packed* packed : all) { total_bytes += packed->bytes.size(); }
-    for (const Packed* packed : per_splat) {
-        check(packed->size_px == means_low.size_px, "{}: is {} x {}, expected {} x {} as {}", packed->place, packed->size_px.x,
-              packed->size_px.y, means_low.size_px.x, means_low.size_px.y, meta.means_files[0]);
-        check(meta.count <= packed->pixels(), "{}: has {} pixels, expected one for each of {} splats", packed->place, packed->pixels(),
-              meta.count);
-    }
-    for (const Packed* packed : all) {
-        // Positions are noise in their low bytes: a scene of so many pixels has more bytes than that.
-        check(packed->pixels() <= 256 * total_bytes + 65536, "{}: {} pixels in a scene of {} bytes, expected fewer than 256 per byte",
-              packed->place, packed->pixels(), total_bytes);
-    }
-    const auto decode = [](Packed& packed, bool with_alpha) {
-        Pixels pixels = decodeWebp(packed.bytes, with_alpha, packed.place);
-        packed.bytes = {};
-        return pixels;
-    };
-    Pictures pictures;
-    pictures.means_low = decode(means_low, false);
-    pictures.means_high = decode(means_high, false);
-    pictures.scales = decode(scales, false);
-    pictures.quats = decode(quats, true);
-    pictures.sh0 = decode(sh0, true);
-    if (meta.palette) {
-        pictures.centroids = decode(centroids, false);
-        pictures.labels = decode(labels, false);
-    }
-    return pictures;
-}
-
-// The inverse of x -> sign(x) ln(1 + |x|).
-float expandPosition(float value) { return std::copysign(std::expm1(std::abs(value)), value); }
-
-void unpackSplat(const SogMeta& meta, const Pictures& pictures, std::size_t splat, StoredBlock& block, std::size_t row) {
-    const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
-    const std::size_t pixel = 4 * splat;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int offset = static_cast<int>(axis);
-        const int level = pictures.means_high.rgba[pixel + axis] << 8 | pictures.means_low.rgba[pixel + axis];
-        const float share = static_cast<float>(level) / 65535.0f;
-        put(kStoredX + offset, expandPosition(meta.mins[axis] * (1.0f - share) + meta.maxs[axis] * share));
-        put(kStoredScale0 + offset, meta.scales[axis][pictures.scales.rgba[pixel + axis]]);
-        put(kStoredDc0 + offset, meta.sh0[axis][pictures.sh0.rgba[pixel + axis]]);
-    }
-    put(kStoredOpacity, meta.sh0[3][pictures.sh0.rgba[pixel + 3]]);
-
-    // Alpha 252 to 255 says which of w, x, y, z is the largest; the others lie between -1/sqrt(2) and 1/sqrt(2).
-    const std::uint8_t* quat = pictures.quats.rgba.data() + pixel;
-    const auto component = [&](std::size_t i) { return (static_cast<float>(quat[i]) / 255.0f * 2.0f - 1.0f) * 0.70710678f; };
-    std::array<float, 4> rotation{};  // of length zero for any other alpha: skipped and counted
-    if (quat[3] >= 252) { rotation = fromSmallestThree(quat[3] - 252u, {component(0), component(1), component(2)}); }
-    for (std::size_t i = 0; i < 4; ++i) { put(kStoredRot0 + static_cast<int>(i), rotation[i]); }
-
-    if (!meta.palette) { return; }
-    const std::size_t coefficients = static_cast<std::size_t>(shCoefficientCount(meta.palette->sh_degree)) - 1;
-    const std::size_t label = pictures.labels.rgba[pixel] | static_cast<std::size_t>(pictures.labels.rgba[pixel + 1]) << 8;
-    const bool known = label < meta.palette->count;
-    const std::size_t first = (label / kPaletteColumns * pictures.centroids.size_px.x) + label % kPaletteColumns * coefficients;
-    for (std::size_t k = 0; k < coefficients; ++k) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            put(kStoredRest0 + static_cast<int>(channel * coefficients + k),
-                known ? meta.palette->values[pictures.centroids.rgba[4 * (first + k) + channel]] : std::numeric_limits<float>::quiet_NaN());
-        }
-    }
-}
-
-Scene readSog(const std::string& source, SogFiles& files, LoadNotes& notes, const Progress& progress) {
-    SogMeta meta = parseSogMeta(files.read("meta.json", kMaxMetaBytes), files.place("meta.json"));
+Scene readSog(const std::string& source, std::unique_ptr<SogFiles> files, LoadNotes& notes, const Progress& progress) {
+    SogSplats splats(std::move(files));
     if (progress) { progress(0.0); }
-    const Pictures pictures = decodePictures(files, meta);
-    SceneBuilder builder(source, meta.count, meta.palette ? meta.palette->sh_degree : 0, true);
-    StoredBlock block;
-    for (std::uint64_t done = 0, blocks = 0; done < meta.count; done += block.rows, ++blocks) {
-        if (progress && blocks % 128 == 0) { progress(0.5 + 0.5 * static_cast<double>(done) / static_cast<double>(meta.count)); }
-        block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, meta.count - done));
-        for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(meta, pictures, done + row, block, row); }
-        builder.append(block);
-    }
+    const SogPictures pictures = splats.decode();
+    SceneBuilder builder(source, splats.count(), splats.shDegree(), true);
+    const auto second_half = [&](double share) { progress(0.5 + 0.5 * share); };
+    splats.append(pictures, {0, splats.count()}, splats.shDegree(), builder, progress ? Progress(second_half) : Progress());
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
-    scene.antialiased = meta.antialiased;
+    scene.antialiased = splats.antialiased();
     return scene;
-}
-
-void requireWebp(const std::string& source) {
-    check(canDecodeWebp(),
-          "{}: a SOG scene, which this build cannot read: configure with BINOSPLAT_OPENIMAGEIO=ON, or convert it to PLY or SPZ", source);
 }
 
 bool isArchive(InputFile& file) { return file.peek(4) == std::string_view("PK\x03\x04", 4); }
@@ -174,13 +42,13 @@ bool isSogFile(InputFile& file) {
 }
 
 Scene readSogFolder(const std::string& folder, LoadNotes& notes, const Progress& progress) {
-    requireWebp(folder);
-    return readSog(folder, *openSogFolder(folder), notes, progress);
+    requireSogDecoder(folder);
+    return readSog(folder, openSogFolder(folder), notes, progress);
 }
 
 Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress) {
-    requireWebp(file.name());
-    if (isArchive(file)) { return readSog(file.name(), *openSogBundle(file), notes, progress); }
+    requireSogDecoder(file.name());
+    if (isArchive(file)) { return readSog(file.name(), openSogBundle(file), notes, progress); }
     const std::filesystem::path path(file.name());
     check(path.filename() == "meta.json", "{}: the meta.json of a SOG scene under another name, expected that name", file.name());
     return readSogFolder(path.has_parent_path() ? path.parent_path().string() : ".", notes, progress);

@@ -39,6 +39,10 @@ public:
             bytes.insert(bytes.end(), block.begin(), block.end());
         }
     }
+    std::uint64_t sizeBytes(const std::string& name) const override {
+        requirePlainName(place("meta.json"), name);
+        return InputFile(place(name)).sizeBytes();
+    }
     std::string place(const std::string& name) const override { return (std::filesystem::path(folder_) / name).string(); }
 
 private:
@@ -76,17 +80,11 @@ public:
     }
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
-        requirePlainName(place("meta.json"), name);
-        const zip_int64_t index = zip_name_locate(archive_.get(), (prefix_ + name).c_str(), 0);
-        check(index >= 0, "{}: not in the archive", place(name));
-        zip_stat_t entry;
-        zip_stat_init(&entry);
-        check(zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
-              "{}: its size cannot be read", place(name));
+        const zip_stat_t entry = find(name);
         // Pictures are compressed already and meta.json is text: what grows a hundredfold is there to fill the memory.
         const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
         check(entry.size <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size, bound);
-        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive_.get(), static_cast<zip_uint64_t>(index), 0));
+        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive_.get(), entry.index, 0));
         check(opened != nullptr, "{}: cannot be read ({})", place(name), zip_strerror(archive_.get()));
         std::vector<std::byte> bytes(entry.size);
         std::uint64_t done = 0;
@@ -101,9 +99,23 @@ public:
         check(zip_fread(opened.get(), &behind, 1) == 0, "{}: cannot be read ({})", place(name), zip_file_strerror(opened.get()));
         return bytes;
     }
+    std::uint64_t sizeBytes(const std::string& name) const override { return find(name).size; }
     std::string place(const std::string& name) const override { return path_ + ": " + prefix_ + name; }
 
 private:
+    // Where an entry is and how long it says it is.
+    zip_stat_t find(const std::string& name) const {
+        requirePlainName(place("meta.json"), name);
+        const zip_int64_t index = zip_name_locate(archive_.get(), (prefix_ + name).c_str(), 0);
+        check(index >= 0, "{}: not in the archive", place(name));
+        zip_stat_t entry;
+        zip_stat_init(&entry);
+        check(zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
+              "{}: its size cannot be read", place(name));
+        entry.index = static_cast<zip_uint64_t>(index);
+        return entry;
+    }
+
     std::string path_, prefix_;
     std::uint64_t size_bytes_;
     std::unique_ptr<zip_t, ArchiveCloser> archive_;

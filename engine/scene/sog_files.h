@@ -15,6 +15,8 @@ public:
     virtual ~SogFiles() = default;
     // The bytes of `name`, at most `max_bytes`. Throws Error if it is missing, larger, or not a plain file name: no path leads out.
     [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
+    // Of a file that could be read. Throws Error as `read` does.
+    [[nodiscard]] virtual std::uint64_t sizeBytes(const std::string& name) const = 0;
     // How messages call a file: path and name.
     [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
 };

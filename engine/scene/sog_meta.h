@@ -22,6 +22,11 @@ struct SogPalette {
     std::string centroids_file, labels_file;
 };
 
+// Some of a file's splats: `count` of them from `first` on.
+struct SplatRange {
+    std::uint64_t first = 0, count = 0;
+};
+
 struct SogMeta {
     std::uint64_t count = 0;
     bool antialiased = false;

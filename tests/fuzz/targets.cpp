@@ -2,6 +2,7 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/error.h"
+#include "engine/scene/lod_meta.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/sog_meta.h"
 #include "engine/setup/camera_file.h"
@@ -75,6 +76,21 @@ void readSpz(Bytes input) {
 }
 
 void readSogMeta(Bytes input) { (void)parseSogMeta(std::as_bytes(input), "meta.json"); }
+void readLodMeta(Bytes input) {
+    const LodMeta meta = parseLodMeta(std::as_bytes(input), "lod-meta.json");
+    for (const LodLevel& level : meta.levels) {
+        std::uint64_t splats = 0;
+        for (const auto& [file, ranges] : level.chunks) {
+            if (file >= meta.files.size() || ranges.empty()) { std::abort(); }
+            for (std::uint64_t end = 0; const SplatRange range : ranges) {
+                if (range.first < end || range.count == 0) { std::abort(); }
+                end = range.first + range.count;
+                splats += range.count;
+            }
+        }
+        if (splats != level.splats) { std::abort(); }
+    }
+}
 void readSettings(Bytes input) { (void)readSettingsFile(MemoryFile(input).path()); }
 void readHeadsetText(Bytes input) { (void)readHeadset(MemoryFile(input).path()); }
 void readCameras(Bytes input) { (void)readCameraFile(MemoryFile(input).path()); }
@@ -108,6 +124,7 @@ constexpr auto kTargets = std::to_array<Target>({
     {"ply", readPly},
     {"spz", readSpz},
     {"sog_meta", readSogMeta},
+    {"lod_meta", readLodMeta},
 #ifdef BINOSPLAT_OPENIMAGEIO
     {"sog_bundle", readScene},
 #endif

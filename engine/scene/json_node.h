@@ -1,0 +1,37 @@
+// JSON files checked value by value: each knows its place, "meta.json: means.mins[2]", and says what was expected there.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace binosplat {
+
+// `file` is the name for messages, `expected` what it should be. Throws Error for what is no JSON or nested deeper than `max_depth`:
+// nothing that walks through it or quotes it need fear for the stack.
+nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected, int max_depth = 64);
+
+// A value of a document that outlives it. Whatever is asked for throws Error where it is not so.
+struct JsonNode {
+    const nlohmann::json& value;
+    const std::string& file;
+    std::string key = {};  // from the document on; empty: the document
+
+    [[nodiscard]] std::string place() const { return key.empty() ? file : file + ": " + key; }
+    // Whether it is an object with a `name` that is not null.
+    [[nodiscard]] bool has(const char* name) const;
+    [[nodiscard]] JsonNode at(const std::string& name) const;
+    [[nodiscard]] JsonNode at(std::size_t index) const;  // of an array, below its size
+    void requireObject() const;
+    [[nodiscard]] std::size_t arraySize() const;
+    void requireArray(std::size_t size) const;
+    [[nodiscard]] float number() const;  // finite
+    [[nodiscard]] std::uint64_t count() const;
+    [[nodiscard]] std::string text() const;
+    [[nodiscard]] bool flag() const;
+};
+
+}  // namespace binosplat
