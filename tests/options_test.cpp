@@ -113,13 +113,30 @@ TEST_CASE("theLevelOfDetailIsAnOptionOfEveryCommandThatReadsAScene") {
     CHECK_THROWS_AS(render({"--lod", "0.5"}), Error);
 }
 
+TEST_CASE("howGaussiansAreDrawnIsAnOptionOfEveryCommandThatReadsAScene") {
+    const Workplace work;
+    writeText(work.path / "a.toml", "[scene]\nflatten = true\nantialiased = true\n");
+    CHECK_FALSE(render({}).load.flatten);
+    CHECK_FALSE(render({}).load.antialiased);
+    CHECK(render({"--flatten"}).load.flatten);
+    CHECK(render({"--antialiased"}).load.antialiased);
+    const RunOptions from_file = render({"--config", (work.path / "a.toml").string()});
+    CHECK(from_file.load.flatten);
+    CHECK(from_file.load.antialiased);
+    CHECK(parse<InfoOptions>({"info", "a", "--flatten"}).load.flatten);
+    CHECK(parse<ConvertOptions>({"convert", "a", "b.ply", "--flatten"}).load.flatten);
+    CHECK(parse<ViewOptions>({"view", "a", "--flatten"}).run.load.flatten);
+    CHECK_FALSE(parse<ViewOptions>({"view", "a", "--center-roi"}).run.load.flatten);
+}
+
 TEST_CASE("aLevelFitsIfItsSplatsDo") {
-    CHECK(!levelChoice(render({"--lod", "1"})).fits);  // as fine as there is
-    CHECK(levelChoice(render({"--lod", "1"})).level == 1u);
-    const LevelChoice choice = levelChoice(render({"--memory-limit", "3"}));
+    CHECK(!levelChoice({.lod = 1}, 0).fits);  // as fine as there is
+    CHECK(levelChoice({.lod = 1}, 0).level == 1u);
+    const LevelChoice choice = levelChoice({.lod = {}, .flatten = true}, 3);
     CHECK(choice.fits(65536, 0));  // of 48 bytes
     CHECK(!choice.fits(65537, 0));
     CHECK(!choice.fits(65536, 1));
+    CHECK(!levelChoice({}, 3).fits(65536, 0));  // of 52 bytes
     CHECK(!choice.fits(std::uint64_t{1} << 60, 3));
 }
 

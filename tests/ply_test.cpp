@@ -131,7 +131,7 @@ TEST_CASE("line breaks of Windows are read") {
     checkSameScene(loadScene(folder.write("windows.ply", replaced(ply.bytes(), "\n", "\n"))), expected);
 }
 
-TEST_CASE("of three scales the shortest axis is dropped and the frame stays right-handed") {
+TEST_CASE("of three scales the shortest becomes the last, the frame stays right-handed, and flattening drops it") {
     const Folder folder;
     for (std::size_t shortest = 0; shortest < 3; ++shortest) {
         PlyText ply = makePly(0, true);
@@ -144,18 +144,25 @@ TEST_CASE("of three scales the shortest axis is dropped and the frame stays righ
             for (double& value : ply[fmt::format("rot_{}", i)].values) { value = rotation[i]; }
         }
         LoadNotes notes;
-        const Scene scene = loadScene(folder.write("three.ply", ply.bytes()), 0, &notes);
+        Scene scene = loadScene(folder.write("three.ply", ply.bytes()), 0, &notes);
         const glm::mat3 trained = glm::mat3_cast(glm::normalize(glm::quat(0.3f, -0.5f, 0.7f, 0.2f)));
         const glm::mat3 kept = glm::mat3_cast(scene.rotations[0]);
         const int u = static_cast<int>((shortest + 1) % 3), v = static_cast<int>((shortest + 2) % 3);
         CHECK(glm::length(kept[0] - trained[u]) < 1e-6f);
         CHECK(glm::length(kept[1] - trained[v]) < 1e-6f);
-        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);  // the normal lies along the dropped axis
+        CHECK(glm::length(kept[2] - trained[static_cast<int>(shortest)]) < 1e-6f);  // the normal lies along the shortest axis
         CHECK(glm::determinant(kept) == doctest::Approx(1.0));
         CHECK(scene.scales[0].x == doctest::Approx(std::exp(logs[u])));
         CHECK(scene.scales[0].y == doctest::Approx(std::exp(logs[v])));
         CHECK(notes.three_scales);
         CHECK(notes.median_flatness == doctest::Approx(std::exp(-7.0 - std::min(logs[u], logs[v]))));
+        REQUIRE(scene.isGaussian3d());
+        CHECK(scene.thicknesses[0] == doctest::Approx(std::exp(-7.0)));
+        writePly(scene, folder.file("again.ply"));
+        checkSameScene(loadScene(folder.file("again.ply")), scene);
+        CHECK(notes.lines.empty());
+        flatten(scene, notes);
+        CHECK_FALSE(scene.isGaussian3d());
         REQUIRE(notes.lines.size() == 1);
         CHECK(contains(notes.lines[0], "shortest axis"));
     }
