@@ -167,7 +167,8 @@ void main() {
                     const float dy = d.y + float(p * kRowStep);
                     const float u_p = u + plane.y * dy;
                     const float v_p = reference.w + plane.z * dy;
-                    const float q_p = q + depth_form.z * dy;
+                    float q_p = q + depth_form.z * dy;
+                    if (kSplatKind != kDiscs) { q_p = clamp(q_p, depth_form.x / kDepthReach, depth_form.x * kDepthReach); }
                     // A hit beyond the near plane has 0 < 1/z <= 1/near. As bits, negative values and NaN are above that.
                     const float z = 1 / q_p;
                     const float square = u_p * u_p + v_p * v_p;
@@ -184,9 +185,9 @@ void main() {
                     transmittance[p] = closes ? -transmittance[p] : after;
                     most_open = max(most_open, transmittance[p]);
                     colour[p] += weight * splat_colour;
-                    if (kSumDepth) { depth[p] += weight * (on_disc ? z : centre_z); }
+                    if (kSumDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
                     if (kSumInverseDepth) {
-                        const float inverse_z = on_disc ? q_p : depth_form.x;
+                        const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
                         const float weighted = weight * inverse_z;
                         moments[p].x += weighted;
                         if (kSumInverseDepthSquare) { moments[p].y += weighted * inverse_z; }

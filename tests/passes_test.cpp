@@ -134,8 +134,12 @@ private:
         note("Gaussian A", plane_error.x, unit * truth.plane_from_pixel.x);
         note("Gaussian B", plane_error.y, unit * truth.plane_from_pixel.x * (1.0 + sigma_px.x / sigma_px.y));
         note("Gaussian D", plane_error.z, unit * truth.plane_from_pixel.z);
-        note("perspective", splat.perspective.x, 1.0);
-        note("perspective", splat.perspective.y, 1.0);
+        // Of 1/z, over a standard deviation on the screen. Sigma2^-1 divides by the shortest axis what the longest one brings.
+        const double climb = std::max(view.scene.scales[i].x, view.scene.scales[i].y) / truth.depth;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double error = static_cast<double>(splat.perspective[axis]) - truth.perspective[axis];
+            note("Gaussian perspective", error * sigma_px[axis] * truth.depth, unit * climb * (1.0 + longest_px / std::sqrt(0.3)));
+        }
         note("dimmed opacity", test::unpack(splat).opacity / truth.opacity - 1.0, 1.1e-5 + unit);
     }
 
@@ -271,9 +275,9 @@ TEST_CASE_FIXTURE(Gpu, "3_sort_depth puts the twin's depths front to back, ties 
 TEST_CASE_FIXTURE(Gpu, "4_project gives the twin's fields, up to roundings times the condition of each") {
     // Measured: reference 1.3, A and B 19, D 11, perspective 5, 1/z 3.1, offset 0.7, of Gaussians 2, in roundings.
     const std::map<std::string, double> bounds{
-        {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},  {"1/z", 8.0},    {"A", 32.0},
-        {"B", 32.0},         {"D", 16.0},         {"perspective", 16.0},  {"offset", 2.0}, {"Gaussian A", 4.0},
-        {"Gaussian B", 4.0}, {"Gaussian D", 4.0}, {"dimmed opacity", 4.0}};
+        {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},         {"1/z", 8.0},           {"A", 32.0},
+        {"B", 32.0},         {"D", 16.0},         {"perspective", 16.0},         {"offset", 2.0},        {"Gaussian A", 4.0},
+        {"Gaussian B", 4.0}, {"Gaussian D", 4.0}, {"Gaussian perspective", 2.0}, {"dimmed opacity", 4.0}};
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);

@@ -53,7 +53,9 @@ bool placeGaussian(ProjectedSplat& splat, const CameraSplat& camera, const EyeFr
     // rho = (yy dx^2 - 2 xy dx dy + xx dy^2) / det as (A dx + B dy)^2 + (D dy)^2.
     const double a = std::sqrt(g.yy / g.det);
     splat.plane_from_pixel = {a, -g.xy / g.yy * a, 1.0 / std::sqrt(g.yy)};
-    splat.plane_offset = splat.perspective = glm::dvec2(0.0);
+    splat.plane_offset = glm::dvec2(0.0);
+    // The mean of 1/z at a place on the screen: Sigma2^-1 times its covariance with the place.
+    splat.perspective = glm::dvec2(g.yy * g.with_depth.x - g.xy * g.with_depth.y, g.xx * g.with_depth.y - g.xy * g.with_depth.x) / g.det;
     splat.inverse_depth = 1.0 / camera.c.z;
     splat.reach_px = {std::sqrt(splat.cut * g.xx), std::sqrt(splat.cut * g.yy)};
     return true;

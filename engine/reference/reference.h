@@ -29,9 +29,9 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
 // unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
 // plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
-// Of a 3D Gaussian (`gaussian`) u and v themselves stand there for u/z and v/z; 1/z is the centre's, and there is no low-pass beside the
-// one in its plane_from_pixel.
-// A splat that can show nowhere (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
+// Of a 3D Gaussian (`gaussian`) u and v themselves stand there for u/z and v/z, 1/z is where it is greatest along the ray, to first order
+// and within kDepthReach of the centre's, and there is no low-pass beside the one in its plane_from_pixel. A splat that can show nowhere
+// (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
     glm::dvec2 plane_offset;

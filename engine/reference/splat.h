@@ -3,6 +3,7 @@
 
 #include "engine/reference/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -16,6 +17,8 @@ inline constexpr double kMinTransmittance = 1e-4;
 inline constexpr double kLowPassFactor = 2.0;
 // 3DGS's low-pass: variance in px^2 that is added on the screen.
 inline constexpr double kScreenVariance = 0.3;
+// A 3D Gaussian's depth at a pixel stays within this ratio of its centre's.
+inline constexpr double kDepthReach = 2.0;
 // Below this sine between the line of sight and the plane, the plane holds the eye as far as float64 can tell.
 inline constexpr double kMinPlaneSine = 1e-14;
 
@@ -50,7 +53,8 @@ struct CameraSplat {
 // within the picture enlarged by 0.3 of its half width and height on each side.
 struct ScreenGaussian {
     double xx, xy, yy, det;
-    double sharp_det;  // without the low-pass
+    double sharp_det;       // without the low-pass
+    glm::dvec2 with_depth;  // the covariance of 1/z, to first order, and the place on the screen: -(J Sigma) e_z / z^2
 };
 
 inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& eye) {
@@ -66,6 +70,7 @@ inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& e
     g.xx = sharp_xx + kScreenVariance;
     g.xy = a.x * a.y + b.x * b.y + w.x * w.y;
     g.yy = sharp_yy + kScreenVariance;
+    g.with_depth = -(splat.a.z * a + splat.b.z * b + splat.w.z * w) / (splat.c.z * splat.c.z);
     // xx yy - xy^2 as a sum of squares (Cauchy and Binet): of a needle the difference would keep no digit.
     const double ab = cross(a, b), aw = cross(a, w), bw = cross(b, w);
     g.sharp_det = ab * ab + aw * aw + bw * bw;
@@ -116,22 +121,25 @@ struct RayPlane {
     glm::dvec2 centre_px;
     double centre_depth, cut, near;
     bool disc, low_pass;
+    bool gaussian = false;
+    glm::dvec2 depth_slope{0.0};  // of a 3D Gaussian: of 1/z, which rho does not depend on
 };
 
 inline RayPlane rayPlane(const ProjectedSplat& splat, glm::uvec2 size_px, double near) {
     if (splat.gaussian) {
-        const glm::dvec3& plane = splat.plane_from_pixel;
-        const double inverse_depth = splat.inverse_depth;
+        const glm::dvec3 plane = splat.plane_from_pixel * splat.inverse_depth;
         return {splat.reference_px,
-                {0.0, 0.0, inverse_depth},
-                {plane.x * inverse_depth, 0.0, 0.0},
-                {plane.y * inverse_depth, plane.z * inverse_depth, 0.0},
+                {0.0, 0.0, splat.inverse_depth},
+                {plane.x, 0.0, 0.0},
+                {plane.y, plane.z, 0.0},
                 splat.reference_px,
                 splat.depth,
                 splat.cut,
                 near,
                 true,
-                false};
+                false,
+                true,
+                splat.perspective};
     }
     const PixelRows rows = pixelRows(splat, size_px);
     const glm::dvec3 across = glm::cross(rows.u, rows.v);
@@ -166,6 +174,10 @@ inline bool meet(const RayPlane& plane, const glm::dvec2& pixel, Hit& hit) {
         const double square = u * u + v * v, scale = inverse_depth * inverse_depth;
         if (inverse_depth > 0.0 && plane.near * inverse_depth <= 1.0 && square < plane.cut * scale) {
             hit = {square / scale, 1.0 / inverse_depth};
+            if (plane.gaussian) {
+                hit.depth = 1.0 / std::clamp(inverse_depth + glm::dot(plane.depth_slope, d), inverse_depth / kDepthReach,
+                                             inverse_depth * kDepthReach);
+            }
             met = true;
         }
     }

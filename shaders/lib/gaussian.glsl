@@ -9,6 +9,7 @@ struct ScreenGaussian {
     float xx, xy, yy;  // Sigma2, px^2
     float root_det;    // of Sigma2
     float root_sharp;  // likewise, without the low-pass
+    vec2 with_depth;   // the covariance of 1/z and the place on the screen, px
 };
 
 float lengthOfFive(float a, float b, float c, float d, float e) {
@@ -38,6 +39,8 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     g.xx = u.x * u.x + v.x * v.x + w.x * w.x + kScreenVariance;
     g.xy = u.x * u.y + v.x * v.y + w.x * w.y;
     g.yy = u.y * u.y + v.y * v.y + w.y * w.y + kScreenVariance;
+    const vec3 climb = scales * vec3(splat.t_u.z, splat.t_v.z, t_w.z) / splat.centre.z;
+    g.with_depth = -(climb.x * u + climb.y * v + climb.z * w) / splat.centre.z;
     // The low-pass's own part twice over in xx + yy.
     const float blurred = sqrt(kScreenVariance) * sqrt(g.xx + g.yy - kScreenVariance);
     g.root_det = lengthOfFive(areas.x, areas.y, areas.z, blurred, 0);
@@ -59,7 +62,10 @@ ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out 
     // rho = d^T Sigma2^-1 d = u^2 + v^2, where v does not depend on dx.
     const float a = sqrt(g.yy) / g.root_det;
     p.plane_from_pixel = vec3(a, -(g.xy / g.yy) * a, 1 / sqrt(g.yy));
-    p.perspective = vec2(0);
+    // The mean of 1/z along a ray, which to first order is where the Gaussian is greatest there: the covariance with the place on the screen
+    // over that of the place, Sigma2. The low-pass keeps it finite where a sheet is seen edge-on.
+    const float along_u = p.plane_from_pixel.x * g.with_depth.x + p.plane_from_pixel.y * g.with_depth.y;
+    p.perspective = along_u * p.plane_from_pixel.xy + vec2(0, p.plane_from_pixel.z * p.plane_from_pixel.z * g.with_depth.y);
     p.opacity = packOpacity(dimmed ? dimmedOpacity(splat.opacity, g) : splat.opacity, has_reference);
     p.colour = uvec2(0);
     return p;

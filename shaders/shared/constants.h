@@ -52,6 +52,8 @@ BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
 // The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: beside the eye
 // the linear projection breaks down (likewise).
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
+// The depth of a 3D Gaussian at a pixel is a linear guess from its centre; it stays within this ratio of the centre's.
+BINOSPLAT_CONSTANT float kDepthReach = 2.0f;
 
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
 // kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
