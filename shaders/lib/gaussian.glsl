@@ -26,7 +26,7 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 slope = clamp(splat.centre.xy / splat.centre.z, low, high);
     const vec2 px_per_unit = eye.focal_px / splat.centre.z;
     const vec3 t_w = cross(splat.t_u, splat.t_v);
-    const vec3 scales = vec3(splat.scale, splat.thickness);
+    const vec3 scales = min(vec3(splat.scale, splat.thickness), kMaxSigma / max(px_per_unit.x, px_per_unit.y));
     const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
     const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
     const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);

@@ -52,6 +52,9 @@ BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
 // The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: beside the eye
 // the linear projection breaks down (likewise).
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
+// The axes of a 3D Gaussian are cut off here on the screen, in px, so that the squares of their lengths and the areas between them stay
+// finite: what is seen of one that long is as opaque everywhere along it.
+BINOSPLAT_CONSTANT float kMaxSigma = 1e15f;
 
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
 // kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
