@@ -73,7 +73,7 @@ void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
     const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / kLowPass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
-    const float error = stereo.newcomer_error * splat.opacity;
+    const float error = stereo.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
     const uint steps = uint(min(error * error * pixels, kMaxTileError) * kErrorSteps);
     uint added = 0;
     for (int row = box.y; row < box.w && added < kMaxTiles; ++row) {

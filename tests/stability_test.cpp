@@ -29,6 +29,7 @@ Stage keepFirst(Stage stage, std::size_t count) {
     stage.scene.positions.resize(count);
     stage.scene.rotations.resize(count);
     stage.scene.scales.resize(count);
+    if (stage.scene.isGaussian3d()) { stage.scene.thicknesses.resize(count); }
     stage.scene.opacities.resize(count);
     stage.scene.sh.resize(3 * count);
     return stage;
@@ -65,13 +66,28 @@ TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes se
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is") {
+TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is, of discs and of 3D Gaussians") {
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-        const Stage stage = makeBrokenAttributes(broken);
-        const std::size_t count = stage.scene.size(), broken_splats = 3 + 3 + 4 + 2 + 1;
+        for (const bool gaussians : {false, true}) {
+            const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);
+            const std::size_t count = stage.scene.size(), broken_splats = 3 + 3 + 4 + 2 + 1 + (gaussians ? 1 : 0);
+            for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+                const auto with = renderPair(context(), stage, mode),
+                           without = renderPair(context(), keepFirst(stage, count - broken_splats), mode);
+                CHECK(with[kLeft].values == without[kLeft].values);
+                CHECK(with[kRight].values == without[kRight].values);
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "what dimming leaves nothing of changes no byte") {
+    // Points and lines, after the wall and the clutter.
+    for (const double flat_axes : {2.0, 3.0}) {
+        const Stage stage = asDimmed(makeFlatAxes(flat_axes));
+        const std::size_t room = stage.scene.size() - 60;
         for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-            const auto with = renderPair(context(), stage, mode),
-                       without = renderPair(context(), keepFirst(stage, count - broken_splats), mode);
+            const auto with = renderPair(context(), stage, mode), without = renderPair(context(), keepFirst(stage, room), mode);
             CHECK(with[kLeft].values == without[kLeft].values);
             CHECK(with[kRight].values == without[kRight].values);
         }

@@ -70,20 +70,24 @@ TEST_CASE_FIXTURE(Gpu, "frames are the same from run to run, byte for byte") {
     CHECK(anew.pictures[kRight].values == first[kRight].values);
 }
 
-TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, whether they are parallel or canted") {
-    ViewedScene view = viewAtelier();
-    view.eye.world_from_camera.orientation = glm::normalize(view.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
-    for (const Side dominant : {kLeft, kRight}) {
-        for (const double canting_rad : {0.0, glm::radians(5.0)}) {
-            CAPTURE(canting_rad);
-            const auto eyes = headsetEyes(view.eye, canting_rad);
-            const auto apart = renderPair(context(), view.scene, eyes, makeSettings(Mode::kTwoPass, dominant));
-            const auto shared = renderPair(context(), view.scene, eyes, makeSettings(Mode::kShared, dominant));
-            for (int e = 0; e < 2; ++e) {
-                CAPTURE(e);
-                const auto alone = renderMono(context(), view.scene, eyes[e], makeSettings(Mode::kMono));
-                CHECK(apart.pictures[e].values == alone.picture.values);
-                CHECK(shared.pictures[e].values == alone.picture.values);
+TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, whether they are parallel or canted, of discs and of 3D Gaussians") {
+    ViewedScene atelier = viewAtelier();
+    atelier.eye.world_from_camera.orientation =
+        glm::normalize(atelier.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
+    for (const ViewedScene& view : {atelier, test::viewGaussians({160, 120}, false), test::viewGaussians({160, 120}, true)}) {
+        CAPTURE(view.name);
+        for (const Side dominant : {kLeft, kRight}) {
+            for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+                CAPTURE(canting_rad);
+                const auto eyes = headsetEyes(view.eye, canting_rad);
+                const auto apart = renderPair(context(), view.scene, eyes, makeSettings(Mode::kTwoPass, dominant));
+                const auto shared = renderPair(context(), view.scene, eyes, makeSettings(Mode::kShared, dominant));
+                for (int e = 0; e < 2; ++e) {
+                    CAPTURE(e);
+                    const auto alone = renderMono(context(), view.scene, eyes[e], makeSettings(Mode::kMono));
+                    CHECK(apart.pictures[e].values == alone.picture.values);
+                    CHECK(shared.pictures[e].values == alone.picture.values);
+                }
             }
         }
     }

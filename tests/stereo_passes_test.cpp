@@ -174,9 +174,11 @@ TEST_CASE_FIXTURE(Gpu, "8e_newcomers finds the twin's splats and adds the twin's
         std::array<Eye, 2> eyes;
     };
     const test::ViewedScene room = test::viewBuiltin("builtin:atelier", {128, 96}, 20000), cloud = test::viewCloud({128, 96});
+    const test::ViewedScene gaussians = test::viewGaussians({128, 96}, false), dimmed = test::viewGaussians({128, 96}, true);
     for (const Setting& setting :
          {Setting{room, test::headsetEyes(room.eye, 0.0)}, Setting{room, test::headsetEyes(room.eye, glm::radians(5.0))},
-          Setting{cloud, stereoPair(cloud.eye, 0.2)}}) {
+          Setting{cloud, stereoPair(cloud.eye, 0.2)}, Setting{gaussians, stereoPair(gaussians.eye, 0.2)},
+          Setting{dimmed, stereoPair(dimmed.eye, 0.2)}}) {
         for (const Side dominant : {kLeft, kRight}) {
             for (const bool whole : {false, true}) {
                 Scene scene = setting.view.scene;

@@ -87,9 +87,11 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
         std::array<Eye, 2> eyes;
     };
     const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000), fence = test::viewBuiltin("builtin:fence", {160, 120});
+    const auto gaussians = test::viewGaussians({160, 120}, false), dimmed = test::viewGaussians({160, 120}, true);
     for (const View& seen :
          {View{"room", room, stereoPair(room.eye, 0.063)}, View{"room, canted", room, test::headsetEyes(room.eye, glm::radians(5.0))},
-          View{"fence", fence, stereoPair(fence.eye, 0.12)}}) {
+          View{"fence", fence, stereoPair(fence.eye, 0.12)}, View{"3D Gaussians", gaussians, stereoPair(gaussians.eye, 0.063)},
+          View{"3D Gaussians, dimmed, canted", dimmed, test::headsetEyes(dimmed.eye, glm::radians(5.0))}}) {
         const GpuScene scene(context(), seen.view.scene);
         StereoFrame frame(context(), scene);
         for (const Side dominant : {kLeft, kRight}) {
@@ -131,9 +133,16 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 CAPTURE(static_cast<int>(method));
                 CAPTURE(move_cost);
                 CHECK(difference.not_finite == 0);
-                CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more
+                CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more; of 3D Gaussians 81.3
                 CHECK(difference.shareOff() <= 0.0001);  // measured: none
-                CHECK(other_kinds <= 1);                 // measured: one, in one of all these frames
+                if (seen.view.scene.isGaussian3d()) {
+                    // Splats that fall between pixels are newcomers for the device alone, and this cloud is full of them.
+                    CHECK(other_kinds <= 2);  // measured: two, in two of these frames
+                    CHECK(std::abs(exchanged_error) <= 0.03 * chosen_error);
+                    CHECK(other_classes <= 4);  // measured: three, canted
+                    continue;
+                }
+                CHECK(other_kinds <= 1);  // measured: one, in one of all these frames
                 // Canted, one disc that comes through the near plane is a newcomer for the twin alone: the device's bounds of such discs
                 // are wider, and let the dominant eye see it.
                 if (seen.name != "room, canted") { CHECK(std::abs(exchanged_error) <= 0.005 * chosen_error); }

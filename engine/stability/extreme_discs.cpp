@@ -7,24 +7,6 @@
 namespace binosplat::stability {
 namespace {
 
-StageBuilder makeDiscRoom(glm::uvec2 size_px = kSizePx) {
-    StageBuilder stage(size_px);
-    stage.addWall();
-    stage.addClutter(30, 1);
-    return stage;
-}
-
-// Somewhere in view between the wall and the eye.
-Disc placeDisc(Random& random, double nearest = 0.8) {
-    Disc disc;
-    disc.centre.z = random.between(nearest, 3.5);
-    disc.centre.x = disc.centre.z * random.between(-0.5, 0.5);
-    disc.centre.y = disc.centre.z * random.between(-0.35, 0.35);
-    disc.opacity = 0.9;
-    disc.colour = random.colour();
-    return disc;
-}
-
 Stage makeDiscs(int count, unsigned seed, const std::function<void(Disc&, Random&)>& shape) {
     StageBuilder stage = makeDiscRoom();
     Random random(seed);

@@ -20,6 +20,21 @@ Stage makeBrokenAttributes(double value);  // a scene with a splat for each attr
 Stage makeQuaternions(double length);      // rotations of this length
 Stage makeHarmonics(double amplitude);     // SH of degree 3
 
+// 3D Gaussians.
+Stage makeNeedlesAlongSight(double aspect);  // scales s sqrt(aspect), s / sqrt(aspect) twice
+Stage makeNeedlesAcross(double aspect);      // likewise, along rows and columns of pixels
+Stage makeNeedlesDiagonal(double aspect);    // likewise, along the diagonals of the screen
+Stage makeSheetsEdgeOn(double angle_rad);    // no thickness, all but holding both eyes
+Stage makeLongSheets(double length);         // likewise, at 1e-7 rad, up to so long
+Stage makeBeyondNear(double share);          // large ones, their centres beyond the near plane by this share of it
+Stage makeBesideEye(double slope);           // centres at this x/z or y/z
+Stage makeGaussianScales(double scale);      // from specks to those that hold the eye
+Stage makeFlatAxes(double count);            // so many of the three scales are 0
+Stage makeGaussianOpacity(double opacity);
+Stage makeBrokenGaussians(double value);  // makeBrokenAttributes, and a thickness
+Stage asGaussians(Stage stage);           // discs given thicknesses of 0 to their shorter scale
+Stage asDimmed(Stage stage);              // likewise, unless they have them; antialiased
+
 // Worlds and views.
 Stage makeUnit(double unit);           // all lengths of an ordinary scene, the eyes' distance and the near plane too
 Stage makeFarOff(double offset);       // all of a scene, and the eyes, so far from the world's origin along every axis

@@ -30,6 +30,7 @@ void StageBuilder::add(const Disc& disc) {
     scene.positions.emplace_back(transform(middle.world_from_camera, disc.centre));
     scene.rotations.emplace_back(glm::normalize(middle.world_from_camera.orientation * camera_from_disc));
     scene.scales.emplace_back(disc.scale);
+    thicknesses_.push_back(static_cast<float>(disc.thickness));
     scene.opacities.push_back(static_cast<float>(disc.opacity));
     // colour = 0.5 + sqrt(1/pi)/2 f_dc
     for (int channel = 0; channel < 3; ++channel) {
@@ -76,6 +77,28 @@ void StageBuilder::setEyeDistance(double distance, double canting_rad) {
 }
 
 Stage StageBuilder::finish() { return {std::move(scene), middle, eyes_, near}; }
+
+Stage StageBuilder::finishGaussians() {
+    scene.thicknesses = std::move(thicknesses_);
+    return finish();
+}
+
+StageBuilder makeDiscRoom(glm::uvec2 size_px) {
+    StageBuilder stage(size_px);
+    stage.addWall();
+    stage.addClutter(30, 1);
+    return stage;
+}
+
+Disc placeDisc(Random& random, double nearest) {
+    Disc disc;
+    disc.centre.z = random.between(nearest, 3.5);
+    disc.centre.x = disc.centre.z * random.between(-0.5, 0.5);
+    disc.centre.y = disc.centre.z * random.between(-0.35, 0.35);
+    disc.opacity = 0.9;
+    disc.colour = random.colour();
+    return disc;
+}
 
 void layAlongSight(Disc& disc, double angle_rad) {
     const glm::dvec3 sight = glm::normalize(disc.centre), beside(1.0, 0.0, 0.0);

@@ -20,11 +20,12 @@ private:
     std::mt19937 engine_;
 };
 
-// A disc in camera space. t_u and t_v are made orthonormal, t_u keeps its direction.
+// A disc, or a 3D Gaussian, in camera space. t_u and t_v are made orthonormal, t_u keeps its direction.
 struct Disc {
     glm::dvec3 centre{0.0, 0.0, 2.0};
     glm::dvec3 t_u{1.0, 0.0, 0.0}, t_v{0.0, 1.0, 0.0};
     glm::dvec2 scale{0.1};
+    double thickness = 0.0;  // along t_u x t_v; of 3D Gaussians
     double opacity = 0.8;
     glm::dvec3 colour{0.5};
 };
@@ -43,14 +44,21 @@ public:
     void setEyeDistance(double distance, double canting_rad = 0.0);
 
     Scene scene;
-    Stage finish();
+    Stage finish();           // of discs
+    Stage finishGaussians();  // of 3D Gaussians
 
     Eye middle;
     double near = 0.2;
 
 private:
     std::array<Eye, 2> eyes_;
+    std::vector<float> thicknesses_;
 };
+
+// A wall and some clutter before it.
+StageBuilder makeDiscRoom(glm::uvec2 size_px = kSizePx);
+// Somewhere in view between the wall and the eye.
+Disc placeDisc(Random& random, double nearest = 0.8);
 
 // Of a disc that is seen: its normal is all but perpendicular to the line of sight, and to the line between the eyes.
 void layAlongSight(Disc& disc, double angle_rad);

@@ -12,11 +12,10 @@ struct ScreenGaussian {
     vec2 with_depth;   // the covariance of 1/z and the place on the screen, px
 };
 
-float lengthOfFive(float a, float b, float c, float d, float e) {
-    const float most = max(max(max(abs(a), abs(b)), max(abs(c), abs(d))), max(abs(e), 1e-30));
-    const vec3 first = vec3(a, b, c) / most;
-    const vec2 rest = vec2(d, e) / most;
-    return most * sqrt(dot(first, first) + dot(rest, rest));
+// Without squares of large numbers.
+float lengthOf(vec3 areas, float rest) {
+    const float most = max(max(abs(areas.x), abs(areas.y)), max(max(abs(areas.z), rest), 1e-30));
+    return most * length(vec4(areas, rest) / most);
 }
 
 // Of a centre beyond the eye's plane.
@@ -27,7 +26,7 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 slope = clamp(splat.centre.xy / splat.centre.z, low, high);
     const vec2 px_per_unit = eye.focal_px / splat.centre.z;
     const vec3 t_w = cross(splat.t_u, splat.t_v);
-    const vec3 scales = vec3(splat.scale, splat.thickness);
+    const vec3 scales = min(vec3(splat.scale, splat.thickness), kMaxSigma / max(px_per_unit.x, px_per_unit.y));
     const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
     const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
     const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);
@@ -43,8 +42,8 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     g.with_depth = -(climb.x * u + climb.y * v + climb.z * w) / splat.centre.z;
     // The low-pass's own part twice over in xx + yy.
     const float blurred = sqrt(kScreenVariance) * sqrt(g.xx + g.yy - kScreenVariance);
-    g.root_det = lengthOfFive(areas.x, areas.y, areas.z, blurred, 0);
-    g.root_sharp = lengthOfFive(areas.x, areas.y, areas.z, 0, 0);
+    g.root_det = lengthOf(areas, blurred);
+    g.root_sharp = lengthOf(areas, 0);
     return g;
 }
 

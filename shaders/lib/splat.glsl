@@ -60,7 +60,7 @@ float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog
 
 // Opacity as -log2, so that alpha = exp2(-(this + kLog2PerRho rho)), with the sign as a flag.
 float packOpacity(float opacity, bool has_reference) {
-    const float negative_log2 = min(abs(log2(opacity)), 150);  // an opacity is at most 1
+    const float negative_log2 = abs(log2(max(opacity, 1e-37)));  // an opacity is at most 1, and no more than dimmed to 0
     return has_reference ? negative_log2 : uintBitsToFloat(floatBitsToUint(negative_log2) | 0x80000000u);
 }
 bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity) & 0x80000000u) == 0; }

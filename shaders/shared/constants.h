@@ -54,6 +54,9 @@ BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
 // The depth of a 3D Gaussian at a pixel is a linear guess from its centre; it stays within this ratio of the centre's.
 BINOSPLAT_CONSTANT float kDepthReach = 2.0f;
+// The axes of a 3D Gaussian are cut off here on the screen, in px, so that the squares of their lengths and the areas between them stay
+// finite: what is seen of one that long is as opaque everywhere along it.
+BINOSPLAT_CONSTANT float kMaxSigma = 1e15f;
 
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
 // kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
