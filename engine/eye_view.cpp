@@ -36,4 +36,10 @@ gpu::EyeView viewOf(const Eye& eye, double near) {
     return view;
 }
 
+gpu::Place placeOf(const glm::dvec3& position) {
+    gpu::Place place{};
+    split(position, place.position, place.position_low);
+    return place;
+}
+
 }  // namespace binosplat
