@@ -116,6 +116,7 @@ void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
     if (!options.motion_file.empty()) { return benchMotion(options, plan); }
     if (!options.photos_folder.empty()) { return benchPhotos(options, plan); }
+    if (options.orders) { return benchOrders(options, plan); }
     benchSpeed(options, plan);
 }
 

@@ -1,4 +1,4 @@
-// The three kinds of bench, and what they have in common.
+// The other kinds of bench, and what they have in common.
 #pragma once
 
 #include "app/bench_plan.h"
@@ -13,5 +13,9 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan);
 
 // `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes photos.csv and .json.
 void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
+
+// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and what pops while the head turns; on
+// the CPU alone, of the plan's scenes, views and first size. Writes orders.csv.
+void benchOrders(const BenchOptions& options, const BenchPlan& plan);
 
 }  // namespace binosplat

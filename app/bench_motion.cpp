@@ -17,6 +17,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <map>
+#include <string>
+#include <utility>
 
 namespace binosplat {
 
@@ -79,9 +82,12 @@ public:
 
     void play(const Cameras& cameras, double time_s, std::vector<MotionFrame>& result) {
         const int affiliated = 1 - shared_.stereo.dominant;
-        const Image full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated);
-        const double full_change = meanChange(full, full_before_);
+        std::map<std::string, Image> full_by_order;
         for (MethodHistory& sequence : sequences_) {
+            shared_.stereo.order = sequence.method.stereo.order;
+            Image& full = full_by_order[shared_.stereo.order];
+            if (full.values.empty()) { full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated); }
+            const double full_change = meanChange(full, full_before_[shared_.stereo.order]);
             const std::string& mode = sequence.method.stereo.mode;
             const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
             MotionFrame row{name_, sequence.method.name, mode, time_s, rendered.gpu_total_ms, stagesOf(mode, rendered.gpu_ms), 0.0,
@@ -95,7 +101,7 @@ public:
             }
             result.push_back(std::move(row));
         }
-        full_before_ = full;
+        full_before_ = std::move(full_by_order);
     }
 
 private:
@@ -104,7 +110,7 @@ private:
     MethodFrames frames_;
     std::string name_;
     std::vector<MethodHistory> sequences_;
-    Image full_before_;
+    std::map<std::string, Image> full_before_;  // by the order of the splats
 };
 
 }  // namespace

@@ -70,6 +70,13 @@ FrameResult renderTwin(const BenchPoint& point) {
     return result;
 }
 
+// The affiliated eye in full, as `stereo` orders its splats.
+Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFrames& frames) {
+    BenchMethod shared = plainMethod("shared", point.run);
+    shared.stereo.order = stereo.order;
+    return frames.render(point.cameras, point.run.camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
+}
+
 // Memory and pictures of a method, before any of its frames count.
 Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPlan& plan, MethodFrames& frames, const Image& full) {
     Runner runner{method, {}, {}, {}, 0, {}};
@@ -112,11 +119,16 @@ MethodFrames::Rendered MethodFrames::renderAlone(const Cameras& cameras, const C
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
     MethodFrames frames(context, point.gpu_scene);
-    const BenchMethod shared = plainMethod("shared", point.run);
-    const Image full = frames.render(point.cameras, camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
+    std::map<std::string, Image> full_by_order;
+    for (const BenchMethod& method : plan.methods) {
+        Image& full = full_by_order[method.stereo.order];
+        if (full.values.empty()) { full = renderFull(method.stereo, point, frames); }
+    }
 
     std::vector<Runner> runners;
-    for (const BenchMethod& method : plan.methods) { runners.push_back(prepare(method, point, plan, frames, full)); }
+    for (const BenchMethod& method : plan.methods) {
+        runners.push_back(prepare(method, point, plan, frames, full_by_order.at(method.stereo.order)));
+    }
     for (std::uint32_t i = 0; i < plan.warm_up; ++i) {
         for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method.stereo); }
     }

@@ -29,6 +29,7 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.dominant = stereo.dominant;
     settings.near = camera.near;
     settings.background = camera.background;
+    settings.order = stereo.order == "distance" ? Order::kDistance : Order::kDepth;
     settings.stereo.depth_choice = stereo.depth == "sum" ? gpu::kDepthSum : stereo.depth == "mean" ? gpu::kDepthMean : gpu::kDepthInverse;
     settings.stereo.gap_px = stereo.gap_px;
     settings.stereo.margin_px = stereo.margin_px;

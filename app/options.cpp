@@ -121,6 +121,8 @@ void requireBenchKind(const BenchOptions& bench) {
            "--photos and --size contradict each other: pictures have the photographs' size");
     refuse(!bench.motion_file.empty() && !bench.lpips_weights.empty(),
            "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
+    refuse(bench.orders && (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
+           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with one of each pixel's own, by PSNR");
     refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
 }
 
@@ -156,6 +158,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("budget", [&](const Setting& s) { stereo.budget = readNumber(s, 0.0, 1.0); });
     read("move-cost", [&](const Setting& s) { stereo.move_cost = static_cast<std::uint32_t>(readCount(s, 0, kMaxMoveCost)); });
     read("depth", [&](const Setting& s) { stereo.depth = readChoice(s, {"sum", "mean", "inverse"}); });
+    read("order", [&](const Setting& s) { stereo.order = readChoice(s, {"depth", "distance"}); });
     read("gap-px", [&](const Setting& s) { stereo.gap_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxGapPx)); });
     read("edge-samples", [&](const Setting& s) { stereo.edge_samples = static_cast<std::uint32_t>(readCount(s, 1, kMaxSide)); });
     read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });
@@ -192,6 +195,8 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     bench_command->add_option("--motion-axes", bench.motion_axes, "axes of --motion: openxr (default) or unity")->type_name("AXES");
     bench_command->add_option("--photos", bench.photos_folder, "photographs of the cameras of --cameras, to compare with")
         ->type_name("DIR");
+    bench_command->add_flag("--orders", bench.orders,
+                            "compare the orders of splats with one that every pixel has of its own, on the CPU, and count what pops");
     std::string every;
     CLI::Option* every_option =
         bench_command->add_option("--every", every, "only every Nth pose of --motion or camera of --photos (default 1)")->type_name("N");

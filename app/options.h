@@ -37,6 +37,7 @@ struct StereoOptions {
     double budget = 0.22;
     std::uint32_t move_cost = kDefaultMoveCost;
     std::string depth = "inverse";
+    std::string order = "depth";
     std::uint32_t gap_px = 2;
     std::uint32_t edge_samples = 64;
     std::string edge_bounds = "paper";
@@ -79,6 +80,7 @@ struct BenchOptions {
     std::string motion_axes = "openxr";  // --motion-axes: of the recording
     std::string photos_folder;           // --photos: what the cameras of --cameras saw
     std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
+    bool orders = false;                 // --orders: how near each order of splats is to one that every pixel has of its own
     std::string lpips_weights;           // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
 };
 

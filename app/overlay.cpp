@@ -38,6 +38,9 @@ void drawMethod(ViewSettings& settings) {
     std::string side = stereo.dominant == kLeft ? "left" : "right";
     chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
     stereo.dominant = side == "left" ? kLeft : kRight;
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x * 2.0f / 3.0f);  // the row's last third is free
+    bool by_distance = stereo.order == "distance";
+    if (ImGui::Checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? "distance" : "depth"; }
     chooseFrom("Depth of a pixel", std::array{"sum", "mean", "inverse"}, stereo.depth, 3);
     ImGui::Checkbox("Centre ROI (paper)", &stereo.center_roi);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);

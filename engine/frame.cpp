@@ -71,7 +71,12 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     const StereoSettings stereo = stereoSettingsOf(settings);
     const FrameState state = firstStateOf(eyes, settings, stereo);
     const int first = dominant_, second = 1 - dominant_;
-    const EyesOfList both{.first = 0, .count = 2, .order = first, .list = 0};
+    std::optional<gpu::Place> middle;
+    if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
+    const EyesOfList both{.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle};
+    const auto alone = [&](int eye, int list) {
+        return EyesOfList{.first = eye, .count = 1, .order_eye = eye, .list = list, .middle = middle};
+    };
     EyeTarget dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : EyeTarget{};
 
     commands_.begin();
@@ -79,22 +84,21 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     for (ShownTiles& shown : shown_) { shown.record(commands_); }
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = 0, .count = 1, .order = 0, .list = 0}, "");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(0, 0), "");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "");
             break;
         case Mode::kTwoPass:
             dominant.list = first;
             affiliated.list = second;
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = first, .count = 1, .order = first, .list = first}, "dominant ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(first, first), "dominant ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = second, .count = 1, .order = second, .list = second},
-                                  "affiliated ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(second, second), "affiliated ");
             passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kShared:
             passes_.recordVisible(commands_, *scene_, buffers_, both, "both ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            recordOrderOfAffiliated();
+            recordOrderOfAffiliated(settings.order);
             passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kReproject:
@@ -115,7 +119,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
                                               .affiliated_shown = shown_[second],
                                               .background = affiliated.background});
             if (stereo.patching == Patching::kNone) { break; }
-            recordOrderOfAffiliated();
+            recordOrderOfAffiliated(settings.order);
             if (!may_move_) {
                 passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
                 break;
@@ -168,8 +172,8 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
     return target;
 }
 
-void StereoFrame::recordOrderOfAffiliated() {
-    if (!relation_.same_depths) { passes_.recordOrder(commands_, *scene_, buffers_, 1 - dominant_, 0, "affiliated "); }
+void StereoFrame::recordOrderOfAffiliated(Order order) {
+    if (!sharesOrder(order)) { passes_.recordOrder(commands_, *scene_, buffers_, {.order_eye = 1 - dominant_, .list = 0}, "affiliated "); }
 }
 
 }  // namespace binosplat

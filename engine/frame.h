@@ -27,6 +27,12 @@ enum class Mode {
     kPredicted,  // and the tiles with the greatest expected error rendered again
 };
 
+// What splats are blended by, front to back.
+enum class Order {
+    kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
+    kDistance,  // distance of their centres from the middle between the eyes: one order for both eyes, however they turn
+};
+
 // Whether the affiliated eye is made from the dominant one.
 bool reprojects(Mode mode);
 
@@ -35,6 +41,7 @@ struct FrameSettings {
     Side dominant = kLeft;
     double near = 0.2;  // scene units
     glm::dvec3 background{0.0};
+    Order order = Order::kDepth;    // of all modes; a frame of two eyes has one middle, also where nothing is shared
     StereoSettings stereo;          // how one eye is made from the other; `patching` follows from the mode
     bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
@@ -100,7 +107,9 @@ public:
 private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
-    void recordOrderOfAffiliated();
+    void recordOrderOfAffiliated(Order order);
+    // Whether one order of the splats is that of both eyes.
+    [[nodiscard]] bool sharesOrder(Order order) const { return order == Order::kDistance || relation_.same_depths; }
     [[nodiscard]] FrameState firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const;
     [[nodiscard]] EyeTarget targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const;
     void prepareLists();

@@ -80,8 +80,10 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
     leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
-    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && relation_.same_depths,
-             "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && sharesOrder(settings.order),
+             settings.order == Order::kDistance
+                 ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
+                 : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::uint64_t tiles = std::uint64_t{tilesOf(eyes[e].size_px).x} * tilesOf(eyes[e].size_px).y;
         leaveOut(shown_[e].hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown_[e].hiddenCount(),

@@ -43,6 +43,12 @@ Intrinsics intrinsicsFromFovX(double fov_x_rad, glm::uvec2 size_px) {
     return {f, f, 0.5 * size_px.x, 0.5 * size_px.y};
 }
 
+glm::dvec3 middleOf(std::span<const Eye> eyes) {
+    glm::dvec3 sum(0.0);
+    for (const Eye& eye : eyes) { sum += eye.world_from_camera.position; }
+    return sum / static_cast<double>(eyes.size());
+}
+
 std::array<Eye, 2> stereoPair(const Eye& middle, double eye_distance) {
     std::array<Eye, 2> eyes{middle, middle};
     eyes[kLeft].world_from_camera.position = transform(middle.world_from_camera, {-0.5 * eye_distance, 0.0, 0.0});

@@ -5,6 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <array>
+#include <span>
 
 namespace binosplat {
 
@@ -45,6 +46,9 @@ struct Eye {
 };
 
 enum Side : int { kLeft = 0, kRight = 1 };
+
+// The middle between all eyes; of one eye its own place, exactly.
+glm::dvec3 middleOf(std::span<const Eye> eyes);
 
 // Left eye at -ipd/2 and right eye at +ipd/2 along the x axis of `middle`, otherwise alike.
 std::array<Eye, 2> stereoPair(const Eye& middle, double eye_distance);

@@ -1,4 +1,5 @@
-// 2: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the depth of their centres.
+// 2: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the depth of their centres,
+// or with their distance from the middle between the eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -7,12 +8,25 @@ const uint kSplatKind = kDiscs;  // of all kinds the centre alone
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
+layout(constant_id = 0) const bool kByDistance = false;
+
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CompactPass pass; };
 
 const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
 shared uint visible_before[kBlockWords];  // how many of the block's splats come before each word's
+
+// Of the same order as what it stands for. The square of a distance keeps what float32 tells apart of the distance, and is the same float
+// for whichever eyes the list is made, since it asks for neither.
+float keyOf(EyeView eye, vec3 position) {
+    if (kByDistance) {
+        const vec3 from_middle = fromPlace(pass.middle.position, pass.middle.position_low, position);
+        precise const float square = dot(from_middle, from_middle);
+        return square;
+    }
+    return dot(eye.camera_from_world_z, fromEye(eye, position));
+}
 
 // Floats as integers of the same order; depths of centres behind the eye are negative.
 uint sortableBits(float value) {
@@ -32,15 +46,19 @@ void main() {
         for (uint word = 0; word < own_word; ++word) { before += bitCount(visible_words[word]); }
         visible_before[own_word] = before;
     }
-    const EyeView eye = shareEye(pass.eyes, pass.order_eye);
+    EyeView eye;
+    if (kByDistance) {
+        barrier();  // as shareEye has: visible_before is there for all
+    } else {
+        eye = shareEye(pass.eyes, pass.order_eye);
+    }
     for (uint in_block = gl_LocalInvocationIndex; in_block < kCullBlock; in_block += kGroupSize) {
         const uint bits = visible_words[in_block / 32], bit = 1u << (in_block & 31);
         if ((bits & bit) == 0) { continue; }
         const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
         const uint i = first + in_block;
         SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-        const vec3 from_eye = fromEye(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]);
-        pass.keys.at[place] = sortableBits(dot(eye.camera_from_world_z, from_eye));
+        pass.keys.at[place] = sortableBits(keyOf(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]));
         pass.splats.at[place] = i;
     }
 }

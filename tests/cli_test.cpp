@@ -98,6 +98,7 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--margin 1.5"), 1, "--margin is 1.5");
     checkRefused(work.run(render + "--dominant middle"), 1, "--dominant is middle, must be left or right");
     checkRefused(work.run(render + "--depth median"), 1, "--depth is median, must be sum, mean or inverse");
+    checkRefused(work.run(render + "--order index"), 1, "--order is index, must be depth or distance");
     checkRefused(work.run(render + "--mode fast"), 1, "--mode is fast, must be mono");
     checkRefused(work.run(render + "--gap-px 65"), 1, "--gap-px is 65, must be a whole number from 0 to 64");
     checkRefused(work.run(render + "--edge-samples 0"), 1, "--edge-samples is 0, must be a whole number from 1");

@@ -41,11 +41,13 @@ struct Layout {
 
 std::vector<Layout> hostLayouts() {
     return {
-        LAYOUT(SceneChunk, FIELD(positions), FIELD(rotations), FIELD(scales), FIELD(thicknesses), FIELD(opacities), FIELD(base_colours), FIELD(sh)),
+        LAYOUT(SceneChunk, FIELD(positions), FIELD(rotations), FIELD(scales), FIELD(thicknesses), FIELD(opacities), FIELD(base_colours),
+               FIELD(sh)),
         LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
                FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth),
                FIELD(camera_from_world_x_low), FIELD(camera_from_world_y_low), FIELD(camera_from_world_z_low), FIELD(position_low),
                FIELD(focal_px_low), FIELD(principal_px_low)),
+        LAYOUT(Place, FIELD(position), FIELD(position_low)),
         LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth), FIELD(opacity),
                FIELD(colour)),
         LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),
@@ -65,7 +67,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(CullPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_counts), FIELD(visible), FIELD(splat_count),
                FIELD(chunk_bits), FIELD(first_eye), FIELD(eye_count), FIELD(capacity)),
         LAYOUT(CompactPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_offsets), FIELD(visible), FIELD(keys),
-               FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye)),
+               FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye), FIELD(middle)),
         LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_sets), FIELD(tile_counts),
                FIELD(group_sums), FIELD(pairs), FIELD(counters), FIELD(tile_mask), FIELD(chunk_bits), FIELD(eye), FIELD(capacity)),
         LAYOUT(BinPass, FIELD(splats), FIELD(tile_sets), FIELD(tile_counts), FIELD(group_sums), FIELD(visible), FIELD(pairs), FIELD(tiles),

@@ -4,6 +4,7 @@
 #include "app/bench_results.h"
 #include "app/camera_options.h"
 #include "app/load.h"
+#include "app/modes.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 #include "tests/run_program.h"
@@ -67,6 +68,7 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.stereo.margin_px == none.stereo.margin_px);
     CHECK(file.stereo.budget == none.stereo.budget);
     CHECK(file.stereo.depth == none.stereo.depth);
+    CHECK(file.stereo.order == none.stereo.order);
     CHECK(file.stereo.gap_px == none.stereo.gap_px);
     CHECK(file.stereo.edge_samples == none.stereo.edge_samples);
     CHECK(file.stereo.edge_bounds == none.stereo.edge_bounds);
@@ -94,6 +96,19 @@ TEST_CASE("commandLineWinsOverConfig") {
     CHECK(both.camera.fov_x_deg == 90.0);
     CHECK(both.camera.headset.empty());  // an angle and a headset contradict each other
     CHECK(both.stereo.ipd_m == 0.0);
+}
+
+TEST_CASE("splatsGoByDepthOrByDistance") {
+    const Workplace work;
+    writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
+    CHECK(render({}).stereo.order == "depth");
+    CHECK(frameSettings({}, render({}).stereo).order == Order::kDepth);
+    const RunOptions by_distance = render({"--config", (work.path / "a.toml").string()});
+    CHECK(by_distance.stereo.order == "distance");
+    CHECK(frameSettings({}, by_distance.stereo).order == Order::kDistance);
+    CHECK(render({"--config", (work.path / "a.toml").string(), "--order", "depth"}).stereo.order == "depth");
+    CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders"}).orders);
+    CHECK_THROWS_AS(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders", "--motion", "m.csv"}), Error);
 }
 
 TEST_CASE("theLevelOfDetailIsAnOptionOfEveryCommandThatReadsAScene") {
@@ -130,10 +145,11 @@ TEST_CASE("howGaussiansAreDrawnIsAnOptionOfEveryCommandThatReadsAScene") {
 }
 
 TEST_CASE("aLevelFitsIfItsSplatsDo") {
-    CHECK(!levelChoice({.lod = 1}, 0).fits);  // as fine as there is
-    CHECK(levelChoice({.lod = 1}, 0).level == 1u);
-    const LevelChoice choice = levelChoice({.lod = {}, .flatten = true}, 3);
-    CHECK(choice.fits(65536, 0));  // of 48 bytes
+    const auto choose = [](const RunOptions& run) { return levelChoice(run.load, run.memory_limit_mib); };
+    CHECK(!choose(render({"--lod", "1"})).fits);  // as fine as there is
+    CHECK(choose(render({"--lod", "1"})).level == 1u);
+    const LevelChoice choice = choose(render({"--memory-limit", "3", "--flatten"}));
+    CHECK(choice.fits(65536, 0));  // discs of 48 bytes
     CHECK(!choice.fits(65537, 0));
     CHECK(!choice.fits(65536, 1));
     CHECK(!levelChoice({}, 3).fits(65536, 0));  // of 52 bytes
@@ -269,7 +285,8 @@ TEST_CASE("methodsSweepTheirSettings") {
     const Workplace work;
     writeText(work.path / "a.toml",
               "[bench]\nscenes = [\"builtin:fence\"]\ntwin = true\nscores = [\"psnr\"]\n[stereo]\nmargin = 16\n"
-              "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", \"sum\"]\ngap_px = 3\n"
+              "[[methods]]\nname = \"p\"\nmode = \"predicted\"\nbudget = [0, 0.5]\ndepth = [\"mean\", \"sum\"]\ngap_px = 3\norder = "
+              "\"distance\"\n"
               "[[views]]\nname = \"near\"\nscene = \"a.ply\"\neye = [1, 2, 3]\nfov_x = 90\nnear = 0.5\n");
     const BenchOptions options = parse<BenchOptions>({"bench", "--out", "out", "--config", (work.path / "a.toml").string()});
     const BenchPlan plan = planBench(options);
@@ -279,6 +296,8 @@ TEST_CASE("methodsSweepTheirSettings") {
                                             "p budget=0.5 depth=mean", "p budget=0.5 depth=sum", "mono"});
     CHECK(plan.methods[4].stereo.budget == 0.5);
     CHECK(plan.methods[4].stereo.gap_px == 3);
+    CHECK(plan.methods[4].stereo.order == "distance");
+    CHECK(plan.methods[0].stereo.order == "depth");
     CHECK(plan.methods[4].stereo.margin_px == 16);
     CHECK(!plan.ssim);
     const std::vector<BenchView> views = viewsOf(plan, "/some/where/a.ply", options.run);

@@ -33,13 +33,25 @@ struct TwinStages {
     std::vector<reference::TileRange> ranges;
 };
 
+// float32, and what is left of each value beside that; volatile, or g++ 12 takes the rounded value for the value itself.
+template <typename Wide, typename Narrow>
+void split(const Wide& value, Narrow& high, Narrow& low) {
+    for (glm::length_t i = 0; i < value.length(); ++i) {
+        const volatile float rounded = static_cast<float>(value[i]);
+        high[i] = rounded;
+        low[i] = static_cast<float>(value[i] - static_cast<double>(rounded));
+    }
+}
+
+inline gpu::Place placeOf(const glm::dvec3& position) {
+    gpu::Place place{};
+    split(position, place.position, place.position_low);
+    return place;
+}
+
 inline gpu::EyeView viewOf(const Eye& eye, double near) {
     const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
     gpu::EyeView view{};
-    const auto split = [](const auto& value, auto& high, auto& low) {
-        high = value;
-        low = value - std::remove_cvref_t<decltype(value)>(high);
-    };
     split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
     split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
     split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);

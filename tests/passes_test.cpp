@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 
 using namespace binosplat;
 using test::Gpu;
@@ -60,6 +61,40 @@ Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_cou
     gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
     return {gpu.readBack<std::uint32_t>(bits, groups * kGroupWords), gpu.readBack<std::uint32_t>(counts, groups),
             gpu.readBack<gpu::ListState>(list, 1)[0]};
+}
+
+struct Compacted {
+    std::vector<std::uint32_t> keys, splats;
+};
+
+// 2_compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
+Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
+                          const std::optional<glm::dvec3>& middle) {
+    const Kernel kernel(gpu.context(), "2_compact", sizeof(gpu::CompactPass), {middle ? 1u : 0u});
+    const std::uint32_t count = device.scene.splatCount();
+    const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
+    std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
+    for (const std::uint32_t splat : visible) {
+        bits[splat / 32] |= 1u << (splat % 32);
+        ++offsets[splat / gpu::kCullBlock + 1];
+    }
+    for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
+    const Buffer bit_buffer = gpu.upload("bits", bits), offset_buffer = gpu.upload("offsets", offsets),
+                 list = gpu.upload("list", std::vector{test::makeList(visible.size())});
+    const Buffer keys = gpu.allocate<std::uint32_t>("keys", visible.size()), splats = gpu.allocate<std::uint32_t>("splats", visible.size());
+    gpu::CompactPass pass{};
+    pass.chunks = device.scene.chunks();
+    pass.eyes = device.eyeViews();
+    if (middle) { pass.middle = test::placeOf(*middle); }
+    pass.visible_bits = bit_buffer.address<gpu::uint>();
+    pass.group_offsets = offset_buffer.address<gpu::uint>();
+    pass.visible = list.address<gpu::ListState>();
+    pass.keys = keys.address<gpu::uint>();
+    pass.splats = splats.address<gpu::uint>();
+    pass.splat_count = count;
+    pass.chunk_bits = device.scene.chunkBits();
+    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, count, gpu::kCullBlock); });
+    return {gpu.readBack<std::uint32_t>(keys, visible.size()), gpu.readBack<std::uint32_t>(splats, visible.size())};
 }
 
 // How far projected splats are from the twin's, in units of what rounding can do.
@@ -194,43 +229,46 @@ TEST_CASE_FIXTURE(Gpu, "1_cull for two eyes keeps what either keeps") {
 }
 
 TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order with keys that order as their depths") {
-    const Kernel kernel(context(), "2_compact", sizeof(gpu::CompactPass));
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
         const SceneOnDevice device(*this, view.scene, {view.eye}, kSettings.near);
-        const std::size_t groups = (view.scene.size() + gpu::kCullBlock - 1) / gpu::kCullBlock, visible = twin.compacted.splats.size();
-        std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
-        for (const std::uint32_t splat : twin.compacted.splats) {
-            bits[splat / 32] |= 1u << (splat % 32);
-            ++offsets[splat / gpu::kCullBlock + 1];
-        }
-        for (std::size_t g = 1; g <= groups; ++g) { offsets[g] += offsets[g - 1]; }
-        const Buffer bit_buffer = upload("bits", bits), offset_buffer = upload("offsets", offsets),
-                     list = upload("list", std::vector{test::makeList(visible)});
-        const Buffer keys = allocate<std::uint32_t>("keys", visible), splats = allocate<std::uint32_t>("splats", visible);
-        gpu::CompactPass pass{};
-        pass.chunks = device.scene.chunks();
-        pass.eyes = device.eyeViews();
-        pass.visible_bits = bit_buffer.address<gpu::uint>();
-        pass.group_offsets = offset_buffer.address<gpu::uint>();
-        pass.visible = list.address<gpu::ListState>();
-        pass.keys = keys.address<gpu::uint>();
-        pass.splats = splats.address<gpu::uint>();
-        pass.splat_count = device.scene.splatCount();
-        pass.chunk_bits = device.scene.chunkBits();
-        run([&](Commands& commands) { commands.dispatchOver(kernel, pass, view.scene.size(), gpu::kCullBlock); });
-        CHECK(readBack<std::uint32_t>(splats, visible) == twin.compacted.splats);
+        const Compacted compacted = compactOnDevice(*this, device, twin.compacted.splats, {});
+        CHECK(compacted.splats == twin.compacted.splats);
         // Keys order as the floats they stand for; those are the depths, up to a few roundings of the distance.
-        const auto key_values = readBack<std::uint32_t>(keys, visible);
         double worst = 0.0;
-        for (std::size_t i = 0; i < visible; ++i) {
+        for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
             const glm::dvec3 position(view.scene.positions[twin.compacted.splats[i]]);
             const double distance = distanceToRound(position, view.eye);
-            worst = std::max(
-                worst, std::abs(static_cast<double>(test::floatOfKey(key_values[i])) - twin.compacted.depths[i]) / (kEpsilon * distance));
+            worst = std::max(worst, std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - twin.compacted.depths[i]) /
+                                        (kEpsilon * distance));
         }
         CHECK(worst <= 8.0);  // measured: 2.4
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu,
+                  "2_compact has keys that order as the distances from the middle between the eyes, also far from the world's origin") {
+    for (const double offset : {0.0, 1e6}) {
+        for (ViewedScene view : allScenes()) {
+            CAPTURE(view.name);
+            CAPTURE(offset);
+            for (glm::vec3& position : view.scene.positions) { position += static_cast<float>(offset); }
+            view.eye.world_from_camera.position += offset;
+            reference::Settings settings;
+            // No float32, so that the rest beside it counts.
+            settings.order_from = view.eye.world_from_camera.position + glm::dvec3(0.0317, 1e-7, -1e-5);
+            const TwinStages twin(view, settings);
+            const SceneOnDevice device(*this, view.scene, {view.eye}, settings.near);
+            const Compacted compacted = compactOnDevice(*this, device, twin.compacted.splats, settings.order_from);
+            CHECK(compacted.splats == twin.compacted.splats);
+            double worst = 0.0;
+            for (std::size_t i = 0; i < compacted.keys.size(); ++i) {
+                const double square = twin.compacted.depths[i];
+                worst = std::max(worst, std::abs(static_cast<double>(test::floatOfKey(compacted.keys[i])) - square) / (kEpsilon * square));
+            }
+            CHECK(worst <= 8.0);
+        }
     }
 }
 

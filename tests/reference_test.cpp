@@ -25,6 +25,16 @@ Picture render(const std::vector<Splat>& splats, const Settings& settings = {}, 
     return reference::render(makeScene(splats), makeEye(size_px), settings);
 }
 
+// With hits in each pixel's own order, or that of a window.
+Picture renderByPixel(const Scene& scene, std::size_t window) {
+    const Eye eye = makeEye(kSize);
+    const auto order = reference::sortDepth(reference::compact(scene, reference::cull(scene, {&eye, 1}, {}), eye));
+    const auto splats = reference::project(scene, order, eye, {});
+    auto pairs = reference::bin(splats, kSize, {});
+    reference::sortTiles(pairs);
+    return reference::rasterizeByPixel(scene, order, splats, pairs, reference::tileRanges(pairs, kSize), eye, {}, window);
+}
+
 glm::dvec4 rgbaAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { return picture.rgba[std::size_t{y} * picture.size_px.x + x]; }
 double depthAt(const Picture& picture, std::uint32_t x, std::uint32_t y) { return picture.depth[std::size_t{y} * picture.size_px.x + x]; }
 
@@ -175,6 +185,44 @@ TEST_CASE("equal depths blend in the order of the indices") {
     CHECK(rgbaAt(render({red, green}), 50, 50).x == near(0.5));
     CHECK(rgbaAt(render({red, green}), 50, 50).y == near(0.25));
     CHECK(rgbaAt(render({green, red}), 50, 50).x == near(0.25));
+}
+
+TEST_CASE("two discs that cross are blended in the order of each pixel's own hits") {
+    // Planes z = 2 + x and z = 2.1 - x meet at x = 0.05, z = 2.05: by whole discs the red one goes first everywhere, but to the right of
+    // the crossing the green one is nearer. On the ray x = X z they are at 2 / (1 - X) and 2.1 / (1 + X), each at x from its centre: a
+    // distance of sqrt(2) x along the disc.
+    const Splat red{.position = {0.0f, 0.0f, 2.0f}, .rotation = kReceding, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}};
+    const Splat green{
+        .position = {0.0f, 0.0f, 2.1f}, .rotation = glm::conjugate(kReceding), .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}};
+    const auto alphaAt = [](double x) { return static_cast<double>(0.8f) * std::exp(-x * x); };
+    for (const std::size_t window : {std::size_t{1}, std::size_t{2}, SIZE_MAX}) {
+        const Picture picture = renderByPixel(makeScene({red, green}), window);
+        for (const std::uint32_t column : {10u, 51u, 54u, 90u}) {
+            const double slope = (column - 50.0) / 100.0, red_z = 2.0 / (1.0 - slope), green_z = static_cast<double>(2.1f) / (1.0 + slope);
+            const double red_alpha = alphaAt(slope * red_z), green_alpha = alphaAt(slope * green_z);
+            const bool red_first = window == 1 || red_z < green_z;
+            CHECK(red_first == (window == 1 || column < 53));
+            CHECK(rgbaAt(picture, column, 50).x == near(red_alpha * (red_first ? 1.0 : 1.0 - green_alpha)));
+            CHECK(rgbaAt(picture, column, 50).y == near(green_alpha * (red_first ? 1.0 - red_alpha : 1.0)));
+        }
+    }
+}
+
+TEST_CASE("two 3D Gaussians go by where each is densest along a pixel's ray") {
+    // Long along (1, 0, 1) and (1, 0, -1), through (0, 0, 2) and (0, 0, 2.1): needles in the planes of the discs above, that cross as these
+    // do.
+    const auto alongX = [](float z, const glm::quat& rotation, const glm::vec3& colour) {
+        return Splat{.position = {0.0f, 0.0f, z}, .rotation = rotation, .scale = {1.0f, 0.02f}, .colour = colour};
+    };
+    Scene scene = makeScene({alongX(2.0f, kReceding, {1.0f, 0.0f, 0.0f}), alongX(2.1f, glm::conjugate(kReceding), {0.0f, 1.0f, 0.0f})});
+    scene.thicknesses.assign(2, 0.02f);
+    const Picture by_splat = renderByPixel(scene, 1), by_pixel = renderByPixel(scene, SIZE_MAX);
+    for (const std::uint32_t column : {40u, 50u, 65u}) {
+        CAPTURE(column);
+        CHECK(rgbaAt(by_splat, column, 50).x > rgbaAt(by_splat, column, 50).y);
+        CHECK((rgbaAt(by_pixel, column, 50).x > rgbaAt(by_pixel, column, 50).y) == (column < 53));
+        CHECK(rgbaAt(by_splat, column, 50).w == near(rgbaAt(by_pixel, column, 50).w));
+    }
 }
 
 TEST_CASE("a thousand layers blend until the transmittance is used up") {

@@ -93,6 +93,64 @@ TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, whether the
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "both eyes share one order by distance, canted or not, and sharing it changes no byte") {
+    ViewedScene view = viewAtelier();
+    view.eye.world_from_camera.orientation = glm::normalize(view.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));
+    for (const Side dominant : {kLeft, kRight}) {
+        for (const double canting_rad : {0.0, glm::radians(10.0)}) {
+            CAPTURE(canting_rad);
+            const auto eyes = headsetEyes(view.eye, canting_rad);
+            FrameSettings settings = makeSettings(Mode::kTwoPass, dominant);
+            settings.order = Order::kDistance;
+            const auto apart = renderPair(context(), view.scene, eyes, settings);
+            settings.mode = Mode::kShared;
+            const auto shared = renderPair(context(), view.scene, eyes, settings);
+            const auto is_sort = [](const auto& pass) { return pass.first.find("3_sort_depth") != std::string::npos; };
+            CHECK(std::ranges::count_if(shared.result.gpu_ms, is_sort) == 1);
+            reference::Settings twin_settings;
+            twin_settings.order_from = middleOf(eyes);
+            for (int e = 0; e < 2; ++e) {
+                CAPTURE(e);
+                CHECK(shared.pictures[e].values == apart.pictures[e].values);
+                CHECK(isAlike(shared.pictures[e], test::toImage(reference::render(view.scene, eyes[e], twin_settings))));
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "an order by distance is that of another orientation, one by depth is not") {
+    const ViewedScene view = viewAtelier();
+    Eye turned = view.eye;
+    turned.world_from_camera.orientation = view.eye.world_from_camera.orientation * glm::angleAxis(0.3, glm::dvec3(0.2, 0.9, 0.1));
+    const auto visible = reference::cull(view.scene, std::array{view.eye, turned}, {});
+    const auto orderOf = [&](const Eye& eye, bool by_distance) {
+        reference::Settings settings;
+        if (by_distance) { settings.order_from = eye.world_from_camera.position; }
+        return reference::sortDepth(reference::compact(view.scene, visible, eye, settings));
+    };
+    CHECK(orderOf(view.eye, true) == orderOf(turned, true));
+    CHECK(orderOf(view.eye, false) != orderOf(turned, false));
+}
+
+TEST_CASE_FIXTURE(Gpu, "while an eye turns, what it sees along a ray stays by distance and pops by depth") {
+    // Both discs cover the ray x = y = 0. Red is nearer by 1 %; turned by more than tan a = 0.02 towards it, its centre is the deeper one.
+    const Scene scene = test::makeScene({{.position = {0.5f, 0.0f, 2.0f}, .scale = glm::vec2(1.0f), .colour = {1.0f, 0.0f, 0.0f}},
+                                         {.position = {-0.5f, 0.0f, 2.02f}, .scale = glm::vec2(1.0f), .colour = {0.0f, 1.0f, 0.0f}}});
+    for (const Order order : {Order::kDepth, Order::kDistance}) {
+        FrameSettings settings = makeSettings(Mode::kMono);
+        settings.order = order;
+        for (const int tenths : {-1, 0, 1}) {
+            CAPTURE(tenths);
+            Eye eye = test::makeEye({101, 101});  // of 100 px, so that the ray goes through a pixel's centre again
+            eye.world_from_camera.orientation = glm::angleAxis(std::atan(0.1 * tenths), glm::dvec3(0.0, 1.0, 0.0));
+            const Image picture = renderMono(context(), scene, eye, settings).picture;
+            const float* pixel = &picture.values[4 * (50 * 101 + 50 - 10 * static_cast<std::size_t>(tenths))];
+            const bool red_first = order == Order::kDistance || tenths <= 0;
+            CHECK((pixel[0] > pixel[1]) == red_first);
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the picture is the same") {
     const ViewedScene view = viewAtelier();
     const auto roomy = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),

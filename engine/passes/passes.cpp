@@ -20,7 +20,7 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
 
 KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per_cell) {
     KernelTable table = everyVariant("1_cull", sizeof(gpu::CullPass), {{"kSplatKind", 2}});
-    append(table, everyVariant("2_compact", sizeof(gpu::CompactPass)));
+    append(table, everyVariant("2_compact", sizeof(gpu::CompactPass), {{"kByDistance", 2}}));
     append(table, sortKernels(context));
     append(table,
            everyVariant("4_project", sizeof(gpu::ProjectPass), {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}, {"kSplatKind", 3}}));
@@ -77,22 +77,22 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
                                         scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(eyes.first),
                                         static_cast<gpu::uint>(eyes.count), buffers.visible.capacity()},
                           scene.splatCount(), gpu::kCullBlock);
-    recordOrder(commands, scene, buffers, eyes.order, eyes.list, role);
+    recordOrder(commands, scene, buffers, eyes, role);
 }
 
-void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
+void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                          const std::string& role) {
     commands.beginPass(role + "2_compact");
-    const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(list));
-    commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass)),
+    const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
+    commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass), {eyes.middle ? 1u : 0u}),
                           gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,
                                            buffers.visible.order().keys, buffers.visible.order().values, scene.splatCount(),
-                                           scene.chunkBits(), static_cast<gpu::uint>(order_eye)},
+                                           scene.chunkBits(), static_cast<gpu::uint>(eyes.order_eye), eyes.middle.value_or(gpu::Place{})},
                           scene.splatCount(), gpu::kCullBlock);
     commands.beginPass(role + "3_sort_depth");
     // Four rounds: the result is where the input was.
     sort_.record(commands, buffers.visible.order(), buffers.visible.spare(), buffers.scratch.address<gpu::uint>(), buffers.state,
-                 FrameBuffers::visibleList(list), 32);
+                 FrameBuffers::visibleList(eyes.list), 32);
 }
 
 const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool masked) {

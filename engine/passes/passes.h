@@ -1,7 +1,7 @@
 // The passes of a frame: what `ls shaders` shows, as functions that record them.
 //
 //   1_cull        which splats may touch a pixel of any eye
-//   2_compact     those in the scene's order, with the depth of their centres
+//   2_compact     those in the scene's order, with the depth or the distance of their centres
 //   3_sort_depth  front to back
 //   4_project     as one eye sees them, and how many tiles each meets
 //   5_bin         a (tile, splat) pair for each tile a splat meets
@@ -14,6 +14,7 @@
 #include "engine/passes/frame_buffers.h"
 #include "shaders/shared/passes.h"
 
+#include <optional>
 #include <string>
 
 namespace binosplat {
@@ -51,12 +52,14 @@ struct EyeTarget {
 // How many bits tell the tiles of a picture and no tile apart.
 unsigned tileBits(glm::uvec2 size_tiles);
 
-// Whose splats a list of visible ones holds: those that any of the eyes [first, first + count) sees, by the depths of `order`.
+// Whose splats a list of visible ones holds: those that any of the eyes [first, first + count) sees, by the distance from the middle
+// between the eyes, or without one by the depths of `order_eye`.
 struct EyesOfList {
     int first = 0;
     int count = 1;
-    int order = 0;
+    int order_eye = 0;
     int list = 0;
+    std::optional<gpu::Place> middle = {};
 };
 
 // All kernels of the passes 1 to 7, sorting included. `threads_per_cell`: see Passes.
@@ -73,8 +76,8 @@ public:
     // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
     void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                        const std::string& role);
-    // Passes 2 and 3 alone, once more, by the depths of another eye.
-    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, int order_eye, int list,
+    // Passes 2 and 3 alone, also once more by the depths of another eye; which eyes see the splats is not asked again.
+    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                      const std::string& role);
     // Passes 4 to 7: the picture of an eye.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,

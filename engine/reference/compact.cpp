@@ -1,4 +1,4 @@
-// 2: the visible splats without gaps, and the camera z of their centres.
+// 2: the visible splats without gaps, and the camera z of their centres or their distance.
 #include "engine/reference/parallel.h"
 #include "engine/reference/splat.h"
 
@@ -13,8 +13,14 @@ Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const
     const EyeFrame frame(order_eye);
     forBlocks(result.splats.size(), 16384, settings.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            // The same product as in `project`, so that equal depths are equal in both.
-            result.depths[i] = (frame.camera_from_world * (glm::dvec3(scene.positions[result.splats[i]]) - frame.position_world)).z;
+            const glm::dvec3 position(scene.positions[result.splats[i]]);
+            if (settings.order_from) {
+                const glm::dvec3 from_middle = position - *settings.order_from;
+                result.depths[i] = glm::dot(from_middle, from_middle);
+            } else {
+                // The same product as in `project`, so that equal depths are equal in both.
+                result.depths[i] = (frame.camera_from_world * (position - frame.position_world)).z;
+            }
         }
     });
     return result;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace binosplat::reference {
 struct Settings {
     double near = 0.2;  // positive; hits closer than this are skipped, scene units along the camera's z
     glm::dvec3 background{0.0};
+    // Front to back is by the distance of centres from here (the middle between the eyes); nothing: by their camera z.
+    std::optional<glm::dvec3> order_from = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
     int threads = 2;
     double* seconds = nullptr;  // render(): if given, an array of kPassCount, filled with each pass's time
@@ -78,7 +81,8 @@ struct TileRange {
 // 1: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
 
-// 2: indices of the visible splats, ascending, and the camera z of each centre in `order_eye`.
+// 2: indices of the visible splats, ascending, and what each goes by: the camera z of its centre in `order_eye`, or the square of its
+// distance from Settings::order_from.
 struct Visible {
     std::vector<std::uint32_t> splats;
     std::vector<double> depths;
@@ -109,5 +113,13 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
 
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
+
+// 7 as it would be without an order of splats: each pixel blends its own hits front to back by where its ray meets each: a disc at the
+// hit or, where the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as there. Pairs
+// and splats are of `order`. With a `window` the hits come in that order and the nearest of so many is the next to be blended (Radl et al.
+// 2024, StopThePop, in its simplest form): 1 is rasterize().
+Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
+                         std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
+                         std::size_t window = SIZE_MAX);
 
 }  // namespace binosplat::reference

@@ -39,12 +39,13 @@ CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
     return splat;
 }
 
-// From the eye to a place in the world, which may lie close together and far from its origin: in this order the first difference
-// is exact where it is small beside its terms.
-vec3 fromEye(EyeView eye, vec3 position) {
-    precise const vec3 difference = (position - eye.position) - eye.position_low;
+// From one place in the world, in two floats, to another; both may lie close together and far from its origin: in this order the first
+// difference is exact where it is small beside its terms.
+vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
+    precise const vec3 difference = (position - from) - from_low;
     return difference;
 }
+vec3 fromEye(EyeView eye, vec3 position) { return fromPlace(eye.position, eye.position_low, position); }
 
 CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
     splat.centre = cameraFromWorld(eye, fromEye(eye, splat.centre));

@@ -20,7 +20,7 @@ struct CullPass {
     uint capacity;  // of the list
 };
 
-// 2_compact: the visible splats in the scene's order, with the depth of their centres as sort keys.
+// 2_compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
 struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -31,7 +31,8 @@ struct CompactPass {
     Uints splats;  // out: indices into the scene
     uint splat_count;
     uint chunk_bits;
-    uint order_eye;
+    uint order_eye;  // whose depths
+    Place middle;    // between the eyes, where distances are wanted
 };
 
 // 4_project: the visible splats, front to back, as one eye sees them, and how many tiles each meets.

@@ -52,6 +52,12 @@ struct EyeView {
 };
 BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
 
+// A place in the world: (x + x_low) has 48 bits.
+struct Place {
+    vec3 position;
+    vec3 position_low;
+};
+
 // A splat as one eye sees it; 44 bytes. With (dx, dy) the offset of a pixel from `reference_px`, the pixel's ray meets the
 // disc's plane where
 //   1/z = inverse_depth + perspective.x dx + perspective.y dy
