@@ -11,8 +11,8 @@ namespace binosplat {
 
 namespace {
 
-const std::set<std::string> kMethodKeys{"name",       "mode",        "depth",        "margin",     "budget",         "gap-px",
-                                        "center-roi", "edge-bounds", "edge-samples", "hole-error", "newcomer-error", "move-cost"};
+const std::set<std::string> kMethodKeys{"name",   "mode",       "depth",       "resampling",   "per-eye",    "margin",         "budget",
+                                        "gap-px", "center-roi", "edge-bounds", "edge-samples", "hole-error", "newcomer-error", "move-cost"};
 
 // A method on the way: its name so far, and one entry for each key.
 struct Combination {

@@ -57,6 +57,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["budget"] = stereo.budget;
     json["move-cost"] = stereo.move_cost;
     json["depth"] = stereo.depth;
+    json["resampling"] = stereo.resampling;
+    json["per-eye"] = stereo.per_eye;
     json["gap-px"] = stereo.gap_px;
     json["edge-samples"] = stereo.edge_samples;
     json["edge-bounds"] = stereo.edge_bounds;

@@ -34,6 +34,8 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
             {"budget", fmt::format("{}", stereo.budget)},
             {"move-cost", fmt::format("{}", stereo.move_cost)},
             {"depth", quoted(stereo.depth)},
+            {"resampling", quoted(stereo.resampling)},
+            {"per-eye", stereo.per_eye ? "true" : "false"},
             {"gap-px", fmt::format("{}", stereo.gap_px)},
             {"edge-samples", fmt::format("{}", stereo.edge_samples)},
             {"edge-bounds", quoted(stereo.edge_bounds)},

@@ -49,6 +49,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
           eyes.back().size_px.x, eyes.back().size_px.y);
     mode_ = settings.mode;
     dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
+    per_eye_ = settings.mode == Mode::kTwoPass || (settings.mode == Mode::kPaper && settings.per_eye);
     relation_ = relate(eyes[dominant_], eyes.size() == 2 ? eyes[1 - dominant_] : eyes[dominant_]);
     prepareImages(eyes, settings);
     prepareLists();
@@ -72,6 +73,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     const FrameState state = firstStateOf(eyes, settings, stereo);
     const int first = dominant_, second = 1 - dominant_;
     const EyesOfList both{.first = 0, .count = 2, .order = first, .list = 0};
+    const auto alone = [](int eye) { return EyesOfList{.first = eye, .count = 1, .order = eye, .list = eye}; };
     EyeTarget dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : EyeTarget{};
 
     commands_.begin();
@@ -79,16 +81,13 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     for (ShownTiles& shown : shown_) { shown.record(commands_); }
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = 0, .count = 1, .order = 0, .list = 0}, "");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(0), "");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "");
             break;
         case Mode::kTwoPass:
-            dominant.list = first;
-            affiliated.list = second;
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = first, .count = 1, .order = first, .list = first}, "dominant ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(first), "dominant ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            passes_.recordVisible(commands_, *scene_, buffers_, {.first = second, .count = 1, .order = second, .list = second},
-                                  "affiliated ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated ");
             passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kShared:
@@ -100,14 +99,16 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
         case Mode::kReproject:
         case Mode::kPaper:
         case Mode::kPredicted:
-            passes_.recordVisible(commands_, *scene_, buffers_, both, "both ");
+            passes_.recordVisible(commands_, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
+            if (per_eye_) { passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated "); }
             stereo_passes_.record(commands_, {.scene = *scene_,
                                               .buffers = buffers_,
                                               .stereo = stereo_buffers_,
                                               .settings = stereo,
                                               .rectified = relation_.rectified,
                                               .may_move = may_move_,
+                                              .list = affiliated.list,
                                               .dominant_eye = first,
                                               .dominant = images_[first],
                                               .affiliated = images_[second],
@@ -115,7 +116,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
                                               .affiliated_shown = shown_[second],
                                               .background = affiliated.background});
             if (stereo.patching == Patching::kNone) { break; }
-            recordOrderOfAffiliated();
+            if (!per_eye_) { recordOrderOfAffiliated(); }
             if (!may_move_) {
                 passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
                 break;
@@ -141,7 +142,7 @@ FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSetti
 EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const {
     const EyeImage& image = images_[eye];
     EyeTarget target{.eye = eye,
-                     .list = 0,
+                     .list = listOf(eye),
                      .size_tiles = tilesOf(eyes[eye].size_px),
                      .pairs = buffers_.pairs.arrays(),
                      .image = &image,
