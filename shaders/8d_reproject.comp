@@ -3,7 +3,8 @@
 // A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
 // already, since what lies behind would otherwise show through the cracks. Where colours are copied nothing is: in the paper pixels alone
 // move (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 3). It does not say which pixel a place
-// belongs to nor which of two surfaces stays: the pixel that holds it, and the nearer one.
+// belongs to nor which of two surfaces stays: the pixel that holds it, and the nearer one; nor what becomes of pixels without any splat,
+// whose D of 0 is no depth: they are infinitely far.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
