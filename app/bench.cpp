@@ -1,6 +1,5 @@
 // `binosplat bench`: error against run time, over scenes, splat counts, sizes, headsets and views.
 #include "app/bench.h"
-#include "app/load.h"
 
 #include "app/bench_point.h"
 #include "app/commands.h"
@@ -39,20 +38,22 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
     std::size_t points = 0;
     for (const std::string& source : plan.scenes) {
         for (const BenchSeries& series : plan.series) {
-            points += countsOf(source, series).size() * series.sizes_px.size() * viewsOf(plan, source, run).size() * plan.headsets.size();
+            for (const DrawnViews& drawn : viewsOf(plan, source, run)) {
+                points += countsOf(source, series).size() * series.sizes_px.size() * drawn.views.size() * plan.headsets.size();
+            }
         }
     }
     return points;
 }
 
-// One scene with one splat count: every size, headset and view.
-std::vector<BenchResult> benchScene(const Context& context, const BenchOptions& options, const BenchPlan& plan, const BenchSeries& series,
-                                    const std::string& source, const Scene& scene, PointProgress& progress) {
+// One scene with one splat count, drawn in one way: every size, headset and view.
+std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
+                                    const std::vector<BenchView>& views, const Scene& scene, PointProgress& progress) {
     std::vector<BenchResult> results;
     const GpuScene gpu_scene(context, scene);
     for (const glm::uvec2 size_px : series.sizes_px) {
         for (const std::string& headset : plan.headsets) {
-            for (const BenchView& view : viewsOf(plan, source, options.run)) {
+            for (const BenchView& view : views) {
                 RunOptions run = view.run;
                 if (size_px.x > 0) { run.camera.size_px = size_px; }
                 if (!headset.empty()) { run.camera.headset = headset; }
@@ -86,8 +87,10 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
         for (const std::string& source : plan.scenes) {
             for (const BenchSeries& series : plan.series) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
-                    const Scene scene = loadAs(options.run, source, splats);
-                    std::ranges::move(benchScene(context, options, plan, series, source, scene, progress), std::back_inserter(run.results));
+                    for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+                        const Scene scene = loadAs(drawn.run, source, splats);
+                        std::ranges::move(benchScene(context, plan, series, drawn.views, scene, progress), std::back_inserter(run.results));
+                    }
                 }
             }
         }

@@ -11,8 +11,9 @@ namespace binosplat {
 
 namespace {
 
-const std::set<std::string> kMethodKeys{"name",       "mode",        "depth",        "order",      "margin",         "budget",   "gap-px",
-                                        "center-roi", "edge-bounds", "edge-samples", "hole-error", "newcomer-error", "move-cost"};
+const std::set<std::string> kMethodKeys{"name",        "mode",         "depth",      "order",          "resampling",
+                                        "per-eye",     "margin",       "budget",     "gap-px",         "center-roi",
+                                        "edge-bounds", "edge-samples", "hole-error", "newcomer-error", "move-cost"};
 
 // A method on the way: its name so far, and one entry for each key.
 struct Combination {

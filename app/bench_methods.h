@@ -13,9 +13,9 @@ struct BenchMethod {
     StereoOptions stereo;
 };
 
-// One [[methods]] table: name, mode, and any of depth, order, margin, budget, gap-px, center-roi, edge-bounds, edge-samples, hole-error and
-// newcomer-error. What it does not say is as in `base`. A key with an array stands for a method per entry, several such keys for
-// every combination, each named "name key=value ...". Throws Error with file and line.
+// One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px, center-roi, edge-bounds,
+// edge-samples, hole-error, newcomer-error and move-cost. What it does not say is as in `base`. A key with an array stands for a method per
+// entry, several such keys for every combination, each named "name key=value ...". Throws Error with file and line.
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.

@@ -113,6 +113,25 @@ private:
     std::map<std::string, Image> full_before_;  // by the order of the splats
 };
 
+// One view of a scene at every pose.
+void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion, const Scene& scene,
+              const GpuScene& gpu_scene, const BenchView& view, MotionRun& run) {
+    RunOptions view_run = view.run;
+    const glm::uvec2 size_px = plan.series.front().sizes_px.front();
+    if (size_px.x > 0) { view_run.camera.size_px = size_px; }
+    const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
+    std::string name = std::filesystem::path(scene.name).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+    MotionPoint point(context, gpu_scene, view_run, plan, name);
+    point.warmUp(start, plan.warm_up);
+    ProgressLine progress(name);
+    for (std::size_t i = 0; i < motion.samples().size(); i += options.every) {
+        const double time_s = motion.samples()[i].time_s;
+        const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
+        point.play(moveCameras(start, world_from_middle), time_s, run.frames);
+        progress.show(time_s / std::max(motion.duration_s(), 1e-9));
+    }
+}
+
 }  // namespace
 
 void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
@@ -123,23 +142,10 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
     for (const std::string& source : plan.scenes) {
-        const Scene scene = loadAs(options.run, source);
-        const GpuScene gpu_scene(context, scene);
-        for (const BenchView& view : viewsOf(plan, source, options.run)) {
-            RunOptions view_run = view.run;
-            const glm::uvec2 size_px = plan.series.front().sizes_px.front();
-            if (size_px.x > 0) { view_run.camera.size_px = size_px; }
-            const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
-            std::string name = std::filesystem::path(source).filename().string() + (view.name.empty() ? "" : ", " + view.name);
-            MotionPoint point(context, gpu_scene, view_run, plan, name);
-            point.warmUp(start, plan.warm_up);
-            ProgressLine progress(name);
-            for (std::size_t i = 0; i < motion.samples().size(); i += options.every) {
-                const double time_s = motion.samples()[i].time_s;
-                const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
-                point.play(moveCameras(start, world_from_middle), time_s, run.frames);
-                progress.show(time_s / std::max(motion.duration_s(), 1e-9));
-            }
+        for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+            const Scene scene = loadAs(drawn.run, source);
+            const GpuScene gpu_scene(context, scene);
+            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, scene, gpu_scene, view, run); }
         }
     }
     writeText(files.staging() / "motion.csv", motionCsv(run));

@@ -91,11 +91,11 @@ BenchSeries readSeries(const SettingsTable& table, glm::uvec2 default_size_px) {
 }
 
 BenchView readView(const SettingsTable& table, const RunOptions& base) {
-    refuseUnknown(table, {"name", "scene", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit"});
+    refuseUnknown(table, {"name", "scene", "eye", "look", "up", "fov-x", "near", "ipd", "metres-per-unit", "flatten", "antialiased"});
     Settings settings = table.settings;
     BenchView view;
     if (const auto name = settings.extract("name")) { view.name = readText(name.mapped()); }
-    if (const auto scene = settings.extract("scene")) { view.scene = readText(scene.mapped()); }
+    if (const auto scene = settings.extract("scene")) { view.scenes = readEach(scene.mapped(), readText); }
     check(!view.name.empty(), "{}: name is missing, must be given", table.origin);
     view.run = runOptions(settings, base);
     return view;
@@ -153,14 +153,16 @@ BenchPlan planBench(const BenchOptions& options) {
     return plan;
 }
 
-std::vector<BenchView> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run) {
+std::vector<DrawnViews> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run) {
     const std::string name = isBuiltin(scene) ? scene : std::filesystem::path(scene).filename().string();
-    std::vector<BenchView> views;
+    std::vector<DrawnViews> drawn;
     for (const BenchView& view : plan.views) {
-        if (view.scene.empty() || view.scene == name) { views.push_back(view); }
+        if (!view.scenes.empty() && std::ranges::count(view.scenes, name) == 0) { continue; }
+        const auto same = std::ranges::find_if(drawn, [&](const DrawnViews& other) { return other.run.load == view.run.load; });
+        (same != drawn.end() ? *same : drawn.emplace_back(DrawnViews{view.run, {}})).views.push_back(view);
     }
-    if (views.empty()) { views.push_back({"", scene, run}); }
-    return views;
+    if (drawn.empty()) { drawn.push_back({run, {{"", {scene}, run}}}); }
+    return drawn;
 }
 
 }  // namespace binosplat

@@ -23,8 +23,14 @@ struct BenchSeries {
 // Where to look at a scene from.
 struct BenchView {
     std::string name;
-    std::string scene;  // file name or builtin:NAME of the scene it belongs to; empty: any
-    RunOptions run;     // the run's options with the view's own on top
+    std::vector<std::string> scenes;  // file names or builtin:NAME of those it belongs to; empty: any
+    RunOptions run;                   // the run's options with the view's own on top
+};
+
+// Views that the scene is drawn in the same way for.
+struct DrawnViews {
+    RunOptions run;  // whose `load` is theirs
+    std::vector<BenchView> views;
 };
 
 struct BenchPlan {
@@ -45,7 +51,7 @@ struct BenchPlan {
 // Throws Error with file and line; kUsage if no scene is named anywhere.
 BenchPlan planBench(const BenchOptions& options);
 
-// The views of a scene; one without a name if the plan has none for it.
-std::vector<BenchView> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run);
+// The views of a scene by how they draw it; one without a name if the plan has none for it.
+std::vector<DrawnViews> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run);
 
 }  // namespace binosplat

@@ -36,6 +36,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.view = point.view;
     result.headset = point.headset;
     result.splats = point.scene.size();
+    result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
     result.mode = runner.method.stereo.mode;

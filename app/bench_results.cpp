@@ -85,7 +85,7 @@ double percentile(std::vector<double> values, double share) {
 
 bool samePoint(const BenchResult& a, const BenchResult& b) {
     const auto point = [](const BenchResult& r) {
-        return std::tie(r.series, r.scene, r.view, r.headset, r.splats, r.size_px.x, r.size_px.y);
+        return std::tie(r.series, r.scene, r.view, r.headset, r.backbone, r.splats, r.size_px.x, r.size_px.y);
     };
     return point(a) == point(b);
 }
@@ -95,7 +95,7 @@ std::string namePoint(const BenchResult& result) {
     for (const std::string& part : {result.view, result.headset}) {
         if (!part.empty()) { name += ", " + part; }
     }
-    return fmt::format("{}, {} splats, {}x{} per eye", name, result.splats, result.size_px.x, result.size_px.y);
+    return fmt::format("{}, {} splats ({}), {}x{} per eye", name, result.splats, result.backbone, result.size_px.x, result.size_px.y);
 }
 
 NamedTimes byPass(const BenchResult& result) {

@@ -24,6 +24,7 @@ using NamedTimes = std::vector<std::pair<std::string, double>>;
 // wall-clock milliseconds of the float64 twin for one eye.
 struct BenchResult {
     std::string series, scene, view, headset, method, mode;
+    std::string backbone;  // what the splats are drawn as: 2DGS or 3DGS
     std::uint64_t splats = 0;
     glm::uvec2 size_px{0, 0};  // per eye
     std::uint32_t frames = 0;
@@ -49,9 +50,9 @@ double median(std::vector<double> values);
 // The least value that `share` of the values do not exceed (nearest rank); 0 of none.
 double percentile(std::vector<double> values, double share);
 
-// Whether both were measured at the same point: same series, scene, view, headset, splats and size.
+// Whether both were measured at the same point: same series, scene, view, headset, backbone, splats and size.
 bool samePoint(const BenchResult& a, const BenchResult& b);
-// "atelier, near, quest2, 1000 splats, 512x512 per eye".
+// "atelier, near, quest2, 1000 splats (2DGS), 512x512 per eye".
 std::string namePoint(const BenchResult& result);
 
 // The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".

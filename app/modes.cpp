@@ -30,7 +30,9 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.near = camera.near;
     settings.background = camera.background;
     settings.order = stereo.order == "distance" ? Order::kDistance : Order::kDepth;
+    settings.per_eye = stereo.per_eye;
     settings.stereo.depth_choice = stereo.depth == "sum" ? gpu::kDepthSum : stereo.depth == "mean" ? gpu::kDepthMean : gpu::kDepthInverse;
+    settings.stereo.forward = stereo.resampling == "forward";
     settings.stereo.gap_px = stereo.gap_px;
     settings.stereo.margin_px = stereo.margin_px;
     settings.stereo.edge_samples = stereo.edge_samples;

@@ -159,6 +159,8 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
     read("move-cost", [&](const Setting& s) { stereo.move_cost = static_cast<std::uint32_t>(readCount(s, 0, kMaxMoveCost)); });
     read("depth", [&](const Setting& s) { stereo.depth = readChoice(s, {"sum", "mean", "inverse"}); });
     read("order", [&](const Setting& s) { stereo.order = readChoice(s, {"depth", "distance"}); });
+    read("resampling", [&](const Setting& s) { stereo.resampling = readChoice(s, {"cubic", "forward"}); });
+    read("per-eye", [&](const Setting& s) { stereo.per_eye = readFlag(s); });
     read("gap-px", [&](const Setting& s) { stereo.gap_px = static_cast<std::uint32_t>(readCount(s, 0, kMaxGapPx)); });
     read("edge-samples", [&](const Setting& s) { stereo.edge_samples = static_cast<std::uint32_t>(readCount(s, 1, kMaxSide)); });
     read("edge-bounds", [&](const Setting& s) { stereo.edge_bounds = readChoice(s, {"paper", "tight"}); });

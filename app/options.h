@@ -38,6 +38,8 @@ struct StereoOptions {
     std::uint32_t move_cost = kDefaultMoveCost;
     std::string depth = "inverse";
     std::string order = "depth";
+    std::string resampling = "cubic";
+    bool per_eye = false;
     std::uint32_t gap_px = 2;
     std::uint32_t edge_samples = 64;
     std::string edge_bounds = "paper";
@@ -52,6 +54,7 @@ struct LoadOptions {
     std::optional<std::uint32_t> lod;  // level of detail, 0 the finest; absent: the finest that fits
     bool flatten = false;              // 3D Gaussians as discs, without their shortest axis
     bool antialiased = false;          // with opacities that the low-pass dims, also where the file does not say so
+    bool operator==(const LoadOptions&) const = default;
 };
 
 // What `render` and `bench` have in common.

@@ -58,6 +58,8 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["move-cost"] = stereo.move_cost;
     json["depth"] = stereo.depth;
     json["order"] = stereo.order;
+    json["resampling"] = stereo.resampling;
+    json["per-eye"] = stereo.per_eye;
     json["gap-px"] = stereo.gap_px;
     json["edge-samples"] = stereo.edge_samples;
     json["edge-bounds"] = stereo.edge_bounds;

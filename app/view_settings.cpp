@@ -35,6 +35,8 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
             {"move-cost", fmt::format("{}", stereo.move_cost)},
             {"depth", quoted(stereo.depth)},
             {"order", quoted(stereo.order)},
+            {"resampling", quoted(stereo.resampling)},
+            {"per-eye", stereo.per_eye ? "true" : "false"},
             {"gap-px", fmt::format("{}", stereo.gap_px)},
             {"edge-samples", fmt::format("{}", stereo.edge_samples)},
             {"edge-bounds", quoted(stereo.edge_bounds)},

@@ -49,6 +49,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
           eyes.back().size_px.x, eyes.back().size_px.y);
     mode_ = settings.mode;
     dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
+    per_eye_ = settings.mode == Mode::kTwoPass || (settings.mode == Mode::kPaper && settings.per_eye);
     relation_ = relate(eyes[dominant_], eyes.size() == 2 ? eyes[1 - dominant_] : eyes[dominant_]);
     prepareImages(eyes, settings);
     prepareLists();
@@ -74,9 +75,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const EyesOfList both{.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle};
-    const auto alone = [&](int eye, int list) {
-        return EyesOfList{.first = eye, .count = 1, .order_eye = eye, .list = list, .middle = middle};
-    };
+    const auto alone = [&](int eye) { return EyesOfList{.first = eye, .count = 1, .order_eye = eye, .list = eye, .middle = middle}; };
     EyeTarget dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : EyeTarget{};
 
     commands_.begin();
@@ -84,15 +83,13 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     for (ShownTiles& shown : shown_) { shown.record(commands_); }
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(0, 0), "");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(0), "");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "");
             break;
         case Mode::kTwoPass:
-            dominant.list = first;
-            affiliated.list = second;
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(first, first), "dominant ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(first), "dominant ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(second, second), "affiliated ");
+            passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated ");
             passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kShared:
@@ -104,14 +101,16 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
         case Mode::kReproject:
         case Mode::kPaper:
         case Mode::kPredicted:
-            passes_.recordVisible(commands_, *scene_, buffers_, both, "both ");
+            passes_.recordVisible(commands_, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
             passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
+            if (per_eye_) { passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated "); }
             stereo_passes_.record(commands_, {.scene = *scene_,
                                               .buffers = buffers_,
                                               .stereo = stereo_buffers_,
                                               .settings = stereo,
                                               .rectified = relation_.rectified,
                                               .may_move = may_move_,
+                                              .list = affiliated.list,
                                               .dominant_eye = first,
                                               .dominant = images_[first],
                                               .affiliated = images_[second],
@@ -119,7 +118,7 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
                                               .affiliated_shown = shown_[second],
                                               .background = affiliated.background});
             if (stereo.patching == Patching::kNone) { break; }
-            recordOrderOfAffiliated(settings.order);
+            if (!per_eye_) { recordOrderOfAffiliated(settings.order); }
             if (!may_move_) {
                 passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
                 break;
@@ -145,7 +144,7 @@ FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSetti
 EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const {
     const EyeImage& image = images_[eye];
     EyeTarget target{.eye = eye,
-                     .list = 0,
+                     .list = listOf(eye),
                      .size_tiles = tilesOf(eyes[eye].size_px),
                      .pairs = buffers_.pairs.arrays(),
                      .image = &image,

@@ -41,8 +41,11 @@ struct FrameSettings {
     Side dominant = kLeft;
     double near = 0.2;  // scene units
     glm::dvec3 background{0.0};
-    Order order = Order::kDepth;    // of all modes; a frame of two eyes has one middle, also where nothing is shared
-    StereoSettings stereo;          // how one eye is made from the other; `patching` follows from the mode
+    Order order = Order::kDepth;  // of all modes; a frame of two eyes has one middle, also where nothing is shared
+    StereoSettings stereo;        // how one eye is made from the other; `patching` follows from the mode
+    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The paper has two sequential strategies that differ in
+    // the second eye's picture alone (section 4.3); it says of no work that they share.
+    bool per_eye = false;
     bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
     bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
@@ -110,6 +113,8 @@ private:
     void recordOrderOfAffiliated(Order order);
     // Whether one order of the splats is that of both eyes.
     [[nodiscard]] bool sharesOrder(Order order) const { return order == Order::kDistance || relation_.same_depths; }
+    // Of visible splats, an eye's: both eyes' unless each has its own.
+    [[nodiscard]] int listOf(int eye) const { return per_eye_ ? eye : 0; }
     [[nodiscard]] FrameState firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const;
     [[nodiscard]] EyeTarget targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const;
     void prepareLists();
@@ -141,6 +146,7 @@ private:
     // Of the last frame.
     Mode mode_ = Mode::kMono;
     int dominant_ = 0;
+    bool per_eye_ = false;  // nothing is culled or ordered for both eyes
     EyeRelation relation_;
     // Whether anything is moved. `predicted` leaves it out as long as it did not pay in the frame before, if that was asked for the same.
     struct MovesAsked {

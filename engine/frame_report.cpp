@@ -22,7 +22,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::string suffix = settings.mode == Mode::kMono ? "" : e == kLeft ? "_left" : "_right";
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
-        counters["splats_visible" + suffix] = state_.visible[settings.mode == Mode::kTwoPass ? e : 0].count;
+        counters["splats_visible" + suffix] = state_.visible[listOf(static_cast<int>(e))].count;
         counters["tile_pairs" + suffix] = state_.pairs[e].count;
         counters["square_box_tile_pairs" + suffix] =
             (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
@@ -79,8 +79,8 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     leaveOut(scene_->shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_->shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
-    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass, "culling for the affiliated eye alone: both eyes are culled at once");
-    leaveOut(eyes.size() == 2 && settings.mode != Mode::kTwoPass && sharesOrder(settings.order),
+    leaveOut(eyes.size() == 2 && !per_eye_, "culling for the affiliated eye alone: both eyes are culled at once");
+    leaveOut(eyes.size() == 2 && !per_eye_ && sharesOrder(settings.order),
              settings.order == Order::kDistance
                  ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
                  : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");

@@ -74,7 +74,8 @@ void StereoFrame::prepareLists() {
 }
 
 bool StereoFrame::dominantIsVoid() const {
-    return state_.visible[0].needed != state_.visible[0].count || state_.pairs[dominant_].needed != state_.pairs[dominant_].count;
+    const gpu::ListState& visible = state_.visible[listOf(dominant_)];
+    return visible.needed != visible.count || state_.pairs[dominant_].needed != state_.pairs[dominant_].count;
 }
 
 bool StereoFrame::growIfNeeded() {

@@ -1,7 +1,10 @@
 // 8d: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
 // threads; the source's place follows from it again in 8f, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
 // A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
-// already, since what lies behind would otherwise show through the cracks.
+// already, since what lies behind would otherwise show through the cracks. Where colours are copied nothing is: in the paper pixels alone
+// move (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 3). It does not say which pixel a place
+// belongs to nor which of two surfaces stays: the pixel that holds it, and the nearer one; nor what becomes of pixels without any splat,
+// whose D of 0 is no depth: they are infinitely far.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -13,6 +16,7 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
 layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 2) const bool kForward = false;      // colours are going to be copied
 
 struct Moved {
     vec2 place_px;
@@ -34,7 +38,8 @@ Moved moveDominant(StereoView stereo, uvec2 pixel) {
     const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
     const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
     const bool seen = !kHiddenTiles || !isNearHidden(stereo, pixel);
-    return Moved(moved.xy, inverse_depth / moved.z, moving & kSpreadBits, seen && moving != 0 && moved.z > 0);
+    const uint spread = kForward ? parityOf(pixel) : moving & kSpreadBits;
+    return Moved(moved.xy, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
 }
 
 void put(StereoView stereo, ivec2 at, float inverse_depth, uint landed, uint spread) {
@@ -84,7 +89,7 @@ void main() {
     const float reach_px = float(stereo.gap_px + 2);
     if (!here.valid || any(lessThan(here.place_px, vec2(-reach_px))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + reach_px))) { return; }
     put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, kLanded, here.spread);
-    if (pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
+    if (kForward || pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
     const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));
     if (kRectified) {
         putBetween(stereo, here, right, int(pixel.y));

@@ -3,6 +3,7 @@
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels the spread of
 // their disparity times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
+// Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -20,6 +21,7 @@ layout(constant_id = 4) const bool kComponents = false;  // holes are going to b
 // A whole row of arrivals in shared memory, which colours may then take the place of. 0: rows are too long, and arrivals lie elsewhere.
 layout(constant_id = 5) const uint kRowSteps = 1;
 layout(constant_id = 6) const bool kHalfColours = false;
+layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
 
 #include "lib/picture.glsl"
 
@@ -173,8 +175,58 @@ float holeError(StereoView stereo, vec2 source_px, int repeated_px) {
     return dot(difference, difference) + kLeastHoleError;
 }
 
+// The dominant pixel that arrived in a pixel of the row.
+vec4 arrivedColour(StereoView stereo, uint row, uvec2 at) {
+    const uint arrival = arrivalAt(row, at.x);
+    const vec2 place_px = movePixel(stereo.dominant_from_affiliated, vec2(at) + 0.5, inverseDepthOf(arrival)).xy;
+    const ivec2 source = clamp(pixelOfParity(place_px, arrival), ivec2(0), ivec2(stereo.size_px) - 1);
+    return dominantAt(uint(source.y) * stereo.size_px.x + uint(source.x));
+}
+
+struct Copied {
+    vec4 colour;
+    uint pixel_class;
+    float inverse_depth;
+};
+
+// The paper to the letter. Section 3.1, stage 2: the initial view is the dominant pixels where they were projected; each keeps its colour.
+// Stage 4: gaps, "small and surrounded by valid reprojected pixels", are "filled through adaptive interpolation". It does not say how
+// small, nor what adapts: here runs of a row up to gap_px, and colours linear between the run's two ends, whichever is farther. Longer
+// runs have no other filling in the paper either where centre ROIs are off (figure 3 a), and get the same; beside the picture's border
+// there is one end alone. A row that nothing reached shows what lies infinitely far.
+Copied copyArrived(StereoView stereo, uint row, uvec2 at) {
+    const bool here = arrivalAt(row, at.x) != 0;
+    const int left = here ? int(at.x) : arrivedBefore(at.x), right = here ? int(at.x) : arrivedAfter(at.x, stereo.size_px.x);
+    if (left < 0 && right < 0) {
+        const vec2 place_px = movePixel(stereo.dominant_from_affiliated, vec2(at) + 0.5, 0).xy;
+        const uvec2 source = uvec2(clamp(place_px, vec2(0.5), vec2(stereo.size_px) - 0.5));
+        return Copied(dominantAt(source.y * stereo.size_px.x + source.x), kHole, 0);
+    }
+    const uint first = uint(left >= 0 ? left : right), last = uint(right >= 0 ? right : left);
+    const float share = first == last ? 0 : float(at.x - first) / float(last - first);
+    const bool inside = left >= 0 && right >= 0 && last - first - 1 <= stereo.gap_px;
+    return Copied(mix(arrivedColour(stereo, row, uvec2(first, at.y)), arrivedColour(stereo, row, uvec2(last, at.y)), share),
+                  here ? kCovered : inside ? kGap : kHole, mix(inverseDepthOf(arrivalAt(row, first)), inverseDepthOf(arrivalAt(row, last)), share));
+}
+
+void putPixel(StereoView stereo, uvec2 at, uint pixel_class, vec4 colour, float inverse_depth) {
+    const uint i = at.y * stereo.size_px.x + at.x;
+    if (kComponents && pixel_class == kHole) {
+        pass.component_pixels.at[kHalfColours ? i : 2 * i].parent = i;
+    } else {
+        putColour(pass.affiliated, pass.half_affiliated, i, colour);
+    }
+    if (kDepth) { pass.depths.at[i] = inverse_depth > 0 ? colour.a / inverse_depth : 0; }
+}
+
 // Writes the pixel; returns its expected squared error, and its class.
 float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
+    if (kForward) {
+        const Copied copied = copyArrived(stereo, row, at);
+        pixel_class = copied.pixel_class;
+        putPixel(stereo, at, pixel_class, copied.colour, copied.inverse_depth);
+        return 0;
+    }
     const Resolved resolved = resolve(stereo, row, at);
     pixel_class = resolved.pixel_class;
     const vec2 source_px = movePixel(stereo.dominant_from_affiliated, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
@@ -184,13 +236,7 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     const float disparity_px = length(disparity);
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
-    const uint i = at.y * stereo.size_px.x + at.x;
-    if (kComponents && pixel_class == kHole) {
-        pass.component_pixels.at[kHalfColours ? i : 2 * i].parent = i;
-    } else {
-        putColour(pass.affiliated, pass.half_affiliated, i, found.colour);
-    }
-    if (kDepth) { pass.depths.at[i] = resolved.inverse_depth > 0 ? found.colour.a / resolved.inverse_depth : 0; }
+    putPixel(stereo, at, pixel_class, found.colour, resolved.inverse_depth);
     if (!kPredictErrors) { return 0; }
     if (pixel_class == kHole) { return holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
     // These pixels are many and alike: every other row stands for two.

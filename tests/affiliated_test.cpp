@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <map>
 
 using namespace binosplat;
 using test::AffiliatedFrame;
@@ -17,8 +16,6 @@ using test::ViewedScene;
 
 namespace {
 
-const std::vector<Mode> kReprojectingModes{Mode::kReproject, Mode::kPaper, Mode::kPredicted};
-
 ViewedScene viewAtelier(glm::uvec2 size_px = {256, 256}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
 
 FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
@@ -27,6 +24,21 @@ FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     settings.dominant = dominant;
     settings.stereo.center_rois = true;
     return settings;
+}
+
+// The paper to the letter.
+FrameSettings makeLetterSettings(Side dominant = kLeft) {
+    FrameSettings settings = makeSettings(Mode::kPaper, dominant);
+    settings.stereo.depth_choice = gpu::kDepthSum;
+    settings.stereo.forward = true;
+    settings.per_eye = true;
+    return settings;
+}
+
+std::vector<FrameSettings> makeReprojecting(Side dominant = kLeft) {
+    std::vector<FrameSettings> all{makeLetterSettings(dominant)};
+    for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) { all.push_back(makeSettings(mode, dominant)); }
+    return all;
 }
 
 // One pixel's worth of what should not be there.
@@ -77,9 +89,9 @@ TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's pic
         StereoFrame frame(context(), scene);
         for (const gpu::uint depth_choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
             CAPTURE(depth_choice);
-            for (const Mode mode : kReprojectingModes) {
-                CAPTURE(static_cast<int>(mode));
-                FrameSettings settings = makeSettings(mode, depth_choice == gpu::kDepthMean ? kRight : kLeft);
+            for (FrameSettings settings : makeReprojecting(depth_choice == gpu::kDepthMean ? kRight : kLeft)) {
+                CAPTURE(static_cast<int>(settings.mode));
+                CAPTURE(settings.stereo.forward);
                 settings.background = {0.1, 0.7, 0.3};
                 settings.stereo.depth_choice = depth_choice;
                 const AffiliatedFrame made = makeAffiliated(frame, stereoPair(view.eye, 0.0), settings);
@@ -98,18 +110,21 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, and on 
     const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
-    for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
-        CAPTURE(static_cast<int>(mode));
-        const AffiliatedFrame first = makeAffiliated(frame, eyes, makeSettings(mode));
+    std::vector<FrameSettings> all = makeReprojecting();
+    for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) { all.push_back(makeSettings(mode)); }
+    for (const FrameSettings& settings : all) {
+        CAPTURE(static_cast<int>(settings.mode));
+        CAPTURE(settings.stereo.forward);
+        const AffiliatedFrame first = makeAffiliated(frame, eyes, settings);
         for (int run = 0; run < 2; ++run) {
-            const AffiliatedFrame again = makeAffiliated(frame, eyes, makeSettings(mode));
+            const AffiliatedFrame again = makeAffiliated(frame, eyes, settings);
             CHECK(again.pictures[kLeft].values == first.pictures[kLeft].values);
             CHECK(again.pictures[kRight].values == first.pictures[kRight].values);
             CHECK(again.tile_kinds == first.tile_kinds);
             CHECK(again.pixel_classes == first.pixel_classes);
         }
         StereoFrame fresh(context(), scene);
-        const AffiliatedFrame anew = makeAffiliated(fresh, eyes, makeSettings(mode));
+        const AffiliatedFrame anew = makeAffiliated(fresh, eyes, settings);
         CHECK(anew.pictures[kRight].values == first.pictures[kRight].values);
         CHECK(anew.tile_kinds == first.tile_kinds);
     }
@@ -127,17 +142,17 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
                 full_settings.background = {1.0, 0.0, 1.0};
                 const Image full = makeAffiliated(frame, eyes, full_settings).pictures[1 - dominant];
                 REQUIRE(findFlaws(full) == Flaws{});
-                for (const Mode mode : kReprojectingModes) {
+                for (FrameSettings settings : makeReprojecting(dominant)) {
                     CAPTURE(canting_rad);
                     CAPTURE(static_cast<int>(dominant));
-                    CAPTURE(static_cast<int>(mode));
-                    FrameSettings settings = full_settings;
-                    settings.mode = mode;
+                    CAPTURE(static_cast<int>(settings.mode));
+                    CAPTURE(settings.stereo.forward);
+                    settings.background = full_settings.background;
                     const AffiliatedFrame made = makeAffiliated(frame, eyes, settings);
                     const Flaws flaws = findFlaws(made.pictures[1 - dominant]);
                     CHECK(flaws == Flaws{});
                     const double psnr_db = compare(made.pictures[1 - dominant], full).psnrDb();
-                    CHECK(psnr_db >= (mode == Mode::kReproject ? 15.0 : 20.0));
+                    CHECK(psnr_db >= (settings.mode == Mode::kReproject ? 15.0 : 20.0));
                     const auto& counters = made.result.counters;
                     CHECK(counters.at("pixels_covered") + counters.at("pixels_gap") + counters.at("pixels_hole") == countMoved(made));
                 }
@@ -183,6 +198,28 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
     }
 }
 
+TEST_CASE_FIXTURE(Gpu,
+                  "what each eye culls and sorts by itself makes two-pass's tiles, and with parallel eyes the picture of shared lists") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene);
+    for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+        CAPTURE(canting_rad);
+        const auto eyes = test::headsetEyes(view.eye, canting_rad);
+        const Image full = makeAffiliated(frame, eyes, makeSettings(Mode::kTwoPass)).pictures[kRight];
+        FrameSettings settings = makeLetterSettings();
+        const AffiliatedFrame alone = makeAffiliated(frame, eyes, settings);
+        CHECK(test::keepTiles(alone.pictures[kRight], alone.tile_kinds).values == test::keepTiles(full, alone.tile_kinds).values);
+        CHECK(alone.result.counters.at("splats_visible_left") != alone.result.counters.at("splats_visible_right"));
+        settings.per_eye = false;
+        const AffiliatedFrame together = makeAffiliated(frame, eyes, settings);
+        CHECK(together.result.counters.at("splats_visible_left") >= alone.result.counters.at("splats_visible_left"));
+        CHECK(together.tile_kinds == alone.tile_kinds);
+        CHECK(compare(together.pictures[kRight], alone.pictures[kRight], 4).psnrDb() >= 90.0);
+        CHECK(together.pictures[kLeft].values == alone.pictures[kLeft].values);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "more budget is never worse") {
     const ViewedScene view = viewAtelier();
     const auto eyes = stereoPair(view.eye, 0.063);
@@ -206,12 +243,12 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the other eye's 
     const ViewedScene view = viewAtelier({160, 160});
     const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
     const GpuScene scene(context(), view.scene);
-    for (const Mode mode : kReprojectingModes) {
-        CAPTURE(static_cast<int>(mode));
+    for (const FrameSettings& settings : makeReprojecting()) {
+        CAPTURE(static_cast<int>(settings.mode));
+        CAPTURE(settings.per_eye);
         StereoFrame roomy(context(), scene, {.first_capacity = {20000, 1u << 20}, .threads_per_cell = 0});
         StereoFrame tight(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
-        const AffiliatedFrame expected = makeAffiliated(roomy, eyes, makeSettings(mode)),
-                              grown = makeAffiliated(tight, eyes, makeSettings(mode));
+        const AffiliatedFrame expected = makeAffiliated(roomy, eyes, settings), grown = makeAffiliated(tight, eyes, settings);
         CHECK(grown.pictures[kLeft].values == expected.pictures[kLeft].values);
         CHECK(grown.pictures[kRight].values == expected.pictures[kRight].values);
         CHECK(grown.tile_kinds == expected.tile_kinds);
@@ -222,19 +259,21 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the other eye's 
 TEST_CASE("making one eye from the other takes less memory than rendering both") {
     const ViewedScene view = viewAtelier({384, 384});
     for (const FrameCapacity& first : {FrameCapacity{1, 1}, FrameOptions{}.first_capacity}) {
-        std::map<Mode, std::uint64_t> peak_bytes;
-        for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
+        std::uint64_t two_pass_bytes = 0;
+        std::vector<FrameSettings> all{makeSettings(Mode::kTwoPass)};
+        for (const FrameSettings& settings : makeReprojecting()) { all.push_back(settings); }
+        for (FrameSettings settings : all) {
             const Context context;
             const GpuScene scene(context, view.scene);
             StereoFrame frame(context, scene, {.first_capacity = first, .threads_per_cell = 0});
-            FrameSettings settings = makeSettings(mode);
             settings.keep_depth = false;
-            peak_bytes[mode] = frame.render(stereoPair(view.eye, 0.063), settings).peak_gpu_bytes;
-            MESSAGE("first capacity " << first.pairs << ", mode " << static_cast<int>(mode) << ": " << peak_bytes[mode] << " bytes, "
-                                      << 100.0 * static_cast<double>(peak_bytes[mode]) / static_cast<double>(peak_bytes[Mode::kTwoPass])
-                                      << " %");
+            const std::uint64_t peak_bytes = frame.render(stereoPair(view.eye, 0.063), settings).peak_gpu_bytes;
+            if (settings.mode == Mode::kTwoPass) { two_pass_bytes = peak_bytes; }
+            MESSAGE("first capacity " << first.pairs << ", mode " << static_cast<int>(settings.mode) << (settings.per_eye ? " per eye" : "")
+                                      << ": " << peak_bytes << " bytes, "
+                                      << 100.0 * static_cast<double>(peak_bytes) / static_cast<double>(two_pass_bytes) << " %");
+            // Most of the dominant eye's pairs lie where the other eye's picture will be.
+            if (settings.mode != Mode::kTwoPass) { CHECK(peak_bytes < two_pass_bytes); }
         }
-        // Most of the dominant eye's pairs lie where the other eye's picture will be.
-        for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) { CHECK(peak_bytes[mode] < peak_bytes[Mode::kTwoPass]); }
     }
 }

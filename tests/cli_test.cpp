@@ -101,6 +101,7 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--order index"), 1, "--order is index, must be depth or distance");
     checkRefused(work.run(render + "--mode fast"), 1, "--mode is fast, must be mono");
     checkRefused(work.run(render + "--gap-px 65"), 1, "--gap-px is 65, must be a whole number from 0 to 64");
+    checkRefused(work.run(render + "--resampling nearest"), 1, "--resampling is nearest, must be cubic or forward");
     checkRefused(work.run(render + "--edge-samples 0"), 1, "--edge-samples is 0, must be a whole number from 1");
     checkRefused(work.run(render + "--edge-bounds loose"), 1, "--edge-bounds is loose, must be paper or tight");
     checkRefused(work.run(render + "--hole-error nan"), 1, "--hole-error is nan, must be a number from 0 to 8");

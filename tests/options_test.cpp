@@ -69,6 +69,8 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.stereo.budget == none.stereo.budget);
     CHECK(file.stereo.depth == none.stereo.depth);
     CHECK(file.stereo.order == none.stereo.order);
+    CHECK(file.stereo.resampling == none.stereo.resampling);
+    CHECK(file.stereo.per_eye == none.stereo.per_eye);
     CHECK(file.stereo.gap_px == none.stereo.gap_px);
     CHECK(file.stereo.edge_samples == none.stereo.edge_samples);
     CHECK(file.stereo.edge_bounds == none.stereo.edge_bounds);
@@ -211,8 +213,11 @@ TEST_CASE("medianIsTheMiddleOrTheMeanOfTwo") {
 
 TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
     std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 4.0), makeResult("a", "shared", 1, 2.0),
-                                     makeResult("a", "shared", 2, 3.0), makeResult("b,c", "mono", 1, 3.0)};
+                                     makeResult("a", "shared", 2, 3.0), makeResult("b,c", "mono", 1, 3.0),
+                                     makeResult("a", "shared", 1, 5.0)};
+    results[4].backbone = "3DGS";  // the same scene as discs is another point
     compareModes(results);
+    CHECK(!results[4].ratio_to_two_pass.has_value());
     CHECK(results[1].ratio_to_two_pass == 0.5);
     CHECK(results[0].ratio_to_shared == 2.0);
     CHECK(!results[2].ratio_to_two_pass.has_value());
@@ -300,12 +305,43 @@ TEST_CASE("methodsSweepTheirSettings") {
     CHECK(plan.methods[0].stereo.order == "depth");
     CHECK(plan.methods[4].stereo.margin_px == 16);
     CHECK(!plan.ssim);
-    const std::vector<BenchView> views = viewsOf(plan, "/some/where/a.ply", options.run);
-    REQUIRE(views.size() == 1);
-    CHECK(views[0].name == "near");
-    CHECK(views[0].run.camera.near == 0.5);
-    CHECK(views[0].run.camera.eye == glm::dvec3(1.0, 2.0, 3.0));
-    CHECK(viewsOf(plan, "builtin:fence", options.run).at(0).name.empty());
+    const std::vector<DrawnViews> drawn = viewsOf(plan, "/some/where/a.ply", options.run);
+    REQUIRE(drawn.size() == 1);
+    REQUIRE(drawn[0].views.size() == 1);
+    const BenchView& view = drawn[0].views[0];
+    CHECK(view.name == "near");
+    CHECK(view.run.camera.near == 0.5);
+    CHECK(view.run.camera.eye == glm::dvec3(1.0, 2.0, 3.0));
+    CHECK(viewsOf(plan, "builtin:fence", options.run).at(0).views.at(0).name.empty());
+}
+
+TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralWays") {
+    const Workplace work;
+    writeText(work.path / "a.toml",
+              "[[methods]]\nname = \"letter\"\nmode = \"paper\"\ndepth = \"sum\"\nresampling = \"forward\"\nper_eye = true\n"
+              "[[methods]]\nname = \"ours\"\nmode = \"paper\"\n"
+              "[[views]]\nname = \"whole\"\nscene = [\"a.ply\", \"b\"]\n"
+              "[[views]]\nname = \"flat\"\nscene = \"b\"\nflatten = true\n"
+              "[[views]]\nname = \"near\"\nscene = \"b\"\nnear = 0.5\n"
+              "[[views]]\nname = \"dimmed\"\nscene = \"b\"\nantialiased = true\n");
+    const BenchOptions options = parse<BenchOptions>({"bench", "b", "--out", "out", "--config", (work.path / "a.toml").string()});
+    const BenchPlan plan = planBench(options);
+    REQUIRE(plan.methods.size() == 4);
+    CHECK(plan.methods[2].stereo.resampling == "forward");
+    CHECK(plan.methods[2].stereo.per_eye);
+    CHECK(plan.methods[3].stereo.resampling == "cubic");
+    CHECK_FALSE(plan.methods[3].stereo.per_eye);
+    const auto namesOf = [&](const std::string& scene) {
+        std::string names;
+        for (const DrawnViews& drawn : viewsOf(plan, scene, options.run)) {
+            names += drawn.run.load.flatten ? "flattened:" : drawn.run.load.antialiased ? "antialiased:" : "trained:";
+            for (const BenchView& view : drawn.views) { names += " " + view.name; }
+            names += "; ";
+        }
+        return names;
+    };
+    CHECK(namesOf("some/b") == "trained: whole near; flattened: flat; antialiased: dimmed; ");
+    CHECK(namesOf("a.ply") == "trained: whole; ");
 }
 
 TEST_CASE("plotsOfFewOrBadPointsStayFinite") {

@@ -37,13 +37,16 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample finds the twin's colours, depths and classes
     const glm::vec3 background(0.25f, 0.5f, 0.75f);
     double worst = 0.0, worst_depth = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
-        for (const int gap_px : {0, 2, 5}) {
+        for (const auto& [gap_px, forward] :
+             {std::pair(0, false), std::pair(2, false), std::pair(5, false), std::pair(0, true), std::pair(2, true)}) {
             for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kOwnHalves, Rows::kSharedHalves}) {
                 CAPTURE(whole.name);
                 CAPTURE(gap_px);
+                CAPTURE(forward);
                 CAPTURE(static_cast<int>(rows));
                 StereoCase c = whole;
                 if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+                c.settings.forward = forward;
                 // Gaps that 8d has not closed are left for this pass.
                 c.settings.gap_px = gap_px == 5 ? 0 : gap_px;
                 const Arrived arrived(c);
@@ -54,12 +57,14 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample finds the twin's colours, depths and classes
                 device.writeArrivals(arrived.words);
                 device.writeTileKinds(test::kindsOf(kinds));
                 const auto before = device.readAffiliatedWords();
-                device.resample({.depths = true, .classes = true, .background = background});
+                device.resample({.depths = true, .classes = true, .forward = forward, .background = background});
                 const auto after = device.readAffiliatedWords();
                 const auto colours = device.readAffiliated();
                 const auto depths = device.readDepths();
                 const auto classes = device.readClasses();
-                const auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes, glm::dvec3(background));
+                const glm::dvec3 behind(background);
+                const auto expected = forward ? reference::copyColours(c.dominant, arrived.arrivals, kinds, c.eyes, behind)
+                                              : reference::resample(c.dominant, resolved, kinds, c.eyes, behind);
                 const auto expected_depths = reference::resampleDepths(expected, resolved, kinds, c.sizePx());
                 std::size_t touched = 0, other_class = 0, other_depth = 0;
                 std::array<std::uint32_t, 3> counts{};
@@ -145,35 +150,73 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are 
     CHECK(worst <= 0.002);
 }
 
+TEST_CASE_FIXTURE(Gpu, "8f_resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+    // Nothing moves but by whole pixels: one at inverse depth 0.1 by 1 px to the left, one at 0.4 by 4 px. Colours are the columns'
+    // squares.
+    const glm::uvec2 size_px(16, 1);
+    const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 8.0, 0.5}, size_px}, 0.1);
+    StereoCase c{"steps", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
+    c.settings.forward = true;
+    for (int x = 0; x < 16; ++x) {
+        const double w = x == 8 ? 0.4 : 0.1;
+        c.dominant.rgba.emplace_back(x * x / 256.0, 0.5, 0.25, 1.0);
+        c.dominant.depth.push_back(1.0 / w);
+        c.dominant.inverse_depth.push_back(w);
+        c.dominant.inverse_depth_squared.push_back(w * w);
+    }
+    test::roundToWords(c.dominant, c.settings);
+    for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
+        StereoOnDevice device = toDevice(*this, c, rows);
+        device.reproject(/*hidden_tiles=*/false, /*forward=*/true);
+        device.resample({.classes = true, .forward = true});
+        const auto colours = device.readAffiliated();
+        const auto classes = device.readClasses();
+        for (int x = 0; x < 16; ++x) {
+            CAPTURE(x);
+            // Column 8 lies in front of column 5 in pixel 4, and pixel 7, which it leaves, is between columns 7 and 9; beyond the last
+            // column, in pixel 15, that one repeats.
+            const int source = x == 4 ? 8 : std::min(x + 1, 15);
+            const float expected = x == 7 ? (49.0f + 81.0f) / 512.0f : static_cast<float>(source * source) / 256.0f;
+            CHECK(colours[static_cast<std::size_t>(x)] == gpu::vec4(expected, 0.5f, 0.25f, 1.0f));
+            CHECK(classes[static_cast<std::size_t>(x)] == (x == 7 ? gpu::kGap : x == 15 ? gpu::kHole : gpu::kCovered));
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "8f_resample makes holes their own parents where they are going to be grouped") {
     for (StereoCase c : test::makeStereoCases()) {
-        CAPTURE(c.name);
-        const Rows rows = c.dominant.size_px.x % 2 == 0 ? Rows::kShared : Rows::kSharedHalves;
-        if (areHalves(rows)) { test::roundToHalves(c.dominant); }
-        const Arrived arrived(c);
-        const auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
-        StereoOnDevice device = toDevice(*this, c, rows);
-        const auto kinds = test::markSome(device.tileCount());
-        device.writeArrivals(arrived.words);
-        device.writeTileKinds(test::kindsOf(kinds));
-        device.resample({.classes = true, .components = true});
-        const auto words = device.readAffiliatedWords();
-        const auto colours = device.readAffiliated();
-        const auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes);
-        std::size_t holes = 0, wrong = 0;
-        for (std::size_t i = 0; i < resolved.size(); ++i) {
-            if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
-            const bool hole = resolved[i].pixel_class == PixelClass::kHole;
-            holes += hole ? 1 : 0;
-            const bool parent = words[device.wordsPerPixel() * i] == i;
-            wrong += (hole ? parent : beyondRounding(colours[i], expected[i], 0, rows) <= 1e-5) ? 0 : 1;
+        for (const bool forward : {false, true}) {
+            CAPTURE(c.name);
+            CAPTURE(forward);
+            c.settings.forward = forward;
+            const Rows rows = c.dominant.size_px.x % 2 == 0 ? Rows::kShared : Rows::kSharedHalves;
+            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+            const Arrived arrived(c);
+            const auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
+            StereoOnDevice device = toDevice(*this, c, rows);
+            const auto kinds = test::markSome(device.tileCount());
+            device.writeArrivals(arrived.words);
+            device.writeTileKinds(test::kindsOf(kinds));
+            device.resample({.classes = true, .components = true, .forward = forward});
+            const auto words = device.readAffiliatedWords();
+            const auto colours = device.readAffiliated();
+            const auto expected = forward ? reference::copyColours(c.dominant, arrived.arrivals, kinds, c.eyes)
+                                          : reference::resample(c.dominant, resolved, kinds, c.eyes);
+            std::size_t holes = 0, wrong = 0;
+            for (std::size_t i = 0; i < resolved.size(); ++i) {
+                if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
+                const bool hole = resolved[i].pixel_class == PixelClass::kHole;
+                holes += hole ? 1 : 0;
+                const bool parent = words[device.wordsPerPixel() * i] == i;
+                wrong += (hole ? parent : beyondRounding(colours[i], expected[i], 0, rows) <= 1e-5) ? 0 : 1;
+            }
+            CHECK(wrong == 0);
+            const gpu::StereoCounters counters = device.readCounters();
+            CHECK(counters.hole_pixels == holes);
+            const gpu::DispatchSize groups = counters.component_groups;
+            const glm::uvec2 tiles = (c.sizePx() + 15u) / 16u;
+            CHECK(groups.x * groups.y * groups.z == (holes > 0 ? tiles.x * 2 * tiles.y : 0));
         }
-        CHECK(wrong == 0);
-        const gpu::StereoCounters counters = device.readCounters();
-        CHECK(counters.hole_pixels == holes);
-        const gpu::DispatchSize groups = counters.component_groups;
-        const glm::uvec2 tiles = (c.sizePx() + 15u) / 16u;
-        CHECK(groups.x * groups.y * groups.z == (holes > 0 ? tiles.x * 2 * tiles.y : 0));
     }
 }
 

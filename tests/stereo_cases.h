@@ -36,6 +36,7 @@ inline StereoSettings settingsOf(const reference::StereoSettings& twin) {
                         : twin.method == reference::StereoMethod::kPredicted ? Patching::kPredicted
                                                                              : Patching::kNone;
     settings.depth_choice = depthChoiceOf(twin.depth_choice);
+    settings.forward = twin.forward;
     settings.gap_px = static_cast<gpu::uint>(twin.gap_px);
     settings.margin_px = static_cast<gpu::uint>(twin.margin_px);
     settings.edge_samples = static_cast<gpu::uint>(twin.edge_samples);
@@ -62,7 +63,7 @@ inline gpu::uint packArrival(const reference::Arrival& arrival) {
 inline reference::Arrival unpackArrival(gpu::uint word) {
     if (word == 0) { return {}; }
     return {(word & 32) != 0 ? reference::Arrival::kLanded : reference::Arrival::kBetween,
-            static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5)), word & 31};
+            static_cast<double>(std::bit_cast<float>(((word >> 6) - 1) << 5)), word & 31, 0};
 }
 
 // Both sides start from what the device can hold.
@@ -164,6 +165,7 @@ struct Arrived {
         for (const reference::Arrival& arrival : reference::reproject(c.dominant, c.eyes, c.settings)) {
             words.push_back(packArrival(arrival));
             arrivals.push_back(unpackArrival(words.back()));
+            arrivals.back().source = arrival.source;
         }
     }
     std::vector<gpu::uint> words;

@@ -92,19 +92,22 @@ TEST_CASE_FIXTURE(Gpu, "eyes side by side move along rows, whatever their angles
 TEST_CASE_FIXTURE(Gpu, "8d_reproject brings to each pixel what the twin brings there, wherever the words lie") {
     Differences all;
     for (StereoCase c : test::makeStereoCases()) {
-        for (const int gap_px : {0, 2, 5, 20}) {
+        for (const auto& [gap_px, forward] :
+             {std::pair(0, false), std::pair(2, false), std::pair(5, false), std::pair(20, false), std::pair(2, true)}) {
             for (const Rows rows : {Rows::kOwn, Rows::kShared, Rows::kSharedHalves}) {
                 c.settings.gap_px = gap_px;
+                c.settings.forward = forward;
                 StereoOnDevice device = toDevice(*this, c, rows);
-                device.reproject();
+                device.reproject(/*hidden_tiles=*/false, forward);
                 Differences differences;
                 differences.count(device.readArrivals(), reference::reproject(c.dominant, c.eyes, c.settings));
                 CAPTURE(c.name);
                 CAPTURE(gap_px);
+                CAPTURE(forward);
                 CHECK(differences.other <= 3 + differences.pixels / 2000);
                 // Along rows depths are copied, so that only what lies between can be rounded.
                 const bool keeps_depths = c.name.find("canted") == std::string::npos;
-                if (keeps_depths && gap_px == 0) { CHECK(differences.off_by_step == 0); }
+                if (keeps_depths && (gap_px == 0 || forward)) { CHECK(differences.off_by_step == 0); }
                 // What moves is as it was.
                 CHECK(device.readMoving() == test::movingOf(c.dominant, c.settings));
                 all.pixels += differences.pixels;

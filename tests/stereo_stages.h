@@ -97,8 +97,8 @@ public:
                                    .counters = counters()},
                  tileGroups());
     }
-    void reproject(bool hidden_tiles = false) {
-        dispatch("8d_reproject", {rectified(), hidden_tiles},
+    void reproject(bool hidden_tiles = false, bool forward = false) {
+        dispatch("8d_reproject", {rectified(), hidden_tiles, forward},
                  gpu::ReprojectPass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
                  pixelGroups());
     }
@@ -122,13 +122,14 @@ public:
                  {groupsOver(order.size(), gpu::kNewcomersBlock), 1});
     }
     struct ResampleParts {
-        bool errors = false, depths = false, classes = false, components = false;
+        bool errors = false, depths = false, classes = false, components = false, forward = false;
         glm::vec3 background{0.0f};
     };
     void resample(const ResampleParts& parts) {
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
-        dispatch("8f_resample", {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_)},
+        dispatch("8f_resample",
+                 {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward},
                  gpu::ResamplePass{.stereo = view(),
                                    .dominant = colours_.address<gpu::vec4>(),
                                    .half_dominant = colours_.address<gpu::uvec2>(),

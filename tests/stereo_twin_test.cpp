@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 using namespace binosplat;
 using reference::DepthChoice;
@@ -46,6 +47,10 @@ TEST_CASE("the twin moves nothing where the eyes are one") {
             CHECK(worst <= 1e-9);
             CHECK(std::all_of(pictures.resolved.begin(), pictures.resolved.end(),
                               [](const auto& pixel) { return pixel.pixel_class == PixelClass::kCovered; }));
+            if (method != StereoMethod::kPredicted) {
+                const reference::StereoSettings letter{.method = method, .depth_choice = choice, .forward = true};
+                CHECK(reference::renderStereo(view.scene, eyes, letter, {}).affiliated == pictures.dominant.rgba);
+            }
             CHECK(
                 std::all_of(pictures.tile_kinds.begin(), pictures.tile_kinds.end(), [](TileKind kind) { return kind == TileKind::kNone; }));
         }
@@ -95,18 +100,26 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
         const GpuScene scene(context(), seen.view.scene);
         StereoFrame frame(context(), scene);
         for (const Side dominant : {kLeft, kRight}) {
-            // A move that costs nothing, as much as many tiles' pairs, and more than any.
-            for (const auto& [method, move_cost] :
-                 {std::pair(StereoMethod::kReproject, 0u), std::pair(StereoMethod::kPaper, 0u), std::pair(StereoMethod::kPredicted, 0u),
-                  std::pair(StereoMethod::kPredicted, 150u), std::pair(StereoMethod::kPredicted, 100000u)}) {
-                const reference::StereoSettings twin_settings{
-                    .method = method, .margin_px = 8, .center_rois = true, .budget = 0.15, .move_cost = move_cost};
+            // A move that costs nothing, as much as many tiles' pairs, and more than any. And the paper to the letter, each eye by itself.
+            for (const auto& [method, move_cost, letter] :
+                 {std::tuple(StereoMethod::kReproject, 0u, false), std::tuple(StereoMethod::kReproject, 0u, true),
+                  std::tuple(StereoMethod::kPaper, 0u, false), std::tuple(StereoMethod::kPaper, 0u, true),
+                  std::tuple(StereoMethod::kPredicted, 0u, false), std::tuple(StereoMethod::kPredicted, 150u, false),
+                  std::tuple(StereoMethod::kPredicted, 100000u, false)}) {
+                const reference::StereoSettings twin_settings{.method = method,
+                                                              .depth_choice = letter ? DepthChoice::kSum : DepthChoice::kInverse,
+                                                              .forward = letter,
+                                                              .margin_px = 8,
+                                                              .center_rois = true,
+                                                              .budget = 0.15,
+                                                              .move_cost = move_cost};
                 const auto twin =
                     reference::renderStereo(seen.view.scene, {seen.eyes[dominant], seen.eyes[1 - dominant]}, twin_settings, {});
                 FrameSettings settings;
                 settings.mode = modeOf(method);
                 settings.dominant = dominant;
                 settings.stereo = test::settingsOf(twin_settings);
+                settings.per_eye = letter;
                 const AffiliatedFrame made = test::makeAffiliated(frame, seen.eyes, settings);
                 const glm::uvec2 size_px = seen.view.eye.size_px;
                 // Errors are rounded down pixel by pixel on the device, so that of tiles that are nearly alike, as those of the fence's
@@ -132,6 +145,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 CAPTURE(static_cast<int>(dominant));
                 CAPTURE(static_cast<int>(method));
                 CAPTURE(move_cost);
+                CAPTURE(letter);
                 CHECK(difference.not_finite == 0);
                 CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more; of 3D Gaussians 81.3
                 CHECK(difference.shareOff() <= 0.0001);  // measured: none

@@ -44,7 +44,7 @@ KernelTable stereoKernels() {
         everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
     append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
     append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
-    append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
+    append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kForward", 2}}));
     append(table, everyVariant("8e_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
     for (const KernelVariant& variant : everyVariant("8f_resample", sizeof(gpu::ResamplePass),
                                                      {{"kRectified", 2},
@@ -53,10 +53,12 @@ KernelTable stereoKernels() {
                                                       {"kClasses", 2},
                                                       {"kComponents", 2},
                                                       {"kRowSteps", gpu::kMostRowSteps + 1},
-                                                      {"kHalfColours", 2}})) {
-        // Only the paper's holes are grouped, and by their classes.
+                                                      {"kHalfColours", 2},
+                                                      {"kForward", 2}})) {
+        // Only the paper's holes are grouped, and by their classes. Errors are those of sampling.
         const std::vector<std::uint32_t> values = variant.values();
-        if (values[4] == 0 || (values[1] == 0 && values[3] == 1)) { table.push_back(variant); }
+        const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
+        if (groups && (values[1] == 0 || values[7] == 0)) { table.push_back(variant); }
     }
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
     append(table, everyVariant("8h_price", sizeof(gpu::PricePass)));
@@ -69,7 +71,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
     const Buffer& state = in.buffers.state;
     const auto view = state.address<gpu::StereoView>(offsetof(FrameState, stereo));
     const auto counters = state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
-    const auto visible = state.address<gpu::ListState>(FrameBuffers::visibleList(0));
+    const auto visible = state.address<gpu::ListState>(FrameBuffers::visibleList(in.list));
     const auto dominant = in.dominant.colours.address<gpu::vec4>();
     const auto half_dominant = in.dominant.colours.address<gpu::uvec2>();
     const std::uint32_t half_floats = in.dominant.half_floats ? 1 : 0;
@@ -79,6 +81,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
     const bool predict = in.settings.patching == Patching::kPredicted;
     const bool paper = in.settings.patching == Patching::kPaper;
     const bool components = paper && in.settings.center_rois;
+    const bool forward = in.settings.forward && !predict;
     const bool classes = stereo.needs().classes || components;
     const gpu::uint tile_groups = (stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup;
     const auto kernel = [&]<typename Pass>(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) -> const Kernel& {
@@ -120,7 +123,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
     {
         commands.beginPass("affiliated 8d_reproject");
         const gpu::ReprojectPass pass{.stereo = view, .moving = moving, .arrivals = arrivals, .shown_mask = shown_mask};
-        commands.dispatchIndirect(kernel("8d_reproject", pass, {along_rows, hides}), pass, state,
+        commands.dispatchIndirect(kernel("8d_reproject", pass, {along_rows, hides, forward}), pass, state,
                                   counterOffset(offsetof(gpu::StereoCounters, per_pixel_block)));
     }
     if (predict) {
@@ -157,8 +160,8 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
                                      .background = in.background};
         const std::uint32_t with_depth = in.affiliated.depths.bytes() > 0 ? 1 : 0;
         commands.dispatchIndirect(
-            kernel("8f_resample", pass, {along_rows, predict, with_depth, classes, components, stereo.rowSteps(), half_floats}), pass,
-            state, counterOffset(offsetof(gpu::StereoCounters, per_row)));
+            kernel("8f_resample", pass, {along_rows, predict, with_depth, classes, components, stereo.rowSteps(), half_floats, forward}),
+            pass, state, counterOffset(offsetof(gpu::StereoCounters, per_row)));
     }
     if (components) {
         commands.beginPass("affiliated 8g_components");

@@ -31,6 +31,7 @@ enum class Patching {
 struct StereoSettings {
     Patching patching = Patching::kPredicted;
     gpu::uint depth_choice = gpu::kDepthInverse;
+    bool forward = false;  // colours are copied as in the paper, not sampled; kPredicted always samples
     gpu::uint gap_px = 2;
     gpu::uint margin_px = 32;
     gpu::uint edge_samples = 64;
@@ -56,6 +57,7 @@ struct StereoPassInputs {
     const StereoSettings& settings;
     bool rectified;
     bool may_move;  // otherwise only 8a runs, for the next frame's sake
+    int list;       // of visible splats, the affiliated eye's
     int dominant_eye;
     const EyeImage& dominant;
     const EyeImage& affiliated;

@@ -75,7 +75,8 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
 
     const std::vector<Arrival> arrivals = reproject(pictures.dominant, eyes, stereo);
     pictures.resolved = resolve(arrivals, eyes, stereo);
-    pictures.affiliated = resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
+    pictures.affiliated = stereo.forward ? copyColours(pictures.dominant, arrivals, pictures.tile_kinds, eyes, settings.background)
+                                         : resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
     pictures.affiliated_depth = resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);
     if (predicts) {
         std::vector<double>& errors = pictures.tile_errors;

@@ -94,6 +94,12 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
         for (int x = 0; x < size.x; ++x) {
             const auto here = moved(x, y);
             if (!here) { continue; }
+            if (settings.forward) {  // pixels alone move, and each is remembered
+                const auto source = static_cast<std::size_t>(y * size.x + x);
+                const std::uint32_t parity = (x % 2 == 1 ? 1u : 0u) + (y % 2 == 1 ? 2u : 0u);
+                arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, parity, source});
+                continue;
+            }
             arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, here->spread});
             const auto right = moved(x + 1, y);
             if (settings.gap_px == 0 || !right) { continue; }

@@ -47,6 +47,34 @@ std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolv
     return colours;
 }
 
+std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
+                                    const EyePair& eyes, const glm::dvec3& background) {
+    const EyeChange source_from_target(eyes.source, eyes.target);
+    const std::size_t width = dominant.size_px.x, columns = tileGrid(dominant.size_px).x;
+    const auto arrived = [&](std::size_t i) { return arrivals[i].way != Arrival::kNone; };
+    std::vector<glm::dvec4> colours(arrivals.size(), glm::dvec4(0.0));
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+        const std::size_t x = i % width, y = i / width, begin = y * width, end = begin + width;
+        const TileKind kind = kinds[y / kTileSize * columns + x / kTileSize];
+        if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
+        if (kind != TileKind::kNone) { continue; }
+        // One past the nearest at or before the pixel, and the nearest at or after it.
+        std::size_t past_left = i + 1, right = i;
+        while (past_left > begin && !arrived(past_left - 1)) { --past_left; }
+        while (right < end && !arrived(right)) { ++right; }
+        if (past_left == begin && right == end) {
+            const glm::dvec2 place = source_from_target.move(glm::dvec2(x, y) + 0.5, 0.0).place_px;
+            const glm::dvec2 inside = glm::clamp(place, glm::dvec2(0.5), glm::dvec2(dominant.size_px) - 0.5);
+            colours[i] = dominant.rgba[static_cast<std::size_t>(inside.y) * width + static_cast<std::size_t>(inside.x)];
+            continue;
+        }
+        const std::size_t first = past_left > begin ? past_left - 1 : right, last = right < end ? right : first;
+        const double share = first == last ? 0.0 : static_cast<double>(i - first) / static_cast<double>(last - first);
+        colours[i] = (1.0 - share) * dominant.rgba[arrivals[first].source] + share * dominant.rgba[arrivals[last].source];
+    }
+    return colours;
+}
+
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px) {
     const std::size_t width = size_px.x, columns = tileGrid(size_px).x;

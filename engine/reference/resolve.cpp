@@ -8,13 +8,14 @@ namespace binosplat::reference {
 namespace {
 
 // A pixel that nothing reached, between the pixels `left` and `right` of its row that something did; -1: there is none.
-Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int right, double disparity_px, int gap_px) {
+Resolved resolveUncovered(std::span<const Arrival> row, int x, int left, int right, double disparity_px, const StereoSettings& settings) {
     const bool inside = left >= 0 && right >= 0;
     const int run = right - left - 1;
-    const PixelClass pixel_class = inside && run <= gap_px ? PixelClass::kGap : PixelClass::kHole;
+    const PixelClass pixel_class = inside && run <= settings.gap_px ? PixelClass::kGap : PixelClass::kHole;
     const auto depthAt = [&](int column) { return row[static_cast<std::size_t>(column)].inverse_depth; };
-    // A surface that slants: neighbours part no further than the run is long.
-    if (pixel_class == PixelClass::kGap && std::abs(depthAt(right) - depthAt(left)) * disparity_px <= run + 1.0) {
+    // A surface that slants: neighbours part no further than the run is long. The paper interpolates whatever they do.
+    const bool slants = pixel_class == PixelClass::kGap && std::abs(depthAt(right) - depthAt(left)) * disparity_px <= run + 1.0;
+    if (slants || (settings.forward && inside)) {
         const double share = static_cast<double>(x - left) / (right - left);
         return {pixel_class, static_cast<std::uint32_t>(x), (1.0 - share) * depthAt(left) + share * depthAt(right), 0};
     }
@@ -45,7 +46,7 @@ std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& 
             while (left >= 0 && !reached(left)) { --left; }
             while (right < width && !reached(right)) { ++right; }
             const double disparity_px = glm::length(change.disparity({x + 0.5, y + 0.5}));
-            resolved.push_back(resolveUncovered(row, x, left, right < width ? right : -1, disparity_px, settings.gap_px));
+            resolved.push_back(resolveUncovered(row, x, left, right < width ? right : -1, disparity_px, settings));
         }
     }
     return resolved;

@@ -18,6 +18,7 @@ enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden,
 struct StereoSettings {
     StereoMethod method = StereoMethod::kPredicted;
     DepthChoice depth_choice = DepthChoice::kInverse;
+    bool forward = false;  // colours are copied, not sampled
     int gap_px = 2;
     int margin_px = 32;
     int edge_samples = 64;
@@ -86,7 +87,9 @@ struct Arrival {
     enum Way : std::uint8_t { kNone, kBetween, kLanded };
     Way way = kNone;
     double inverse_depth = 0.0;  // of the target's
-    std::uint32_t spread = 0;    // a code, see spreadCode
+    // A code, see spreadCode. Where colours are copied: 1 for an odd column of the source, and 2 for an odd row.
+    std::uint32_t spread = 0;
+    std::size_t source = 0;  // where colours are copied: the pixel that landed
 };
 std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, const StereoSettings& settings);
 // To 19 bits, which is how far the device tells inverse depths apart.
@@ -109,6 +112,10 @@ std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& 
 // Likewise 8f: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
+// Likewise 8f where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
+// between two of a row what is linear between these.
+std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
+                                    const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
 // Likewise 8f: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px);

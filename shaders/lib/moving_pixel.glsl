@@ -2,7 +2,8 @@
 //
 //   31..6  one more than the upper 26 of the 31 bits of its inverse depth; 0: nothing is there, or it goes nowhere
 //   5      it landed in this pixel; otherwise it lies between two that did
-//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean: 2^((code - 1)/2 - 13), or nothing
+//   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean: 2^((code - 1)/2 - 13), or nothing;
+//          where colours are copied, which pixel it is: bit 0 of its column, and in the next place that of its row
 //
 // What is cut off the inverse depth is 2^-19 of it: 1e-4 px where the eyes see a point 50 px apart.
 
@@ -11,6 +12,14 @@ const uint kSpreadBits = 0x1fu;
 
 uint movingPixel(float inverse_depth, uint landed, uint spread) { return ((((floatBitsToUint(inverse_depth) + 16) >> 5) + 1) << 6) | landed | spread; }
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
+
+// Moved back from the middle of the pixel it arrived in, a pixel is less than one off, by what it landed beside that middle: of those
+// around that place, only one has its parity.
+uint parityOf(uvec2 pixel) { return (pixel.x & 1) | (pixel.y & 1) << 1; }
+ivec2 pixelOfParity(vec2 place_px, uint moving) {
+    const vec2 parity = vec2(moving & 1, moving >> 1 & 1);
+    return ivec2(2 * round(0.5 * (place_px - 0.5 - parity)) + parity);
+}
 
 // `spread`: of the inverse depth, as a share of it. NaN counts as none.
 uint spreadCode(float spread) {
