@@ -1,6 +1,7 @@
 // How near a pixel of the twin comes to a threshold of blending. Rounding moves a value across a threshold now and then, whatever
 // the precision, and then a hit counts in full or not at all: alpha at 1/255 (a weight of up to 4e-3), transmittance at 1e-4 (a
-// weight of up to 1e-2, since alpha is at most 0.99), a hit at the near plane, or the disc's own depth instead of its centre's.
+// weight of up to 1e-2, since alpha is at most 0.99), a hit at the near plane, or the disc's own depth instead of its centre's. A 3D
+// Gaussian has one depth, and no second one of a low-pass.
 #pragma once
 
 #include "engine/reference/reach.h"

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -42,6 +43,7 @@ TEST_CASE_FIXTURE(Gpu, "every case is finite, repeats and keeps to its bounds be
     CaseRunner runner(context());
     for (const Case& one : makeCatalogue()) {
         CHECK(names.insert(one.name()).second);
+        CHECK(std::min(one.rendered.psnr_db, one.moved.psnr_db) > 10.0);  // less is no bound
         if (one.large) { continue; }
         const CaseScore score = runner.run(one);
         CHECK(score.pictures.size() == 11);

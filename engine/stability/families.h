@@ -16,9 +16,9 @@ struct Family {
     Stage (*make)(double value);
     Bound rendered, moved;
     const char* reason;
-    Bound beyond = {0.0, 1.0};   // what is left where the parameter
-    double told_from = 0.0;      // is below this
-    double told_to = kInfinity;  // or above this
+    Bound beyond = {0.0, 1.0};      // what is left where the parameter
+    double told_from = -kInfinity;  // is below this
+    double told_to = kInfinity;     // or above this
 };
 
 // Pictures of ordinary scenes agree to 80 dB and more; a threshold that rounding moves a value across costs up to 1/255 of a value
