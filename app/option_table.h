@@ -35,7 +35,7 @@ inline constexpr OptionRow kStereoRows[] = {
     {"move-cost", "stereo", "PAIRS",
      "predicted mode: tiles with at most so many pairs of tile and splat are rendered, not moved (default 32)"},
     {"depth", "stereo", "KIND", "depth that reprojects a pixel: sum, mean or inverse (default inverse)"},
-    {"order", "stereo", "KIND", "splats are blended by their depth, or by their distance from the middle between the eyes (default depth)"},
+    {"order", "stereo", "KIND", "splats go by their depth, or by their distance from the middle between the eyes (default depth; of view: distance)"},
     {"gap-px", "stereo", "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes (default 2)"},
     {"edge-samples", "stereo", "N", "paper mode: samples along each edge of the picture (default 64)"},
     {"edge-bounds", "stereo", "KIND", "paper mode: paper, or tight: at the edges also what near content uncovers (default paper)"},
