@@ -257,6 +257,7 @@ TEST_CASE("theDefaultModeIsPredictedAndTheBudgetIsAShareOfTheWork") {
     CHECK(tilesPatched("--budget 0").second == 0);
     CHECK(tilesPatched("--budget 0 --move-cost 100000").second == 16);  // all are cheaper to render
     CHECK(tilesPatched("--mode reproject").second == 0);
+    CHECK(tilesPatched("--mode paper --depth sum --resampling forward --per-eye --dominant right").second > 0);
     CHECK(tilesPatched("--mode paper --center-roi --edge-bounds tight --dominant right --depth mean").second > 0);
 }
 
@@ -271,6 +272,8 @@ TEST_CASE("benchWritesTableJsonCsvAndPlot") {
     REQUIRE(bench["results"].size() == 10);
     CHECK(bench["results"][0]["ratio_to_two_pass"] == 1.0);
     CHECK(bench["results"][0]["frames"] == 2);
+    CHECK(bench["results"][0]["backbone"] == "2DGS");
+    CHECK(outcome.output.find("splats (2DGS)") != std::string::npos);
     CHECK(fs::exists(work.path / "out" / "bench.csv"));
     CHECK(fs::exists(work.path / "out" / "bench.svg"));
     CHECK(std::distance(fs::directory_iterator(work.path / "out"), {}) == 3);
