@@ -194,13 +194,15 @@ void benchOrders(const BenchOptions& options, const BenchPlan& plan) {
     const BenchSeries& series = plan.series.front();
     std::vector<OrderResult> results;
     for (const std::string& source : plan.scenes) {
-        const Scene scene = loadAs(options.run, source, isBuiltin(source) ? series.splats.front() : 0);
-        for (const BenchView& view : viewsOf(plan, source, options.run)) {
-            RunOptions run = view.run;
-            if (series.sizes_px.front().x > 0) { run.camera.size_px = series.sizes_px.front(); }
-            const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-            const std::string name = std::filesystem::path(source).filename().string() + (view.name.empty() ? "" : ", " + view.name);
-            std::ranges::move(OrderPoint(scene, run, cameras).measure(name), std::back_inserter(results));
+        for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+            const Scene scene = loadAs(drawn.run, source, isBuiltin(source) ? series.splats.front() : 0);
+            for (const BenchView& view : drawn.views) {
+                RunOptions run = view.run;
+                if (series.sizes_px.front().x > 0) { run.camera.size_px = series.sizes_px.front(); }
+                const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
+                const std::string name = std::filesystem::path(source).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+                std::ranges::move(OrderPoint(scene, run, cameras).measure(name), std::back_inserter(results));
+            }
         }
     }
     writeText(files.staging() / "orders.csv", ordersCsv(results));
