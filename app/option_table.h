@@ -35,7 +35,7 @@ inline constexpr OptionRow kStereoRows[] = {
     {"move-cost", "stereo", "PAIRS",
      "predicted mode: tiles with at most so many pairs of tile and splat are rendered, not moved (default 32)"},
     {"depth", "stereo", "KIND", "depth that reprojects a pixel: sum, mean or inverse (default inverse)"},
-    {"order", "stereo", "KIND", "splats go by their depth, or by their distance from the middle between the eyes (default depth; of view: distance)"},
+    {"order", "stereo", "KIND", "splats are blended by their depth, or by their distance from the middle between the eyes (default depth)"},
     {"resampling", "stereo", "KIND",
      "reproject and paper modes: cubic, or forward as the paper moves colours: copied, gaps interpolated (default cubic)"},
     {"per-eye", "stereo", "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},

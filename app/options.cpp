@@ -82,7 +82,7 @@ Settings commandLineLayer(const CommandLine& line) {
 }
 
 RunOptions readRun(const CommandLine& line, const std::string& config, const std::set<std::string>& foreign,
-                   std::vector<SettingsTable>* rest, const RunOptions& defaults = {}) {
+                   std::vector<SettingsTable>* rest) {
     Settings config_settings;
     if (!config.empty()) {
         const std::vector<SettingsTable> tables = readSettingsFile(config);
@@ -91,7 +91,7 @@ RunOptions readRun(const CommandLine& line, const std::string& config, const std
             if (rest != nullptr && foreign.contains(table.name)) { rest->push_back(table); }
         }
     }
-    RunOptions options = runOptions(mergeLayers(commandLineLayer(line), config_settings), defaults);
+    RunOptions options = runOptions(mergeLayers(commandLineLayer(line), config_settings));
     options.config = config;
     return options;
 }
@@ -206,7 +206,6 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     addCommonRows(*bench_command, bench_line, bench.run.config);
 
     ViewOptions view;
-    view.run.stereo.order = "distance";  // a wearer's head turns
     CLI::App* view_command = app.add_subcommand("view", "Show a scene in an OpenXR headset");
     view_command->add_option("SCENE", view.scene, "file, directory or builtin:NAME")->required();
     addViewRows(*view_command, view_line, view.run.config);
@@ -290,7 +289,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     if (view_command->parsed()) {
         view.simulate = simulate->count() > 0;
         if (view_out->count() > 0 && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
-        view.run = readRun(view_line, view.run.config, {"view"}, &view.tables, view.run);
+        view.run = readRun(view_line, view.run.config, {"view"}, &view.tables);
         if (frames_option->count() > 0) { view.frames = readCount({"--frames", {frames}}, 1, 1000000000); }
         return view;
     }

@@ -116,9 +116,9 @@ void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_
     const glm::dvec3 eye = inScene(0.5 * (left.position + right.position) - glm::dvec3(0.0, 1.6, 0.0));
     const glm::dvec3 look = eye + inScene(left.orientation * glm::dvec3(0, 0, -1)), up = inScene(left.orientation * glm::dvec3(0, 1, 0));
     const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
-    const Outcome rendered = work.run(fmt::format(
-        "render builtin:fence --out expected --size 160x160 --fov-x 90 --ipd 0.063 --order distance --eye {} --look {} --up {} {}",
-        numbers(eye), numbers(look), numbers(up), stereo));
+    const Outcome rendered =
+        work.run(fmt::format("render builtin:fence --out expected --size 160x160 --fov-x 90 --ipd 0.063 --eye {} --look {} --up {} {}",
+                             numbers(eye), numbers(look), numbers(up), stereo));
     INFO(rendered.errors);
     REQUIRE(rendered.exit_code == 0);
     for (const int side : {kLeft, kRight}) {
