@@ -17,6 +17,7 @@
 #include <array>
 #include <filesystem>
 #include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,13 +96,13 @@ public:
     std::vector<OrderResult> measure(const std::string& name) const {
         ProgressLine progress(name);
         const HeadEye start = turned(0, 0.0);
-        const reference::Picture own = render(kOwnOrder, start.eye, start);
+        const reference::Picture own = render(kOwnOrder, start.eye, orderOf(kOwnOrder, start.eye, start));
         std::vector<OrderResult> results;
         reference::Picture by_depth;
         for (std::size_t i = 0; i < kOrderMethods.size(); ++i) {
             const OrderMethod& method = kOrderMethods[i];
             OrderResult& result = results.emplace_back(OrderResult{name, method.name, start.eye.size_px, {}, {}});
-            const reference::Picture picture = render(method, start.eye, start);
+            const reference::Picture picture = render(method, start.eye, orderOf(method, start.eye, start));
             if (i == 0) { by_depth = picture; }
             result.from_own = changeBetween(picture, own);
             result.from_depth = changeBetween(picture, by_depth);
@@ -119,24 +120,30 @@ private:
         return turnHead(cameras_, run_.stereo.dominant, glm::radians(kTurnDegrees * k), behind);
     }
 
-    // What `eye` sees with splats ordered as for `ordered`.
-    [[nodiscard]] reference::Picture render(const OrderMethod& method, const Eye& eye, const HeadEye& ordered) const {
+    // The splats that `eye` sees, ordered as for `head`.
+    [[nodiscard]] std::vector<std::uint32_t> orderOf(const OrderMethod& method, const Eye& eye, const HeadEye& head) const {
         stopIfInterrupted();
         reference::Settings settings = settings_;
-        if (method.by_distance) { settings.order_from = ordered.middle; }
+        if (method.by_distance) { settings.order_from = head.middle; }
         const auto visible = reference::cull(scene_, {&eye, 1}, settings);
-        const auto order = reference::sortDepth(reference::compact(scene_, visible, ordered.eye, settings), settings);
-        const auto splats = reference::project(scene_, order, eye, settings);
-        auto pairs = reference::bin(splats, eye.size_px, settings);
-        reference::sortTiles(pairs, settings);
+        return reference::sortDepth(reference::compact(scene_, visible, head.eye, settings), settings);
+    }
+
+    [[nodiscard]] reference::Picture render(const OrderMethod& method, const Eye& eye, std::span<const std::uint32_t> order) const {
+        stopIfInterrupted();
+        const auto splats = reference::project(scene_, order, eye, settings_);
+        auto pairs = reference::bin(splats, eye.size_px, settings_);
+        reference::sortTiles(pairs, settings_);
         const auto ranges = reference::tileRanges(pairs, eye.size_px);
-        return method.window == 1 ? reference::rasterize(splats, pairs, ranges, eye, settings)
-                                  : reference::rasterizeByPixel(scene_, order, splats, pairs, ranges, eye, settings, method.window);
+        return method.window == 1 ? reference::rasterize(splats, pairs, ranges, eye, settings_)
+                                  : reference::rasterizeByPixel(scene_, order, splats, pairs, ranges, eye, settings_, method.window);
     }
 
     void countPopped(const OrderMethod& method, int k, double behind, double& mean, double& most) const {
         const HeadEye before = turned(k - 1, behind), now = turned(k, behind);
-        const double share = changeBetween(render(method, now.eye, now), render(method, now.eye, before)).share_off;
+        const auto order = orderOf(method, now.eye, now), old_order = orderOf(method, now.eye, before);
+        if (order == old_order) { return; }
+        const double share = changeBetween(render(method, now.eye, order), render(method, now.eye, old_order)).share_off;
         mean += share / kTurns;
         most = std::max(most, share);
     }

@@ -109,6 +109,7 @@ TEST_CASE("splatsGoByDepthOrByDistance") {
     CHECK(by_distance.stereo.order == "distance");
     CHECK(frameSettings({}, by_distance.stereo).order == Order::kDistance);
     CHECK(render({"--config", (work.path / "a.toml").string(), "--order", "depth"}).stereo.order == "depth");
+    CHECK(parse<ViewOptions>({"view", "a", "--order", "distance"}).run.stereo.order == "distance");
     CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders"}).orders);
     CHECK_THROWS_AS(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders", "--motion", "m.csv"}), Error);
 }
