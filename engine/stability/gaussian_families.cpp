@@ -55,7 +55,11 @@ std::vector<Family> makeGaussianFamilies() {
          makeLongSheets,
          {50.0, 0.005},
          kPlaces,
-         "from 1e5 pixels on the area that rounding sees of them counts beside the low-pass"},
+         "from 1e5 pixels on the area that rounding sees of them counts beside the low-pass, and so does the depth it takes them to slope "
+         "by",
+         {40.0, 0.05, kInfinity, 0.05},
+         -kInfinity,
+         2e3},
         {"3D centres beyond the near plane",
          "share of its distance",
          {-1e-5, 1e-5, 1e-2},
