@@ -3,6 +3,7 @@
 
 #include "app/option_layers.h"
 #include "app/option_table.h"
+#include "app/version.h"
 #include "engine/error.h"
 #include "engine/picture/flip.h"
 #include "engine/setup/values.h"
@@ -180,7 +181,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
 Options parseOptions(int argument_count, const char* const* arguments) {
     CLI::App app{"binosplat: stereo pictures of Gaussian splatting scenes", "binosplat"};
     app.require_subcommand(1);
-    app.set_version_flag("--version", "binosplat 0.1");
+    app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
 
     CommandLine render_line, bench_line, view_line, info_line, convert_line, stability_line, kernels_line;
     RenderOptions render;

@@ -2,6 +2,7 @@
 #include "app/simulate.h"
 
 #include "engine/error.h"
+#include "engine/setup/data_folders.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -25,7 +26,7 @@ bool hasDisplay() { return isSet("DISPLAY") || isSet("WAYLAND_DISPLAY"); }
 }  // namespace
 
 void simulateHeadset(ViewOptions& options) {
-    const fs::path manifest = fs::read_symlink("/proc/self/exe").parent_path() / "simulated_runtime.json";
+    const fs::path manifest = programFile().parent_path() / "simulated_runtime.json";
     if (!fs::exists(manifest)) {
         throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {}, which the build makes", manifest.string()));
     }

@@ -33,10 +33,13 @@ struct Workplace {
 
     // Through the shell: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
+        return runCommand(environment + " '" BINOSPLAT_PROGRAM "' " + arguments);
+    }
+
+    // Any command of the shell.
+    [[nodiscard]] Outcome runCommand(const std::string& command) const {
         const std::string out = (base / "output").string(), errors = (base / "errors").string();
-        const std::string command = "cd '" + path.string() + "' && { " + environment + " '" BINOSPLAT_PROGRAM "' " + arguments + "; } >'" +
-                                    out + "' 2>'" + errors + "'";
-        const int status = std::system(command.c_str());
+        const int status = std::system(("cd '" + path.string() + "' && { " + command + "; } >'" + out + "' 2>'" + errors + "'").c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(out), textOf(errors)};
     }
 

@@ -9,13 +9,13 @@
 
 namespace binosplat::test {
 
-// BINOSPLAT_DATA if set, otherwise ../shared/data beside the checkout.
+// BINOSPLAT_TEST_DATA if set, otherwise ../shared/data beside the checkout.
 inline std::optional<std::filesystem::path> sharedData() {
-    const char* chosen = std::getenv("BINOSPLAT_DATA");
+    const char* chosen = std::getenv("BINOSPLAT_TEST_DATA");
     const std::filesystem::path folder =
         chosen != nullptr ? std::filesystem::path(chosen) : std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
     if (!std::filesystem::is_directory(folder)) {
-        MESSAGE("skipped: no shared test scenes at " << folder.string() << " (set BINOSPLAT_DATA)");
+        MESSAGE("skipped: no shared test scenes at " << folder.string() << " (set BINOSPLAT_TEST_DATA)");
         return std::nullopt;
     }
     return folder;

@@ -2,6 +2,7 @@
 #include "engine/setup/headset.h"
 
 #include "engine/error.h"
+#include "engine/setup/data_folders.h"
 #include "engine/setup/values.h"
 
 #include <glm/gtc/constants.hpp>
@@ -72,14 +73,8 @@ fs::path findHeadset(const std::string& name) {
     if (name.ends_with(".toml")) { return name; }
     check(!name.empty() && name.find('/') == std::string::npos, "--headset is {}, must be a name of configs/headsets or a .toml file",
           name);
-    std::vector<fs::path> roots{fs::current_path()};
-    std::error_code no_program;
-    const fs::path program = fs::read_symlink("/proc/self/exe", no_program);
-    for (fs::path folder = program.parent_path(); !no_program && folder.has_relative_path(); folder = folder.parent_path()) {
-        roots.push_back(folder);
-    }
     std::set<std::string> known;
-    for (const fs::path& root : roots) {
+    for (const fs::path& root : dataFolders()) {
         const fs::path folder = root / "configs" / "headsets";
         if (fs::path file = folder / (name + ".toml"); fs::exists(file)) { return file; }
         std::error_code no_folder;
@@ -89,7 +84,8 @@ fs::path findHeadset(const std::string& name) {
     }
     std::string list;
     for (const std::string& one : known) { list += (list.empty() ? "" : ", ") + one; }
-    fail("configs/headsets/{}.toml: not found, must be one of: {}", name, list.empty() ? "(no configs/headsets here)" : list);
+    fail("configs/headsets/{}.toml: not found, must be one of: {}", name,
+         list.empty() ? "(no configs/headsets here; BINOSPLAT_DATA may name the folder that holds configs)" : list);
 }
 
 std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance, glm::uvec2 size_px) {

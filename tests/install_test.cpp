@@ -1,0 +1,53 @@
+// Facts about an installed program: it needs nothing of the folder it was built in.
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+namespace fs = std::filesystem;
+using binosplat::test::Outcome;
+using binosplat::test::Workplace;
+
+namespace {
+
+Outcome install(const Workplace& work, const fs::path& prefix) {
+    return work.runCommand("'" BINOSPLAT_CMAKE "' --install '" BINOSPLAT_BUILD "' --component viewer --prefix '" + prefix.string() + "'");
+}
+
+const std::string kRender = "render builtin:one-splat --size 16x16 --headset ";
+
+}  // namespace
+
+TEST_CASE("an installed program finds its headsets, from any folder") {
+    const Workplace work;
+    const fs::path prefix = work.base / "prefix";
+    const Outcome installed = install(work, prefix);
+    INFO(installed.errors);
+    REQUIRE(installed.exit_code == 0);
+    for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
+                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/README.md"}) {
+        CHECK_MESSAGE(fs::exists(prefix / file), file);
+    }
+    const std::string program = (prefix / "bin" / "binosplat").string();
+    const Outcome found = work.runCommand("'" + program + "' " + kRender + "quest2 --out out");
+    INFO(found.errors);
+    CHECK(found.exit_code == 0);
+    CHECK(fs::exists(work.path / "out" / "report.json"));
+
+    const Outcome unknown = work.runCommand("'" + program + "' " + kRender + "nobody --out other");
+    CHECK(unknown.exit_code == 1);
+    CHECK(unknown.errors.find("quest2") != std::string::npos);
+    CHECK_FALSE(fs::exists(work.path / "other"));
+}
+
+TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
+    const Workplace work;
+    const fs::path headsets = work.base / "data" / "configs" / "headsets";
+    fs::create_directories(headsets);
+    fs::copy_file(fs::path(BINOSPLAT_SOURCE_DIR) / "configs" / "headsets" / "index.toml", headsets / "mine.toml");
+    CHECK(work.run(kRender + "mine --out out").exit_code == 1);
+    const Outcome chosen = work.run(kRender + "mine --out out", "BINOSPLAT_DATA='" + (work.base / "data").string() + "'");
+    INFO(chosen.errors);
+    CHECK(chosen.exit_code == 0);
+}
