@@ -1,19 +1,20 @@
 // The methods that a bench compares, and sweeps over their settings.
 #include "app/bench_methods.h"
 
+#include "app/option_table.h"
 #include "engine/error.h"
 #include "engine/setup/values.h"
 
-#include <set>
 #include <utility>
 
 namespace binosplat {
 
 namespace {
 
-const std::set<std::string> kMethodKeys{"name",        "mode",         "depth",      "order",          "resampling",
-                                        "per-eye",     "margin",       "budget",     "gap-px",         "center-roi",
-                                        "edge-bounds", "edge-samples", "hole-error", "newcomer-error", "move-cost"};
+bool isMethodKey(const std::string& key) {
+    const OptionRow<RunOptions>* row = findRunRow(key);
+    return key == "name" || (row != nullptr && (row->text.commands & kMethods) != 0);
+}
 
 // A method on the way: its name so far, and one entry for each key.
 struct Combination {
@@ -40,7 +41,7 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
     for (const char* key : {"name", "mode"}) { check(table.settings.contains(key), "{}: {} is missing, must be given", table.origin, key); }
     std::vector<Combination> combinations{{readText(table.settings.at("name")), {}}};
     for (const auto& [key, setting] : table.settings) {
-        check(kMethodKeys.contains(key), "{} is not a known key of [methods]", setting.origin);
+        check(isMethodKey(key), "{} is not a known key of [methods]", setting.origin);
         check(!setting.items.empty(), "{} is empty, must hold at least one value", setting.origin);
         if (key != "name") { combinations = extend(combinations, key, setting); }
     }

@@ -4,7 +4,6 @@
 #include "app/option_table.h"
 #include "engine/error.h"
 
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -16,16 +15,6 @@ namespace {
 constexpr std::pair<std::string_view, std::string_view> kContradictions[] = {
     {"cameras", "headset"}, {"cameras", "eye"}, {"cameras", "look"}, {"cameras", "up"}, {"cameras", "fov-x"}, {"headset", "fov-x"},
 };
-
-const OptionRow* findRow(const std::string& key) {
-    for (std::span<const OptionRow> rows :
-         {std::span<const OptionRow>(kCameraRows), std::span<const OptionRow>(kStereoRows), std::span<const OptionRow>(kRunRows)}) {
-        for (const OptionRow& row : rows) {
-            if (key == row.key) { return &row; }
-        }
-    }
-    return nullptr;
-}
 
 bool has(const Settings& settings, std::string_view key) { return settings.contains(std::string(key)); }
 
@@ -46,11 +35,11 @@ Settings configLayer(const std::filesystem::path& config, const std::vector<Sett
         check(table.name.empty() || table.name == "camera" || table.name == "stereo" || table.name == "scene" || table.name == "run",
               "{}: [{}] is not a known table, must be [camera], [stereo], [scene] or [run]", table.origin, table.name);
         for (const auto& [key, setting] : table.settings) {
-            const OptionRow* row = findRow(key);
+            const OptionRow<RunOptions>* row = findRunRow(key);
             check(row != nullptr, "{} is not a known key, must be the name of an option of `binosplat render` without its dashes",
                   setting.origin);
-            check(table.name.empty() || table.name == row->table, "{} stands in [{}], must stand in [{}] or at the top", setting.origin,
-                  table.name, row->table);
+            check(table.name.empty() || table.name == row->text.table, "{} stands in [{}], must stand in [{}] or at the top",
+                  setting.origin, table.name, row->text.table);
             check(!layer.contains(key), "{} is set twice, must be set once (also {})", setting.origin,
                   layer.contains(key) ? layer.at(key).origin : "");
             Setting resolved = setting;

@@ -7,6 +7,22 @@ install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/binosplat COMPONE
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer PATTERN "*.py" EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
 
+# The man page and the completions are what the program itself says.
+if(NOT CMAKE_CROSSCOMPILING)
+    set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
+    foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions" "zsh _binosplat zsh/vendor-completions"
+                     "fish binosplat.fish fish/vendor_completions.d")
+        string(REPLACE " " ";" document ${document})
+        list(GET document 0 kind)
+        list(GET document 1 name)
+        list(GET document 2 folder)
+        install(CODE "file(MAKE_DIRECTORY ${documents}/${kind})
+            execute_process(COMMAND $<TARGET_FILE:binosplat> document ${kind} OUTPUT_FILE ${documents}/${kind}/${name} COMMAND_ERROR_IS_FATAL ANY)"
+            COMPONENT viewer)
+        install(FILES ${documents}/${kind}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} COMPONENT viewer)
+    endforeach()
+endif()
+
 set(CPACK_PACKAGE_NAME binosplat)
 set(CPACK_PACKAGE_VENDOR "the binosplat authors")
 set(CPACK_PACKAGE_CONTACT "the binosplat authors <binosplat@localhost>")

@@ -1,6 +1,8 @@
 // report.json of `render`.
 #include "app/report.h"
 
+#include "app/option_table.h"
+
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
@@ -28,46 +30,34 @@ Json eyeJson(const Eye& eye) {
             {"height", eye.size_px.y}};
 }
 
+Json valueJson(const OptionValue& value) {
+    const auto convert = [](const auto& held) -> Json {
+        using Held = std::remove_cvref_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, std::monostate>) {
+            return {};
+        } else if constexpr (std::is_same_v<Held, glm::dvec3>) {
+            return vectorJson(held);
+        } else {
+            return held;
+        }
+    };
+    return std::visit(convert, value);
+}
+
 // Every option under its own name with the value that was used; null for one that did not apply.
 Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
-    const CameraOptions& camera = options.run.camera;
-    const StereoOptions& stereo = options.run.stereo;
-    const auto given = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
     Json json{{"scene", options.scene},
               {"out", options.out.string()},
-              {"config", given(options.run.config)},
-              {"lod", options.run.load.lod ? Json(*options.run.load.lod) : Json()},
-              {"device", given(options.run.device)},
-              {"memory-limit", options.run.memory_limit_mib > 0 ? Json(options.run.memory_limit_mib) : Json()}};
+              {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};
+    for (const OptionRow<RunOptions>& row : runRows()) { json[row.text.key] = valueJson(row.field.value(options.run)); }
+    // What the camera's options leave open comes from the scene, a headset or a camera file.
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
     json["look"] = cameras.view ? vectorJson(cameras.view->look) : Json();
     json["up"] = cameras.view ? vectorJson(cameras.view->up) : Json();
     json["fov-x"] = cameras.view && cameras.view->fov_x_deg > 0.0 ? Json(cameras.view->fov_x_deg) : Json();
     json["size"] = fmt::format("{}x{}", cameras.middle.size_px.x, cameras.middle.size_px.y);
-    json["cameras"] = given(camera.cameras_file);
-    json["view"] = camera.cameras_file.empty() ? Json() : Json(camera.view);
-    json["headset"] = given(camera.headset);
-    json["near"] = camera.near;
-    json["background"] = vectorJson(camera.background);
-    json["mode"] = stereo.mode;
-    json["dominant"] = stereo.dominant == kLeft ? "left" : "right";
+    json["view"] = options.run.camera.cameras_file.empty() ? Json() : Json(options.run.camera.view);
     json["ipd"] = cameras.eye_distance * options.run.metres_per_unit;
-    json["center-roi"] = stereo.center_roi;
-    json["margin"] = stereo.margin_px;
-    json["budget"] = stereo.budget;
-    json["move-cost"] = stereo.move_cost;
-    json["depth"] = stereo.depth;
-    json["order"] = stereo.order;
-    json["resampling"] = stereo.resampling;
-    json["per-eye"] = stereo.per_eye;
-    json["gap-px"] = stereo.gap_px;
-    json["edge-samples"] = stereo.edge_samples;
-    json["edge-bounds"] = stereo.edge_bounds;
-    json["hole-error"] = stereo.hole_error;
-    json["newcomer-error"] = stereo.newcomer_error;
-    json["flatten"] = options.run.load.flatten;
-    json["antialiased"] = options.run.load.antialiased;
-    json["metres-per-unit"] = options.run.metres_per_unit;
     return json;
 }
 

@@ -1,6 +1,7 @@
 // The viewer's settings as TOML.
 #include "app/view_settings.h"
 
+#include "app/option_table.h"
 #include "engine/error.h"
 #include "engine/setup/values.h"
 
@@ -26,22 +27,16 @@ glm::dquat readRotation(const Setting& setting) {
 
 // The settings of [stereo] and [view], by key, as TOML writes their values.
 std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions& stereo) {
-    const auto quoted = [](const std::string& text) { return fmt::format("\"{}\"", text); };
-    return {{"mode", quoted(stereo.mode)},
-            {"dominant", stereo.dominant == kLeft ? "\"left\"" : "\"right\""},
-            {"center-roi", stereo.center_roi ? "true" : "false"},
-            {"margin", fmt::format("{}", stereo.margin_px)},
-            {"budget", fmt::format("{}", stereo.budget)},
-            {"move-cost", fmt::format("{}", stereo.move_cost)},
-            {"depth", quoted(stereo.depth)},
-            {"order", quoted(stereo.order)},
-            {"resampling", quoted(stereo.resampling)},
-            {"per-eye", stereo.per_eye ? "true" : "false"},
-            {"gap-px", fmt::format("{}", stereo.gap_px)},
-            {"edge-samples", fmt::format("{}", stereo.edge_samples)},
-            {"edge-bounds", quoted(stereo.edge_bounds)},
-            {"hole-error", fmt::format("{}", stereo.hole_error)},
-            {"newcomer-error", fmt::format("{}", stereo.newcomer_error)}};
+    RunOptions options;
+    options.stereo = stereo;
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
+        const OptionValue value = row.field.value(options);
+        const std::string text = textOf(value);
+        lines.emplace_back(row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text);
+    }
+    return lines;
 }
 
 std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& settings) {

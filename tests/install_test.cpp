@@ -26,7 +26,9 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     INFO(installed.errors);
     REQUIRE(installed.exit_code == 0);
     for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
-                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/README.md"}) {
+                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/README.md", "share/man/man1/binosplat.1",
+                             "share/bash-completion/completions/binosplat", "share/zsh/vendor-completions/_binosplat",
+                             "share/fish/vendor_completions.d/binosplat.fish"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
     }
     const std::string program = (prefix / "bin" / "binosplat").string();
@@ -50,4 +52,36 @@ TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
     const Outcome chosen = work.run(kRender + "mine --out out", "BINOSPLAT_DATA='" + (work.base / "data").string() + "'");
     INFO(chosen.errors);
     CHECK(chosen.exit_code == 0);
+}
+
+TEST_CASE("docs/options.md is what the program says of its options") {
+    const Workplace work;
+    const Outcome made = work.run("document markdown");
+    CHECK(made.exit_code == 0);
+    std::ifstream file(fs::path(BINOSPLAT_SOURCE_DIR) / "docs" / "options.md", std::ios::binary);
+    CHECK_MESSAGE(made.output == std::string(std::istreambuf_iterator<char>(file), {}),
+                  "run `binosplat document markdown > docs/options.md`");
+}
+
+TEST_CASE("bash completes commands, options and the values of choices") {
+    const Workplace work;
+    const auto complete = [&](const std::string& words, int word) {
+        return work
+            .runCommand("'" BINOSPLAT_PROGRAM "' document bash > c && bash -c 'source ./c; COMP_WORDS=(" + words +
+                        "); COMP_CWORD=" + std::to_string(word) + "; _binosplat; echo \"${COMPREPLY[*]}\"'")
+            .output;
+    };
+    CHECK(complete("binosplat re", 1) == "render\n");
+    CHECK(complete("binosplat render --mode pre", 3) == "predicted\n");
+    CHECK(complete("binosplat compare --lp", 2) == "--lpips\n");
+}
+
+TEST_CASE("the man page has every command and no line that groff complains about") {
+    const Workplace work;
+    REQUIRE(work.run("document man").exit_code == 0);
+    const Outcome formatted =
+        work.runCommand("'" BINOSPLAT_PROGRAM "' document man > page && { ! command -v groff >/dev/null || groff -man -Tascii -ww page; }");
+    CHECK(formatted.exit_code == 0);
+    CHECK(formatted.errors.empty());
+    CHECK(work.run("document page").exit_code == 2);
 }

@@ -104,7 +104,7 @@ std::string readText(const Setting& setting) {
     return setting.items.front();
 }
 
-std::string readChoice(const Setting& setting, std::initializer_list<std::string_view> names) {
+std::string readChoice(const Setting& setting, const std::vector<std::string_view>& names) {
     const std::string text = setting.text();
     std::string list;
     for (auto name = names.begin(); name != names.end(); ++name) {

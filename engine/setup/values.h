@@ -6,10 +6,10 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -29,6 +29,6 @@ bool readFlag(const Setting& setting);
 std::string readText(const Setting& setting);
 
 // One of `names`.
-std::string readChoice(const Setting& setting, std::initializer_list<std::string_view> names);
+std::string readChoice(const Setting& setting, const std::vector<std::string_view>& names);
 
 }  // namespace binosplat

@@ -1,0 +1,11 @@
+// The list of commands and options for readers and shells.
+#pragma once
+
+#include <string>
+
+namespace binosplat {
+
+// `kind`: markdown (docs/options.md), man (section 1), or bash, zsh or fish (completions). Throws Error (usage) for another.
+std::string documentOf(const std::string& kind);
+
+}  // namespace binosplat
