@@ -59,9 +59,9 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
 }
 
 // Of cmake, cpack, ctest, doctest, git and others whose commands the documents show.
-const std::set<std::string> kForeignOptions{"--preset",    "--build",  "--install", "--config",    "--test-dir",
-                                            "--test-case", "--target", "--prefix",  "--component", "--output-on-failure",
-                                            "--help",      "--version"};
+const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
+                                            "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
+                                            "--help",      "--version", "--success"};
 
 bool isOption(const std::string& name) {
     const auto has = [&](const Command& command) {
