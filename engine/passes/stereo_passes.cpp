@@ -9,8 +9,6 @@ namespace {
 // Boxes of holes are strided over by so many workgroups.
 constexpr gpu::uint kMarkGroups = 64;
 
-constexpr std::uint64_t counterOffset(std::uint64_t field) { return offsetof(FrameState, stereo_counters) + field; }
-
 }  // namespace
 
 gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
@@ -66,143 +64,210 @@ KernelTable stereoKernels() {
     return table;
 }
 
-void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
-    const StereoBuffers& stereo = in.stereo;
-    const Buffer& state = in.buffers.state;
-    const auto view = state.address<gpu::StereoView>(offsetof(FrameState, stereo));
-    const auto counters = state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters));
-    const auto visible = state.address<gpu::ListState>(FrameBuffers::visibleList(in.list));
-    const auto dominant = in.dominant.colours.address<gpu::vec4>();
-    const auto half_dominant = in.dominant.colours.address<gpu::uvec2>();
-    const std::uint32_t half_floats = in.dominant.half_floats ? 1 : 0;
-    const auto moving = stereo.moving(in.affiliated), arrivals = stereo.arrivals(in.affiliated);
-    const auto shown_mask = in.dominant_shown.mask();
-    const std::uint32_t along_rows = in.rectified ? 1 : 0, hides = in.dominant_shown.hideAny() ? 1 : 0;
-    const bool predict = in.settings.patching == Patching::kPredicted;
-    const bool paper = in.settings.patching == Patching::kPaper;
-    const bool components = paper && in.settings.center_rois;
-    const bool forward = in.settings.forward && !predict;
-    const bool classes = stereo.needs().classes || components;
-    const gpu::uint tile_groups = (stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup;
-    const auto kernel = [&]<typename Pass>(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) -> const Kernel& {
-        return kernels_.get(name, sizeof(Pass), constants);
-    };
+namespace {
 
-    if (predict) {
-        commands.beginPass("affiliated 8a_weigh");
-        in.affiliated_shown.recordKinds(commands, stereo.tiles(), StereoBuffers::tileKindsOffset());
-        const gpu::WeighPass pass{.stereo = view,
-                                  .ranges = in.buffers.tile_ranges.address<gpu::uvec2>(),
-                                  .moving = moving,
-                                  .tile_kinds = stereo.tileKinds(),
-                                  .tile_costs = stereo.tileCosts(),
-                                  .tile_errors = stereo.tileErrors(),
-                                  .tile_mask = stereo.tileMask(),
-                                  .price_bins = stereo.bins(),
-                                  .shown_mask = shown_mask,
-                                  .visible = visible,
-                                  .masked_tiles = state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
-                                  .counters = counters};
-        commands.dispatch(kernel("8a_weigh", pass, {along_rows, hides, in.affiliated_shown.hideAny(), in.may_move}), pass, tile_groups);
+// A frame's passes 8, one function each, and what several of them want to know.
+class StereoRecorder {
+public:
+    StereoRecorder(KernelCache& kernels, Commands& commands, const StereoPassInputs& in)
+        : kernels_(kernels), commands_(commands), in_(in) {}
+
+    [[nodiscard]] bool predicts() const { return in_.settings.patching == Patching::kPredicted; }
+    [[nodiscard]] bool followsPaper() const { return in_.settings.patching == Patching::kPaper; }
+    [[nodiscard]] bool groupsHoles() const { return followsPaper() && in_.settings.center_rois; }
+
+    void weigh();
+    void clearTiles();
+    void findDepthBounds();
+    void findEdgeRois();
+    void reproject();
+    void findNewcomers();
+    void resample();
+    void groupHoles();
+    void price();
+    void select();
+
+private:
+    template <typename Pass>
+    const Kernel& kernel(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) {
+        return kernels_.get(name, sizeof(Pass), constants);
+    }
+    template <typename Pass>
+    void dispatchByCounter(const Kernel& of, const Pass& pass, std::uint64_t field) {
+        commands_.dispatchIndirect(of, pass, in_.buffers.state, offsetof(FrameState, stereo_counters) + field);
+    }
+    [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)); }
+    [[nodiscard]] auto counters() const { return in_.buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters)); }
+    [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
+    [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
+    [[nodiscard]] auto moving() const { return in_.stereo.moving(in_.affiliated); }
+    [[nodiscard]] auto arrivals() const { return in_.stereo.arrivals(in_.affiliated); }
+    [[nodiscard]] std::uint32_t alongRows() const { return in_.rectified ? 1 : 0; }
+    [[nodiscard]] std::uint32_t hidesDominant() const { return in_.dominant_shown.hideAny() ? 1 : 0; }
+    [[nodiscard]] std::uint32_t halfFloats() const { return in_.dominant.half_floats ? 1 : 0; }
+    [[nodiscard]] std::uint32_t copiesColours() const { return in_.settings.forward && !predicts() ? 1 : 0; }
+    [[nodiscard]] gpu::uint tileGroups() const { return (in_.stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup; }
+
+    KernelCache& kernels_;
+    Commands& commands_;
+    const StereoPassInputs& in_;
+};
+
+void StereoRecorder::weigh() {
+    commands_.beginPass("affiliated 8a_weigh");
+    in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
+    const gpu::WeighPass pass{.stereo = view(),
+                              .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
+                              .moving = moving(),
+                              .tile_kinds = in_.stereo.tileKinds(),
+                              .tile_costs = in_.stereo.tileCosts(),
+                              .tile_errors = in_.stereo.tileErrors(),
+                              .tile_mask = in_.stereo.tileMask(),
+                              .price_bins = in_.stereo.bins(),
+                              .shown_mask = in_.dominant_shown.mask(),
+                              .visible = visible(),
+                              .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
+                              .counters = counters()};
+    commands_.dispatch(kernel("8a_weigh", pass, {alongRows(), hidesDominant(), in_.affiliated_shown.hideAny(), in_.may_move}), pass,
+                       tileGroups());
+}
+
+void StereoRecorder::clearTiles() {
+    commands_.fillZero(in_.stereo.tiles());
+    in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
+}
+
+void StereoRecorder::findDepthBounds() {
+    const gpu::DepthBoundsPass bounds{.stereo = view(),
+                                      .colours = in_.dominant.colours.address<gpu::vec4>(),
+                                      .half_colours = in_.dominant.colours.address<gpu::uvec2>(),
+                                      .moving = moving(),
+                                      .bins = in_.stereo.bins()};
+    commands_.dispatch(kernel("8b_depth_bounds", bounds, {alongRows(), halfFloats()}), bounds, in_.stereo.sizeTiles().x,
+                       2 * in_.stereo.sizeTiles().y);
+}
+
+void StereoRecorder::findEdgeRois() {
+    commands_.beginPass("affiliated 8c_edge_rois");
+    const gpu::EdgeRoisPass edges{.stereo = view(),
+                                  .bins = in_.stereo.bins(),
+                                  .tile_kinds = in_.stereo.tileKinds(),
+                                  .shown_mask = in_.dominant_shown.mask(),
+                                  .counters = counters()};
+    commands_.dispatch(kernel("8c_edge_rois", edges, {alongRows(), hidesDominant()}), edges, tileGroups());
+}
+
+void StereoRecorder::reproject() {
+    commands_.beginPass("affiliated 8d_reproject");
+    const gpu::ReprojectPass pass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.dominant_shown.mask()};
+    dispatchByCounter(kernel("8d_reproject", pass, {alongRows(), hidesDominant(), copiesColours()}), pass,
+                      offsetof(gpu::StereoCounters, per_pixel_block));
+}
+
+void StereoRecorder::findNewcomers() {
+    commands_.beginPass("affiliated 8e_newcomers");
+    const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
+                                  .eyes = in_.buffers.eyes(),
+                                  .stereo = view(),
+                                  .arrivals = arrivals(),
+                                  .order = in_.buffers.visible.order().values,
+                                  .visible = visible(),
+                                  .dominant_counts = in_.buffers.visible.tileCounts(),
+                                  .tile_kinds = in_.stereo.tileKinds(),
+                                  .tile_errors = in_.stereo.tileErrors(),
+                                  .counters = counters(),
+                                  .chunk_bits = in_.scene.chunkBits(),
+                                  .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
+    dispatchByCounter(kernel("8e_newcomers", pass, {alongRows(), in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
+}
+
+void StereoRecorder::resample() {
+    commands_.beginPass("affiliated 8f_resample");
+    const gpu::ResamplePass pass{.stereo = view(),
+                                 .dominant = in_.dominant.colours.address<gpu::vec4>(),
+                                 .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
+                                 .arrivals = arrivals(),
+                                 .affiliated = in_.affiliated.colours.address<gpu::vec4>(),
+                                 .half_affiliated = in_.affiliated.colours.address<gpu::uvec2>(),
+                                 .depths = in_.affiliated.depths.address<float>(),
+                                 .tile_kinds = in_.stereo.tileKinds(),
+                                 .tile_errors = in_.stereo.tileErrors(),
+                                 .pixel_classes = in_.stereo.pixelClasses(),
+                                 .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
+                                 .counters = counters(),
+                                 .background = in_.background};
+    const std::uint32_t keeps_classes = in_.stereo.needs().classes || groupsHoles() ? 1 : 0;
+    const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
+    const Kernel& resample_kernel =
+        kernel("8f_resample", pass,
+               {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(), halfFloats(), copiesColours()});
+    dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
+}
+
+void StereoRecorder::groupHoles() {
+    commands_.beginPass("affiliated 8g_components");
+    const gpu::ComponentsPass pass{.stereo = view(),
+                                   .pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
+                                   .pixel_classes = in_.stereo.pixelClasses(),
+                                   .boxes = in_.stereo.boxes(),
+                                   .tile_kinds = in_.stereo.tileKinds(),
+                                   .counters = counters(),
+                                   .box_capacity = in_.stereo.needs().boxes};
+    for (std::uint32_t step = 0; step < 3; ++step) {
+        dispatchByCounter(kernel("8g_components", pass, {alongRows(), step, halfFloats()}), pass,
+                          offsetof(gpu::StereoCounters, component_groups));
+    }
+    commands_.dispatch(kernel("8g_components", pass, {alongRows(), 3u, halfFloats()}), pass, kMarkGroups);
+}
+
+void StereoRecorder::price() {
+    commands_.beginPass("affiliated 8h_price");
+    const gpu::PricePass pass{.stereo = view(),
+                              .tile_kinds = in_.stereo.tileKinds(),
+                              .tile_costs = in_.stereo.tileCosts(),
+                              .tile_errors = in_.stereo.tileErrors(),
+                              .tile_prices = in_.stereo.tilePrices(),
+                              .price_bins = in_.stereo.bins()};
+    commands_.dispatch(kernel("8h_price", pass, {}), pass, tileGroups());
+}
+
+void StereoRecorder::select() {
+    commands_.beginPass("affiliated 8i_select");
+    const gpu::SelectPass pass{.stereo = view(),
+                               .tile_kinds = in_.stereo.tileKinds(),
+                               .tile_prices = in_.stereo.tilePrices(),
+                               .price_bins = in_.stereo.bins(),
+                               .tile_list = in_.stereo.tileList(),
+                               .tile_mask = in_.stereo.tileMask(),
+                               .tile_costs = in_.stereo.tileCosts(),
+                               .visible = visible(),
+                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
+                               .masked_visible = listAt(offsetof(FrameState, masked_visible)),
+                               .counters = counters()};
+    commands_.dispatch(kernel("8i_select", pass, {predicts()}), pass, tileGroups());
+}
+
+}  // namespace
+
+void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
+    StereoRecorder passes(kernels_, commands, in);
+    if (passes.predicts()) {
+        passes.weigh();
         if (!in.may_move) { return; }
     } else {
-        commands.beginPass(paper ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
-        commands.fillZero(stereo.tiles());
-        in.affiliated_shown.recordKinds(commands, stereo.tiles(), StereoBuffers::tileKindsOffset());
+        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
+        passes.clearTiles();
     }
-    if (paper) {
-        const gpu::DepthBoundsPass bounds{
-            .stereo = view, .colours = dominant, .half_colours = half_dominant, .moving = moving, .bins = stereo.bins()};
-        commands.dispatch(kernel("8b_depth_bounds", bounds, {along_rows, half_floats}), bounds, stereo.sizeTiles().x,
-                          2 * stereo.sizeTiles().y);
-        commands.beginPass("affiliated 8c_edge_rois");
-        const gpu::EdgeRoisPass edges{
-            .stereo = view, .bins = stereo.bins(), .tile_kinds = stereo.tileKinds(), .shown_mask = shown_mask, .counters = counters};
-        commands.dispatch(kernel("8c_edge_rois", edges, {along_rows, hides}), edges, tile_groups);
+    if (passes.followsPaper()) {
+        passes.findDepthBounds();
+        passes.findEdgeRois();
     }
-    {
-        commands.beginPass("affiliated 8d_reproject");
-        const gpu::ReprojectPass pass{.stereo = view, .moving = moving, .arrivals = arrivals, .shown_mask = shown_mask};
-        commands.dispatchIndirect(kernel("8d_reproject", pass, {along_rows, hides, forward}), pass, state,
-                                  counterOffset(offsetof(gpu::StereoCounters, per_pixel_block)));
-    }
-    if (predict) {
-        commands.beginPass("affiliated 8e_newcomers");
-        const gpu::NewcomersPass pass{.chunks = in.scene.chunks(),
-                                      .eyes = in.buffers.eyes(),
-                                      .stereo = view,
-                                      .arrivals = arrivals,
-                                      .order = in.buffers.visible.order().values,
-                                      .visible = visible,
-                                      .dominant_counts = in.buffers.visible.tileCounts(),
-                                      .tile_kinds = stereo.tileKinds(),
-                                      .tile_errors = stereo.tileErrors(),
-                                      .counters = counters,
-                                      .chunk_bits = in.scene.chunkBits(),
-                                      .eye = static_cast<gpu::uint>(1 - in.dominant_eye)};
-        commands.dispatchIndirect(kernel("8e_newcomers", pass, {along_rows, in.scene.splatKind()}), pass, state,
-                                  counterOffset(offsetof(gpu::StereoCounters, per_visible)));
-    }
-    {
-        commands.beginPass("affiliated 8f_resample");
-        const gpu::ResamplePass pass{.stereo = view,
-                                     .dominant = dominant,
-                                     .half_dominant = half_dominant,
-                                     .arrivals = arrivals,
-                                     .affiliated = in.affiliated.colours.address<gpu::vec4>(),
-                                     .half_affiliated = in.affiliated.colours.address<gpu::uvec2>(),
-                                     .depths = in.affiliated.depths.address<float>(),
-                                     .tile_kinds = stereo.tileKinds(),
-                                     .tile_errors = stereo.tileErrors(),
-                                     .pixel_classes = stereo.pixelClasses(),
-                                     .component_pixels = in.affiliated.colours.address<gpu::ComponentPixel>(),
-                                     .counters = counters,
-                                     .background = in.background};
-        const std::uint32_t with_depth = in.affiliated.depths.bytes() > 0 ? 1 : 0;
-        commands.dispatchIndirect(
-            kernel("8f_resample", pass, {along_rows, predict, with_depth, classes, components, stereo.rowSteps(), half_floats, forward}),
-            pass, state, counterOffset(offsetof(gpu::StereoCounters, per_row)));
-    }
-    if (components) {
-        commands.beginPass("affiliated 8g_components");
-        const gpu::ComponentsPass pass{.stereo = view,
-                                       .pixels = in.affiliated.colours.address<gpu::ComponentPixel>(),
-                                       .pixel_classes = stereo.pixelClasses(),
-                                       .boxes = stereo.boxes(),
-                                       .tile_kinds = stereo.tileKinds(),
-                                       .counters = counters,
-                                       .box_capacity = stereo.needs().boxes};
-        for (std::uint32_t step = 0; step < 3; ++step) {
-            commands.dispatchIndirect(kernel("8g_components", pass, {along_rows, step, half_floats}), pass, state,
-                                      counterOffset(offsetof(gpu::StereoCounters, component_groups)));
-        }
-        commands.dispatch(kernel("8g_components", pass, {along_rows, 3u, half_floats}), pass, kMarkGroups);
-    }
-    if (predict) {
-        commands.beginPass("affiliated 8h_price");
-        const gpu::PricePass pass{.stereo = view,
-                                  .tile_kinds = stereo.tileKinds(),
-                                  .tile_costs = stereo.tileCosts(),
-                                  .tile_errors = stereo.tileErrors(),
-                                  .tile_prices = stereo.tilePrices(),
-                                  .price_bins = stereo.bins()};
-        commands.dispatch(kernel("8h_price", pass, {}), pass, tile_groups);
-    }
-    if (paper || predict) {
-        commands.beginPass("affiliated 8i_select");
-        const gpu::SelectPass pass{.stereo = view,
-                                   .tile_kinds = stereo.tileKinds(),
-                                   .tile_prices = stereo.tilePrices(),
-                                   .price_bins = stereo.bins(),
-                                   .tile_list = stereo.tileList(),
-                                   .tile_mask = stereo.tileMask(),
-                                   .tile_costs = stereo.tileCosts(),
-                                   .visible = visible,
-                                   .masked_tiles = state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
-                                   .masked_visible = state.address<gpu::ListState>(offsetof(FrameState, masked_visible)),
-                                   .counters = counters};
-        commands.dispatch(kernel("8i_select", pass, {predict}), pass, tile_groups);
-    }
+    passes.reproject();
+    if (passes.predicts()) { passes.findNewcomers(); }
+    passes.resample();
+    if (passes.groupsHoles()) { passes.groupHoles(); }
+    if (passes.predicts()) { passes.price(); }
+    if (passes.followsPaper() || passes.predicts()) { passes.select(); }
 }
 
 }  // namespace binosplat
