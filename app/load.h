@@ -6,18 +6,22 @@
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/scene.h"
 
+#include <algorithm>
+
 namespace binosplat {
 
 // What a frame needs beside the scene depends on the view and is not known yet: the level's splats alone are held against the limit.
 inline LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
     if (memory_limit_mib == 0) { return {options.lod, {}}; }
-    return {options.lod, [limit_bytes = memory_limit_mib << 20, gaussian_3d = !options.flatten](std::uint64_t splats, int sh_degree) {
-                return splats <= limit_bytes / deviceBytesPerSplat(sh_degree, gaussian_3d);
+    return {options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
+                const int kept = std::min(sh_degree, static_cast<int>(options.sh_degree.value_or(kMaxShDegree)));
+                return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
             }};
 }
 
-// 3D Gaussians as discs, or dimmed, where the user says so; a file may itself say that its splats are to be dimmed.
+// Fewer colours, 3D Gaussians as discs, or dimmed, where the user says so; a file may itself say that its splats are to be dimmed.
 inline void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {
+    if (options.sh_degree) { limitShDegree(scene, static_cast<int>(*options.sh_degree), notes); }
     if (options.flatten) { flatten(scene, notes); }
     if (options.antialiased) { scene.antialiased = scene.isGaussian3d(); }
 }

@@ -2,6 +2,7 @@
 #include "app/option_table.h"
 
 #include "engine/picture/flip.h"
+#include "engine/scene/scene.h"
 
 #include <algorithm>
 
@@ -102,6 +103,9 @@ std::span<const OptionRow<RunOptions>> runRows() {
         // Scene.
         {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
          field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
+        {{"sh-degree", "scene", kScenes, "N", "highest band of colours that is kept; lower ones take less memory and time",
+          "what there is"},
+         field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
         {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},
          field::flag<kLoad, &LoadOptions::flatten>()},
         {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, as scenes trained with antialiasing want it", "what the file says"},

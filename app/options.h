@@ -51,9 +51,10 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 
 // What of a scene is loaded, and how: 3D Gaussians can be drawn in more than one way.
 struct LoadOptions {
-    std::optional<std::uint32_t> lod;  // level of detail, 0 the finest; absent: the finest that fits
-    bool flatten = false;              // 3D Gaussians as discs, without their shortest axis
-    bool antialiased = false;          // with opacities that the low-pass dims, also where the file does not say so
+    std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
+    std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: what there is
+    bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
+    bool antialiased = false;                // with opacities that the low-pass dims, also where the file does not say so
     bool operator==(const LoadOptions&) const = default;
 };
 

@@ -147,6 +147,15 @@ TEST_CASE("howGaussiansAreDrawnIsAnOptionOfEveryCommandThatReadsAScene") {
     CHECK_FALSE(parse<ViewOptions>({"view", "a", "--center-roi"}).run.load.flatten);
 }
 
+TEST_CASE("coloursMayBeLimited") {
+    CHECK(!render({}).load.sh_degree);
+    CHECK(render({"--sh-degree", "1"}).load.sh_degree == 1u);
+    CHECK_THROWS_AS(render({"--sh-degree", "4"}), Error);
+    // 48 bytes a splat of degree 0 instead of 140 and more.
+    CHECK(levelChoice(render({"--sh-degree", "0", "--flatten"}).load, 3).fits(65536, 3));
+    CHECK(!levelChoice(render({"--flatten"}).load, 3).fits(65536, 3));
+}
+
 TEST_CASE("aLevelFitsIfItsSplatsDo") {
     const auto choose = [](const RunOptions& run) { return levelChoice(run.load, run.memory_limit_mib); };
     CHECK(!choose(render({"--lod", "1"})).fits);  // as fine as there is

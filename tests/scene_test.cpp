@@ -124,6 +124,27 @@ TEST_CASE("a summary counts what is there and what is not needed") {
     CHECK(contains(summary.left_out[0], "SH bands 2 to 3"));
 }
 
+TEST_CASE("colours are limited to the bands that are asked for") {
+    Scene scene;
+    scene.name = "two";
+    scene.positions.resize(2);
+    scene.sh_degree = 2;
+    for (int i = 0; i < 2 * 27; ++i) { scene.sh.push_back(static_cast<float>(i)); }
+    LoadNotes notes;
+    limitShDegree(scene, 2, notes);
+    CHECK(scene.sh.size() == 54);
+    CHECK(notes.lines.empty());
+    limitShDegree(scene, 1, notes);
+    CHECK(scene.sh_degree == 1);
+    REQUIRE(scene.sh.size() == 24);
+    CHECK(scene.sh[11] == 11.0f);
+    CHECK(scene.sh[12] == 27.0f);
+    CHECK(scene.sh[23] == 38.0f);
+    CHECK(notes.sh_limited);
+    limitShDegree(scene, 0, notes);
+    CHECK(scene.sh == std::vector<float>{0.0f, 1.0f, 2.0f, 27.0f, 28.0f, 29.0f});
+}
+
 TEST_CASE("the shared scenes load whole") {
     const auto data = test::sharedData();
     if (!data) { return; }

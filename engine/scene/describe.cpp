@@ -37,7 +37,9 @@ void countBands(const Scene& scene, SceneSummary& summary) {
 void listLeftOut(const LoadNotes* notes, SceneSummary& summary) {
     if (summary.sh_degree < kMaxShDegree) {
         summary.left_out.push_back(fmt::format("SH bands {} to {}", summary.sh_degree + 1, kMaxShDegree));
-        if (notes != nullptr && notes->sh_degree_in_file > summary.sh_degree) { summary.left_out.back() += " (in the file, but zero)"; }
+        if (notes != nullptr && notes->sh_degree_in_file > summary.sh_degree) {
+            summary.left_out.back() += notes->sh_limited ? " (as asked)" : " (in the file, but zero)";
+        }
     }
     if (summary.invisible_splats > 0) {
         summary.left_out.push_back(fmt::format("{} splats of opacity under 1/255", summary.invisible_splats));

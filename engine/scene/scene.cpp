@@ -99,6 +99,20 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
 
 }  // namespace
 
+void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes) {
+    if (scene.sh_degree <= sh_degree) { return; }
+    const auto old_width = static_cast<std::ptrdiff_t>(3 * shCoefficientCount(scene.sh_degree));
+    const auto new_width = static_cast<std::ptrdiff_t>(3 * shCoefficientCount(sh_degree));
+    for (std::ptrdiff_t i = 1; i < static_cast<std::ptrdiff_t>(scene.size()); ++i) {
+        std::copy_n(scene.sh.begin() + i * old_width, new_width, scene.sh.begin() + i * new_width);
+    }
+    scene.sh.resize(scene.size() * static_cast<std::size_t>(new_width));
+    scene.sh.shrink_to_fit();
+    notes.sh_limited = true;
+    notes.lines.push_back(fmt::format("{}: colours of SH degree {}, limited to {} as asked", scene.name, scene.sh_degree, sh_degree));
+    scene.sh_degree = sh_degree;
+}
+
 void flatten(Scene& scene, LoadNotes& notes) {
     if (!scene.isGaussian3d()) { return; }
     scene.thicknesses = {};

@@ -39,6 +39,7 @@ struct LoadNotes {
     std::uint64_t skipped_not_finite = 0;     // a NaN or infinity in position, scale, rotation, opacity or colour
     std::uint64_t skipped_zero_rotation = 0;  // a quaternion of length zero
     int sh_degree_in_file = 0;                // bands above Scene::sh_degree were all zero and were left out
+    bool sh_limited = false;                  // or were left out as asked
     bool three_scales = false;                // a 3DGS scene
     double median_flatness = 0.0;             // 3DGS only: median of shortest / second shortest axis
     std::vector<std::uint64_t> level_splats;  // of each level of detail, the finest first; empty: a scene without levels
@@ -61,6 +62,9 @@ using Progress = std::function<void(double)>;
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
+
+// Leaves out the bands of colours above `sh_degree`, and says so in `notes` if there are any.
+void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);
 
 // Makes discs of 3D Gaussians by dropping the shortest axis of each, and says so in `notes`; discs stay as they are.
 void flatten(Scene& scene, LoadNotes& notes);
