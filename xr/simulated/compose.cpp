@@ -84,6 +84,7 @@ public:
         const glm::dvec3 direction = quad_from_eye_ * direction_eye;
         // From the front only, and only ahead: the eye is on the +z side and looks towards -z.
         if (!(eye_quad_.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
+        if (size_m_.x <= 0.0 || size_m_.y <= 0.0) { return std::nullopt; }
         const glm::dvec3 hit = eye_quad_ - direction * (eye_quad_.z / direction.z);
         const glm::dvec2 uv(hit.x / size_m_.x + 0.5, 0.5 - hit.y / size_m_.y);
         if (!isInside(uv)) { return std::nullopt; }

@@ -46,7 +46,7 @@ constexpr std::uint32_t kMostSwapchainPixels = 16384;
 
 // XR_ERROR_SYSTEM_INVALID.
 void checkSystem(XrSystemId system);
-// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for all but primary stereo.
+// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for mono, XR_ERROR_VALIDATION_FAILURE for what is none.
 void checkViewConfiguration(XrViewConfigurationType type);
 
 }  // namespace simulated

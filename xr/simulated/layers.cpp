@@ -63,7 +63,8 @@ void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
     require(layer.eyeVisibility >= XR_EYE_VISIBILITY_BOTH && layer.eyeVisibility <= XR_EYE_VISIBILITY_RIGHT, XR_ERROR_VALIDATION_FAILURE,
             "no such eye visibility");
     checkPose(layer.pose);
-    require(layer.size.width > 0 && layer.size.height > 0, XR_ERROR_VALIDATION_FAILURE, "a quad without size");
+    // A quad may be a line or a point: nobody sees it.
+    require(layer.size.width >= 0 && layer.size.height >= 0, XR_ERROR_VALIDATION_FAILURE, "a quad of negative size");
     checkColour(checkSubImage(session, layer.subImage));
 }
 

@@ -15,10 +15,8 @@ constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_B
 // A millisecond to either side: short against any motion, long against rounding.
 constexpr XrDuration kDifference = 1'000'000;
 
-void checkReferenceType(XrReferenceSpaceType type) {
-    const bool is_known =
-        type == XR_REFERENCE_SPACE_TYPE_VIEW || type == XR_REFERENCE_SPACE_TYPE_LOCAL || type == XR_REFERENCE_SPACE_TYPE_STAGE;
-    require(is_known, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+bool isKnown(XrReferenceSpaceType type) {
+    return type == XR_REFERENCE_SPACE_TYPE_VIEW || type == XR_REFERENCE_SPACE_TYPE_LOCAL || type == XR_REFERENCE_SPACE_TYPE_STAGE;
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
@@ -98,7 +96,7 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         Session& owner = getSession(session);
         const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
-        checkReferenceType(info.referenceSpaceType);
+        require(isKnown(info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -131,7 +129,8 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
 XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkReferenceType(referenceSpaceType);
+        // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
+        require(isKnown(referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
         checkedOutput(bounds) = {0, 0};
         if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
         *bounds = {3, 2};

@@ -16,6 +16,9 @@ constexpr std::uint32_t kMostViewPixels = 4096;
 void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
 
 void checkViewConfiguration(XrViewConfigurationType type) {
+    // Values of extensions that this runtime does not have are no view configurations at all.
+    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
     require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
 }
 
@@ -24,8 +27,6 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
         getInstance(instance);
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
-        const bool is_known = info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY || info.formFactor == XR_FORM_FACTOR_HANDHELD_DISPLAY;
-        require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such form factor");
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
         output = kSystemId;
         return XR_SUCCESS;
