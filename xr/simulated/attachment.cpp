@@ -4,6 +4,7 @@
 
 #include "xr/simulated/actions.h"
 #include "xr/simulated/profiles.h"
+#include "xr/simulated/script_profile.h"
 #include "xr/simulated/session.h"
 
 namespace simulated {
@@ -123,6 +124,7 @@ bool Attachment::chooseProfile(Instance& instance) {
         const XrPath path = instance.paths.findPath(candidate.path);
         const auto suggested = std::find_if(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
         if (suggested == suggestions.end()) continue;
+        checkInputs(instance.simulation->script, candidate);
         profile = findProfile(candidate.path);
         for (const SuggestedBinding& binding : suggested->bindings) {
             AttachedAction* const action = find(binding.action);

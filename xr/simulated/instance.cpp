@@ -5,23 +5,12 @@
 #include <cstring>
 
 #include "xr/simulated/api.h"
+#include "xr/simulated/extensions.h"
 #include "xr/simulated/names.h"
 #include "xr/simulated/structures.h"
 
 namespace simulated {
 namespace {
-
-struct Extension {
-    const char* name;
-    std::uint32_t version;
-};
-
-constexpr Extension kExtensions[] = {
-    {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_vulkan_enable2_SPEC_VERSION},
-    {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME, XR_KHR_vulkan_enable_SPEC_VERSION},
-    {XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_composition_layer_depth_SPEC_VERSION},
-    {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_KHR_visibility_mask_SPEC_VERSION},
-};
 
 std::vector<Extension> offeredExtensions(const Script& script) {
     std::vector<Extension> offered;
@@ -39,6 +28,8 @@ Script scriptBeforeInstance() {
 }
 
 void checkApplication(const XrApplicationInfo& application) {
+    const auto isEnded = [](const auto& name) { return strnlen(name, sizeof name) < sizeof name; };
+    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "nothing ends a name");
     require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
@@ -104,7 +95,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkedOutput(instance);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no instance creation flags are known");
-        require(info.enabledApiLayerCount == 0, XR_ERROR_API_LAYER_NOT_PRESENT, "a runtime has no layers");
+        // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");

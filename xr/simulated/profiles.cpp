@@ -8,6 +8,7 @@ namespace {
 
 using Names = std::span<const std::string_view>;
 
+constexpr std::string_view kProfilePrefix = "/interaction_profiles/";
 constexpr std::string_view kHands[] = {"/user/hand/left", "/user/hand/right"};
 constexpr std::string_view kHead[] = {"/user/head"};
 constexpr std::string_view kGamepad[] = {"/user/gamepad"};
@@ -95,6 +96,20 @@ std::span<const Profile> allProfiles() { return kProfiles; }
 const Profile* findProfile(std::string_view path) {
     const auto found = std::find_if(kProfiles.begin(), kProfiles.end(), [&](const Profile& profile) { return profile.path == path; });
     return found == kProfiles.end() ? nullptr : &*found;
+}
+
+const Profile* findHandProfile(std::string_view name) {
+    const Profile* const found = findProfile(std::string(kProfilePrefix).append(name));
+    return found != nullptr && found->user_paths.front().starts_with("/user/hand/") ? found : nullptr;
+}
+
+std::string handProfiles() {
+    std::string names;
+    for (const Profile& profile : kProfiles) {
+        if (profile.user_paths.front().starts_with("/user/hand/"))
+            names.append(names.empty() ? "" : ", ").append(profile.path.substr(kProfilePrefix.size()));
+    }
+    return names;
 }
 
 bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component) {

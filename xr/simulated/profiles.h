@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace simulated {
@@ -18,6 +19,10 @@ struct Profile {
 std::span<const Profile> allProfiles();
 // Null if the core has no such profile.
 const Profile* findProfile(std::string_view path);
+// Of controllers held in the hands, by what follows /interaction_profiles/; null if there is none.
+const Profile* findHandProfile(std::string_view name);
+// All of these names, for messages.
+std::string handProfiles();
 // Whether "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding);
 bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component);

@@ -114,6 +114,7 @@ public:
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;
+    std::string profile;  // "valve/index_controller": the controllers to play; none: whatever the program knows
 
     struct Hand {
         Track<Pose> stage_from_grip;
@@ -126,6 +127,7 @@ public:
             bool touch_only;
         };
         std::vector<Press> presses;
+        std::map<std::string, std::string> input_places;  // each input that moves, and the line that names it first
     };
     Track<Pose> stage_from_head;
     std::array<Hand, 2> hands;
