@@ -50,7 +50,7 @@ TEST_CASE("an instance is refused for what its description lacks") {
     std::strcpy(info.applicationInfo.engineName, "\xFF\xFE");
     CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
     info = instanceInfo({});
-    info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 1, 0);
+    info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 2, 0);
     CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_API_VERSION_UNSUPPORTED);
     info.applicationInfo.apiVersion = 0;
     CHECK(xrCreateInstance(&info, &instance) == XR_ERROR_API_VERSION_UNSUPPORTED);

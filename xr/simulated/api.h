@@ -25,6 +25,9 @@
     _(xrEnumerateBoundSourcesForAction) _(xrGetInputSourceLocalizedName)                                                                \
     _(xrApplyHapticFeedback) _(xrStopHapticFeedback)
 
+// For instances of API 1.1.
+#define SIMULATED_CORE_1_1_FUNCTIONS(_) _(xrLocateSpaces)
+
 // Function, and the extension that has to be enabled for it.
 #define SIMULATED_EXTENSION_FUNCTIONS(_)                                                                                                 \
     _(xrCreateVulkanInstanceKHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                                  \
@@ -35,7 +38,8 @@
     _(xrGetVulkanDeviceExtensionsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                              \
     _(xrGetVulkanGraphicsDeviceKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                                \
     _(xrGetVulkanGraphicsRequirementsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                          \
-    _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)
+    _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)                                                                    \
+    _(xrLocateSpacesKHR, XR_KHR_LOCATE_SPACES_EXTENSION_NAME)
 // clang-format on
 
 namespace simulated {
@@ -43,6 +47,7 @@ namespace simulated {
 #define SIMULATED_DECLARE(name) std::remove_pointer_t<PFN_##name> name;
 #define SIMULATED_DECLARE_EXTENSION(name, extension) std::remove_pointer_t<PFN_##name> name;
 SIMULATED_CORE_FUNCTIONS(SIMULATED_DECLARE)
+SIMULATED_CORE_1_1_FUNCTIONS(SIMULATED_DECLARE)
 SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_DECLARE_EXTENSION)
 #undef SIMULATED_DECLARE
 #undef SIMULATED_DECLARE_EXTENSION

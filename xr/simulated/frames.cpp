@@ -25,6 +25,7 @@ std::condition_variable& frameBegun() {
 Session& runningSession(XrSession session) {
     Session& found = getSession(session);
     require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+    require(!found.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no frames");
     return found;
 }
 
@@ -44,7 +45,7 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const Session& owner = getSession(session);
         const XrViewLocateInfo& info = checked(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
         XrViewState& output = checked(viewState, XR_TYPE_VIEW_STATE);
-        checkViewConfiguration(info.viewConfigurationType);
+        checkViewConfiguration(owner.instance, info.viewConfigurationType);
         const Space& space = getSpace(owner, info.space);
         checkTime(info.displayTime);
         output.viewStateFlags = 0;

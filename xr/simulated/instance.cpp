@@ -33,8 +33,8 @@ void checkApplication(const XrApplicationInfo& application) {
     require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
-    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) == 0, XR_ERROR_API_VERSION_UNSUPPORTED,
-            "this runtime implements OpenXR 1.0");
+    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED,
+            "this runtime implements OpenXR 1.0 and 1.1");
 }
 
 std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
@@ -99,6 +99,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
+        created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
         created->simulation = Simulation::begin();
         created->extensions = checkedExtensions(info, created->simulation->script);
         output = handleOf(adopt(root(), std::move(created)));

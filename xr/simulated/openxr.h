@@ -8,3 +8,5 @@
 //
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
+//
+#include "xr/simulated/openxr_later.h"

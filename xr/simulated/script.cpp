@@ -111,6 +111,12 @@ std::vector<ScriptEvent> Script::eventsIn(double from_s, double to_s) const {
 
 Pose Script::stageFromLocal() const { return levelled(stage_from_head.at(0.0)); }
 
+Pose Script::stageFromLocalFloor() const {
+    Pose floor = stageFromLocal();
+    floor.position.y = 0.0;
+    return floor;
+}
+
 std::optional<InputPath> parseInputPath(std::string_view path) {
     for (const Side side : kSides) {
         const std::string_view prefix = side == kLeft ? "/user/hand/left/input/" : "/user/hand/right/input/";

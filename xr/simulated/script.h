@@ -102,6 +102,8 @@ public:
     [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
     // LOCAL's origin is the head at time 0, without tilt. STAGE's is on the floor.
     [[nodiscard]] Pose stageFromLocal() const;
+    // LOCAL's, brought down to the floor.
+    [[nodiscard]] Pose stageFromLocalFloor() const;
 
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 

@@ -25,7 +25,8 @@ struct Session : Object {
     using Handle = XrSession;
 
     Instance& instance;
-    Device device;
+    // None of a headless session (XR_MND_headless).
+    std::unique_ptr<Device> device;
     XrSessionState state = XR_SESSION_STATE_UNKNOWN;
     bool is_running = false;
     bool wants_exit = false;
@@ -38,12 +39,16 @@ struct Session : Object {
     std::optional<std::array<Fov, kEyes>> masked;
     std::vector<std::string> log_events;
 
-    Session(Instance& owner, const GraphicsBinding& binding);
+    Session(Instance& owner, std::unique_ptr<Device> graphics);
     ~Session() override;
 
     void enter(XrSessionState next);
     // After an xrEndFrame whose frame shows the headset in this state.
     void step(const State& wanted);
+    // A headless session has no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time.
+    [[nodiscard]] bool isHeadless() const { return device == nullptr; }
+    void settle();
+    void passHeadlessFrame();
     // What the script lets happen once, up to this display time.
     void meetEvents(XrTime display_time);
     // Tells of visibility masks that are others than in the frame before.

@@ -15,9 +15,10 @@ constexpr std::uint32_t kMostViewPixels = 4096;
 
 void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
 
-void checkViewConfiguration(XrViewConfigurationType type) {
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
     // Values of extensions that this runtime does not have are no view configurations at all.
-    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO;
+    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
+                          (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET && instance.is_1_1);
     require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
     require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
 }
@@ -60,9 +61,9 @@ XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId,
 XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
                                           XrViewConfigurationProperties* configurationProperties) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
         output.viewConfigurationType = viewConfigurationType;
         // Scripts change the angles in mid-run.
@@ -76,7 +77,7 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return XR_SUCCESS;
         for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW);
         const glm::uvec2 size_px = owner.simulation->script.size_px;
@@ -96,9 +97,9 @@ XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId system
                                           uint32_t environmentBlendModeCapacityInput, uint32_t* environmentBlendModeCountOutput,
                                           XrEnvironmentBlendMode* environmentBlendModes) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes,
                          {XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
     });

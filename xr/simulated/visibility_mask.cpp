@@ -25,7 +25,7 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
                                 XrVisibilityMaskTypeKHR visibilityMaskType, XrVisibilityMaskKHR* visibilityMask) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner.instance, viewConfigurationType);
         require(viewIndex < kEyes, XR_ERROR_VALIDATION_FAILURE, "no such view");
         XrVisibilityMaskKHR& output = checked(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
         const Simulation& simulation = *owner.instance.simulation;
