@@ -39,7 +39,22 @@
     _(xrGetVulkanGraphicsDeviceKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                                \
     _(xrGetVulkanGraphicsRequirementsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                          \
     _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)                                                                    \
-    _(xrLocateSpacesKHR, XR_KHR_LOCATE_SPACES_EXTENSION_NAME)
+    _(xrLocateSpacesKHR, XR_KHR_LOCATE_SPACES_EXTENSION_NAME)                                                                          \
+    _(xrConvertTimespecTimeToTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
+    _(xrConvertTimeToTimespecTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
+    _(xrCreateDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                \
+    _(xrDestroyDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                               \
+    _(xrSubmitDebugUtilsMessageEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                  \
+    _(xrSetDebugUtilsObjectNameEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                  \
+    _(xrSessionBeginDebugUtilsLabelRegionEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                        \
+    _(xrSessionEndDebugUtilsLabelRegionEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                          \
+    _(xrSessionInsertDebugUtilsLabelEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                             \
+    _(xrCreateHandTrackerEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                      \
+    _(xrDestroyHandTrackerEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                     \
+    _(xrLocateHandJointsEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                       \
+    _(xrEnumerateDisplayRefreshRatesFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                      \
+    _(xrGetDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                             \
+    _(xrRequestDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)
 // clang-format on
 
 namespace simulated {

@@ -1,6 +1,7 @@
 // The composition of layers: each pixel of an eye looks along its ray through all of them.
 #include "xr/simulated/compose.h"
 
+#include "xr/simulated/seen_shapes.h"
 #include "xr/simulated/texels.h"
 
 #include <glm/geometric.hpp>
@@ -99,7 +100,7 @@ private:
 };
 
 struct SeenLayer {
-    std::variant<SeenView, SeenQuad> shape;
+    std::variant<SeenView, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
     Blending blending;
 };
 
@@ -112,8 +113,14 @@ std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Lay
     for (const Layer& layer : layers) {
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
             seen.push_back({SeenView(eye, projection->views[side]), projection->blending});
-        } else if (const auto& quad = std::get<QuadLayer>(layer); isShownTo(side, quad.visibility)) {
-            seen.push_back({SeenQuad(eye, quad), quad.blending});
+        } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
+            if (isShownTo(side, quad->visibility)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
+        } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {
+            if (isShownTo(side, cylinder->visibility)) { seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending}); }
+        } else if (const auto* sphere = std::get_if<SphereLayer>(&layer)) {
+            if (isShownTo(side, sphere->visibility)) { seen.push_back({SeenSphere(eye, *sphere), sphere->blending}); }
+        } else if (const auto& cube = std::get<CubeLayer>(layer); isShownTo(side, cube.visibility)) {
+            seen.push_back({SeenCube(eye, cube), cube.blending});
         }
     }
     return seen;

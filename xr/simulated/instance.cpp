@@ -37,6 +37,16 @@ void checkApplication(const XrApplicationInfo& application) {
             "this runtime implements OpenXR 1.0 and 1.1");
 }
 
+[[noreturn]] void refuseExtension(const char* name) {
+    // Programs of other graphics are not let into a session that cannot be: they hear at once what there is.
+    for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
+        if (std::strcmp(name, graphics) != 0) continue;
+        throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT,
+                      std::string(name) + ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable"};
+    }
+    throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
+}
+
 std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
     require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE,
             "an array of extension names is missing");
@@ -47,7 +57,7 @@ std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const 
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
         const bool is_offered =
             std::any_of(offered.begin(), offered.end(), [&](const auto& one) { return std::strcmp(one.name, name) == 0; });
-        require(is_offered, XR_ERROR_EXTENSION_NOT_PRESENT, name);
+        if (!is_offered) refuseExtension(name);
         names.emplace(name);
     }
     return names;
@@ -91,6 +101,7 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t 
 }
 
 XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* instance) {
+    const CreationMessenger messenger(createInfo);
     return answer(__func__, [&] {
         const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkedOutput(instance);

@@ -9,6 +9,7 @@
 #include "xr/simulated/bindings.h"
 #include "xr/simulated/events.h"
 #include "xr/simulated/handles.h"
+#include "xr/simulated/messages.h"
 #include "xr/simulated/paths.h"
 #include "xr/simulated/profiles.h"
 #include "xr/simulated/simulation.h"
@@ -31,6 +32,7 @@ struct Instance : Object {
     // What the application suggested, by interaction profile, in the order in which it first named them.
     std::vector<SuggestedProfile> suggestions;
     bool has_asked_requirements = false;
+    ObjectNames object_names;
     // What xrGetVulkanGraphicsDevice(2)KHR gave and for which VkInstance, and where the functions of each VkInstance come from.
     VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
     VkInstance graphics_instance = VK_NULL_HANDLE;

@@ -66,6 +66,25 @@ using PFN_xrLocateSpacesKHR = PFN_xrLocateSpaces;
 #define XR_EXT_LOCAL_FLOOR_EXTENSION_NAME "XR_EXT_local_floor"
 #endif
 
+#ifndef XR_EXT_user_presence
+#define XR_EXT_USER_PRESENCE_EXTENSION_NAME "XR_EXT_user_presence"
+constexpr XrStructureType XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT = static_cast<XrStructureType>(1000470000);
+constexpr XrStructureType XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT = static_cast<XrStructureType>(1000470001);
+
+struct XrEventDataUserPresenceChangedEXT {
+    XrStructureType type;
+    const void* next;
+    XrSession session;
+    XrBool32 isUserPresent;
+};
+
+struct XrSystemUserPresencePropertiesEXT {
+    XrStructureType type;
+    void* next;
+    XrBool32 supportsUserPresence;
+};
+#endif
+
 #ifndef XR_EXT_palm_pose
 #define XR_EXT_PALM_POSE_EXTENSION_NAME "XR_EXT_palm_pose"
 #endif

@@ -98,6 +98,7 @@ State Script::at(double time_s) const {
     state.should_render = should_render.at(time_s);
     state.visible = visible.at(time_s);
     state.focused = focused.at(time_s);
+    state.present = present.at(time_s);
     return state;
 }
 

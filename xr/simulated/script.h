@@ -61,6 +61,7 @@ struct State {
     bool should_render = true;
     bool visible = true;  // else the session is at most SYNCHRONIZED
     bool focused = true;  // else the session is at most VISIBLE
+    bool present = true;  // whether somebody wears the headset
 };
 
 // What happens once, when the display time first reaches `time_s`.
@@ -134,7 +135,7 @@ public:
     Track<Pose> stage_from_head;
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
-    Steps<bool> should_render{true}, visible{true}, focused{true};
+    Steps<bool> should_render{true}, visible{true}, focused{true}, present{true};
     std::vector<ScriptEvent> events;  // by time
 };
 

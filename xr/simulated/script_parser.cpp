@@ -244,7 +244,7 @@ private:
         last_at_s_ = time_s;
         const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
         switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                              "eye", "controller"})) {
+                                              "eye", "controller", "present"})) {
             case 0:
                 return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
             case 1:
@@ -265,10 +265,12 @@ private:
                 (void)words.choice("what changes", {"angles"});
                 return addStep(words, script_.fovs[side], time_s, words.angles());
             }
-            default: {
+            case 8: {
                 const Side side = words.side();
                 return addStep(words, script_.hands[side].tracked, time_s, words.onOff("whether it is tracked"));
             }
+            default:
+                return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
         }
     }
 

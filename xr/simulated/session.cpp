@@ -55,6 +55,8 @@ Session::~Session() {
     instance.events.forget(handleOf(*this));
 }
 
+State Session::at(XrTime time) const { return instance.simulation->at(time); }
+
 void Session::enter(XrSessionState next) {
     state = next;
     log_events.emplace_back("state ").append(wordOf(next));
@@ -88,6 +90,7 @@ void Session::passHeadlessFrame() {
     Clock& clock = instance.simulation->clock;
     if (!clock.isReal()) clock.nextFrame();
     meetEvents(clock.now());
+    announcePresence(instance.simulation->at(clock.now()));
     settle();
     log_events.clear();  // nobody logs
 }
@@ -121,6 +124,13 @@ void Session::meetEvents(XrTime display_time) {
         }
     }
     simulation.events_until_s = time_s;
+}
+
+void Session::announcePresence(const State& now) {
+    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == now.present) return;
+    announced_presence = now.present;
+    instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, handleOf(*this),
+                                                           static_cast<XrBool32>(now.present)});
 }
 
 void Session::announceMasks(const State& now) {
@@ -182,6 +192,8 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not READY");
         begun.is_running = true;
         begun.frames = {};
+        begun.announced_presence.reset();
+        begun.announcePresence(begun.instance.simulation->at(begun.instance.simulation->clock.now()));
         if (begun.isHeadless()) begun.settle();
         return successOf(begun);
     });

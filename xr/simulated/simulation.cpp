@@ -77,7 +77,8 @@ std::unique_ptr<Simulation> Simulation::begin() {
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
     std::string profile = favouriteProfile(script);
-    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile)});
+    const double rate_hz = script.rate_hz;
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile), rate_hz});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

@@ -29,7 +29,7 @@ bool isKnown(const Instance& instance, XrReferenceSpaceType type) {
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
-    const State state = space.session.instance.simulation->at(time);
+    const State state = space.session.at(time);
     const std::optional<Pose> stage_from_space = stageFromSpace(space, state), stage_from_base = stageFromSpace(base, state);
     if (!stage_from_space || !stage_from_base) return std::nullopt;
     return compose(inverse(*stage_from_base), *stage_from_space);

@@ -55,10 +55,16 @@ ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info
             "larger than maxSwapchainImageWidth and Height");
     require(info.mipCount <= std::bit_width(std::max(info.width, info.height)), XR_ERROR_VALIDATION_FAILURE, "more mips than the size has");
     require(info.faceCount == 1 || info.faceCount == 6, XR_ERROR_VALIDATION_FAILURE, "one face, or six");
-    require(info.faceCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "no cube maps");
+    const bool is_cube = info.faceCount == 6;
+    require(!is_cube || session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME), XR_ERROR_FEATURE_UNSUPPORTED,
+            "cube maps are of XR_KHR_composition_layer_cube");
+    require(!is_cube || (info.width == info.height && is_colour), XR_ERROR_VALIDATION_FAILURE, "a cube map's faces are coloured squares");
+    require(info.arraySize <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "too many array layers");
     require(info.sampleCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "more samples than maxSwapchainSampleCount");
-    const ImageInfo image{format,        {info.width, info.height},        info.arraySize,
-                          info.mipCount, usageOf(info.usageFlags, format), flagsOf(info.usageFlags)};
+    const VkImageCreateFlags flags = flagsOf(info.usageFlags) | (is_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0);
+    const ImageInfo image{format,        {info.width, info.height},        info.arraySize * info.faceCount,
+                          info.mipCount, usageOf(info.usageFlags, format), flags,
+                          info.faceCount};
     session.device->checkImage(image);
     return image;
 }

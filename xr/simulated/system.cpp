@@ -11,6 +11,13 @@ namespace {
 // Three images of this size fit on small devices; a script may recommend larger ones.
 constexpr std::uint32_t kMostViewPixels = 4096;
 
+// An extension's structure to fill, if it is there and the extension is enabled.
+template <class Structure>
+Structure* chained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
+    if (!instance.extensions.contains(extension)) return nullptr;
+    return reinterpret_cast<Structure*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
+}
+
 }  // namespace
 
 void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
@@ -44,6 +51,12 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         copyText(output.systemName, owner.simulation->script.system_name);
         output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
         output.trackingProperties = {XR_TRUE, XR_TRUE};
+        if (auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
+                                                                     XR_EXT_HAND_TRACKING_EXTENSION_NAME))
+            hands->supportsHandTracking = XR_TRUE;
+        if (auto* presence = chained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
+                                                                        XR_EXT_USER_PRESENCE_EXTENSION_NAME))
+            presence->supportsUserPresence = XR_TRUE;
         return XR_SUCCESS;
     });
 }
