@@ -376,3 +376,101 @@ TEST_CASE("picturesInFilesComeBackAndTheFilesAreTheSameEveryTime") {
     CHECK(files == 2);
     std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("aCylindersPictureLiesOnItsArcAboutTheMiddle") {
+    // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.
+    Canvas canvas({2, 1}, {255, 0, 0, 255});
+    canvas.set(1, 0, {0, 0, 255, 255});
+    CylinderLayer layer{canvas.picture(), canvas.whole(), {}, 0.0, 2.0 * kEighth, 1.0, Visibility::kBoth, {}};
+    // 100 pixels per unit of tangent, so far away that the left edge is the eye's, and the top where y/z = pi/4 in the middle.
+    const RgbPicture far_away = compose(eyeOf({200, 200}), {layer});
+    CHECK(at(far_away, 10, 100) == Rgb{255, 0, 0});
+    CHECK(at(far_away, 190, 100) == Rgb{0, 0, 255});
+    CHECK(at(far_away, 99, 23)[0] > 100);
+    CHECK(at(far_away, 99, 20) == kBlack);
+    // At 45 degrees to the side the wall is farther away by sqrt(2), so its edge is seen at pi/4 * sqrt(2) > 1.
+    CHECK(at(far_away, 1, 1)[0] > 100);
+    // From its axis it looks the same, however large; from nearer to its wall it is wider than the view.
+    layer.radius_m = 2.0;
+    CHECK(compose(eyeOf({200, 200}), {layer}) == far_away);
+    layer.radius_m = INFINITY;
+    CHECK(compose(eyeOf({200, 200}), {layer}) == far_away);
+    layer.radius_m = 2.0;
+    layer.stage_from_cylinder.position.z = 1.0;
+    CHECK(at(compose(eyeOf({200, 200}), {layer}), 99, 1)[0] > 100);
+    layer.stage_from_cylinder.orientation = glm::angleAxis(4.0 * kEighth, glm::dvec3(0, 1, 0));
+    CHECK(at(compose(eyeOf({200, 200}), {layer}), 100, 100) == kBlack);
+    layer.stage_from_cylinder = {};
+    layer.visibility = Visibility::kRight;
+    CHECK(at(compose(eyeOf({200, 200}), {layer}), 100, 100) == kBlack);
+    CHECK(at(compose(eyeOf({200, 200}), {layer}, kRight), 150, 100) == Rgb{0, 0, 255});
+}
+
+TEST_CASE("aSpheresPictureLiesBetweenItsAngles") {
+    Canvas canvas({2, 2}, {255, 0, 0, 255});
+    canvas.set(1, 0, {0, 255, 0, 255});
+    canvas.set(0, 1, {0, 0, 255, 255});
+    canvas.set(1, 1, {255, 255, 255, 255});
+    // All longitudes, latitudes within 45 degrees.
+    SphereLayer layer{canvas.picture(), canvas.whole(), {}, 0.0, 8.0 * kEighth, kEighth, -kEighth, Visibility::kBoth, {}};
+    EyeView eye = eyeOf({64, 64});
+    const auto looking = [&](double yaw_rad, double pitch_rad) {
+        eye.stage_from_eye.orientation = glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0));
+        return at(compose(eye, {layer}), 32, 32);
+    };
+    // A quarter of the picture's width and height from the middle, where its texels are.
+    CHECK(looking(2.0 * kEighth, 0.5 * kEighth)[0] > 240);
+    CHECK(looking(-2.0 * kEighth, 0.5 * kEighth)[1] > 240);
+    CHECK(looking(2.0 * kEighth, -0.5 * kEighth)[2] > 240);
+    CHECK(looking(0.0, 1.5 * kEighth) == kBlack);
+    CHECK(looking(0.0, -1.5 * kEighth) == kBlack);
+    // A sphere about the eye is as one far away; from outside only its far half is seen, from within.
+    const Rgb before = looking(2.0 * kEighth, 0.3 * kEighth);
+    layer.radius_m = 3.0;
+    CHECK(looking(2.0 * kEighth, 0.3 * kEighth) == before);
+    layer.stage_from_sphere.position = {0, 0, -10};
+    layer.horizontal_angle_rad = 4.0 * kEighth;
+    CHECK(looking(0.0, 0.0) != kBlack);
+    layer.stage_from_sphere.orientation = glm::angleAxis(4.0 * kEighth, glm::dvec3(0, 1, 0));
+    CHECK(looking(0.0, 0.0) == kBlack);
+    layer.horizontal_angle_rad = 0.0;
+    CHECK(looking(0.0, 0.0) == kBlack);
+}
+
+TEST_CASE("aCubeMapsFacesAreInVulkansOrder") {
+    const std::array<Canvas, 6> faces{Canvas({2, 2}, {255, 0, 0, 255}),   Canvas({2, 2}, {0, 255, 0, 255}),
+                                      Canvas({2, 2}, {0, 0, 255, 255}),   Canvas({2, 2}, {255, 255, 0, 255}),
+                                      Canvas({2, 2}, {255, 0, 255, 255}), Canvas({2, 2}, {0, 255, 255, 255})};
+    CubeLayer layer;
+    for (std::size_t face = 0; face < 6; ++face) { layer.faces[face] = faces[face].picture(); }
+    EyeView eye = eyeOf({8, 8});
+    eye.stage_from_eye.position = {5, 6, 7};  // infinitely far, so that it does not matter
+    const auto looking = [&](double yaw_rad, double pitch_rad) {
+        eye.stage_from_eye.orientation = glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0));
+        return at(compose(eye, {layer}), 4, 4);
+    };
+    CHECK(looking(-2.0 * kEighth, 0) == Rgb{255, 0, 0});
+    CHECK(looking(2.0 * kEighth, 0) == Rgb{0, 255, 0});
+    CHECK(looking(0, 2.0 * kEighth) == Rgb{0, 0, 255});
+    CHECK(looking(0, -2.0 * kEighth) == Rgb{255, 255, 0});
+    CHECK(looking(4.0 * kEighth, 0) == Rgb{255, 0, 255});
+    CHECK(looking(0, 0) == Rgb{0, 255, 255});
+    layer.stage_from_cube = glm::angleAxis(2.0 * kEighth, glm::dvec3(0, 1, 0));  // its -z is the stage's -x
+    CHECK(looking(2.0 * kEighth, 0) == Rgb{0, 255, 255});
+    layer.visibility = Visibility::kRight;
+    CHECK(looking(0, 0) == kBlack);
+}
+
+TEST_CASE("theTopLeftTexelOfACubesFaceIsWhereVulkanHasIt") {
+    // On -z, s grows towards -x and t towards -y.
+    Canvas marked({8, 8}, {0, 0, 0, 255});
+    for (std::uint32_t y = 0; y < 4; ++y) {
+        for (std::uint32_t x = 0; x < 4; ++x) { marked.set(x, y, {255, 0, 0, 255}); }
+    }
+    CubeLayer layer;
+    layer.faces.fill(marked.picture());
+    const RgbPicture seen = compose(eyeOf({8, 8}), {layer});
+    CHECK(at(seen, 6, 1) == Rgb{255, 0, 0});
+    CHECK(at(seen, 1, 1) == kBlack);
+    CHECK(at(seen, 6, 6) == kBlack);
+}

@@ -60,9 +60,10 @@ XrInstanceCreateInfo instanceInfo(const std::vector<const char*>& extensions) {
     return info;
 }
 
-InstanceFixture::InstanceFixture(const std::string& script) : Headset(script) {
-    const std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
-                                              XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
+InstanceFixture::InstanceFixture(const std::string& script, const std::vector<const char*>& more_extensions) : Headset(script) {
+    std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
+                                        XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
+    extensions.insert(extensions.end(), more_extensions.begin(), more_extensions.end());
     const XrInstanceCreateInfo info = instanceInfo(extensions);
     REQUIRE(xrCreateInstance(&info, &instance) == XR_SUCCESS);
     XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
@@ -115,7 +116,8 @@ XrStructureType InstanceFixture::poll(XrEventDataBuffer& event) const {
     return xrPollEvent(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
 }
 
-VulkanFixture::VulkanFixture(const std::string& script) : InstanceFixture(script) {
+VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const char*>& more_extensions)
+    : InstanceFixture(script, more_extensions) {
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     const auto getRequirements = function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR");
     REQUIRE(getRequirements(instance, system, &requirements) == XR_SUCCESS);
@@ -173,7 +175,8 @@ VkQueue VulkanFixture::queue() const {
     return queue;
 }
 
-SessionFixture::SessionFixture(const std::string& script) : VulkanFixture(script) {
+SessionFixture::SessionFixture(const std::string& script, const std::vector<const char*>& more_extensions)
+    : VulkanFixture(script, more_extensions) {
     const XrGraphicsBindingVulkan2KHR graphics = binding();
     const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);

@@ -3,6 +3,8 @@
 #pragma once
 
 #define XR_USE_GRAPHICS_API_VULKAN
+#define XR_USE_TIMESPEC
+#include <time.h>
 #include <vulkan/vulkan.h>
 //
 #include <openxr/openxr.h>
@@ -41,7 +43,7 @@ struct InstanceFixture : Headset {
     XrInstance instance = XR_NULL_HANDLE;
     XrSystemId system = XR_NULL_SYSTEM_ID;
 
-    explicit InstanceFixture(const std::string& script = kQuietScript);
+    explicit InstanceFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
     ~InstanceFixture();
 
     XrPath path(const std::string& text) const;
@@ -68,7 +70,7 @@ struct VulkanFixture : InstanceFixture {
     VkDevice device = VK_NULL_HANDLE;
     std::vector<std::string> messages;
 
-    explicit VulkanFixture(const std::string& script = kQuietScript);
+    explicit VulkanFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
     ~VulkanFixture();
 
     XrGraphicsBindingVulkan2KHR binding() const;
@@ -82,7 +84,7 @@ struct SessionFixture : VulkanFixture {
     XrSession session = XR_NULL_HANDLE;
     XrSpace local = XR_NULL_HANDLE;
 
-    explicit SessionFixture(const std::string& script = kQuietScript);
+    explicit SessionFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
     ~SessionFixture();
 
     // The states of all events that wait.

@@ -243,7 +243,8 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus") {
     XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, XR_MIN_HAPTIC_DURATION, XR_FREQUENCY_UNSPECIFIED, 0.5f};
     const auto* const feedback = reinterpret_cast<const XrHapticBaseHeader*>(&vibration);
     XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
-    CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SUCCESS);
+    CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SESSION_NOT_FOCUSED);
+    CHECK(xrStopHapticFeedback(session, &info) == XR_SESSION_NOT_FOCUSED);
     begin();
     frame();
     CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SESSION_NOT_FOCUSED);
@@ -267,6 +268,20 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus") {
     CHECK(xrStopHapticFeedback(session, &info) == XR_ERROR_ACTION_TYPE_MISMATCH);
     info.action = XR_NULL_HANDLE;
     CHECK(xrStopHapticFeedback(session, &info) == XR_ERROR_HANDLE_INVALID);
+}
+
+TEST_CASE("a script that moves what the program's controllers lack is refused when they are chosen") {
+    struct Fixture : SessionFixture {
+        Fixture() : SessionFixture("size 64 64\nframes none\npress left trigger 0 1\n") {}
+    };
+    const Fixture fixture;
+    const XrActionSet set = fixture.makeActionSet("walking");
+    const XrAction click = fixture.makeAction(set, "jump", XR_ACTION_TYPE_BOOLEAN_INPUT);
+    REQUIRE(fixture.suggest(kSimple, {{click, fixture.path("/user/hand/left/input/select/click")}}) == XR_SUCCESS);
+    fixture.attach({set});
+    fixture.focus();
+    CHECK(fixture.sync(set) == XR_ERROR_RUNTIME_FAILURE);
+    CHECK(fixture.sync(set) == XR_ERROR_RUNTIME_FAILURE);
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's type") {

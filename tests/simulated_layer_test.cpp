@@ -1,6 +1,7 @@
 // Section 10.6 of OpenXR on the simulated runtime: the layers of xrEndFrame, and what of them reaches the wearer's eyes and the log.
 #include "tests/simulated_fixture.h"
 
+#include <cmath>
 #include <fstream>
 
 using namespace binosplat::test;
@@ -145,6 +146,17 @@ TEST_CASE_FIXTURE(LayersFixture, "a quad is seen by some eye") {
     CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
     quad.eyeVisibility = XR_EYE_VISIBILITY_RIGHT;
     CHECK(shown(&quad) == XR_SUCCESS);
+}
+
+TEST_CASE_FIXTURE(LayersFixture, "a quad may be a line or a point, but not inside out") {
+    quad.size = {0, 0};
+    CHECK(shown(&quad) == XR_SUCCESS);
+    quad.size = {1, 0};
+    CHECK(shown(&quad) == XR_SUCCESS);
+    quad.size = {1, -1};
+    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
+    quad.size = {NAN, 1};
+    CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
 }
 
 TEST_CASE_FIXTURE(LayersFixture, "depth is checked as colour is") {

@@ -21,12 +21,14 @@ public:
     Painter(const Painter&) = delete;
     Painter& operator=(const Painter&) = delete;
 
-    [[nodiscard]] XrSwapchain makeSwapchain(VkFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t layers = 1) const {
+    [[nodiscard]] XrSwapchain makeSwapchain(VkFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t layers = 1,
+                                            std::uint32_t faces = 1) const {
         XrSwapchainCreateInfo info = swapchainInfo(format);
         info.usageFlags |= XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
         info.width = width;
         info.height = height;
         info.arraySize = layers;
+        info.faceCount = faces;
         XrSwapchain swapchain = XR_NULL_HANDLE;
         REQUIRE(xrCreateSwapchain(fixture.session, &info, &swapchain) == XR_SUCCESS);
         return swapchain;

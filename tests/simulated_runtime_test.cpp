@@ -1,9 +1,12 @@
 // The simulated runtime as a library that strangers load: what it shows, how it negotiates, and programs that were not written for it.
+#include "tests/simulated_direct.h"
 #include "tests/simulated_fixture.h"
 
 #include <dlfcn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -38,21 +41,26 @@ void checkSilent(const std::string& output) {
     }
 }
 
-struct LoaderInfo {
-    int type = 1;
-    std::uint32_t version = 1;
-    std::size_t size = sizeof(LoaderInfo);
-    std::uint32_t least_interface = 1, most_interface = 1;
-    XrVersion least_api = XR_MAKE_VERSION(1, 0, 0), most_api = XR_MAKE_VERSION(1, 0x3FF, 0xFFF);
-};
-struct RuntimeRequest {
-    int type = 3;
-    std::uint32_t version = 1;
-    std::size_t size = sizeof(RuntimeRequest);
-    std::uint32_t interface = 0;
-    XrVersion api = 0;
-    PFN_xrGetInstanceProcAddr get_instance_proc_addr = nullptr;
-};
+// What is said on standard error, with explanations on.
+template <class Body>
+std::string explainedBy(Body&& body) {
+    std::FILE* const said = std::tmpfile();
+    REQUIRE(said != nullptr);
+    std::fflush(stderr);
+    const int before = dup(STDERR_FILENO);
+    dup2(fileno(said), STDERR_FILENO);
+    setenv("BINOSPLAT_SIMULATED_EXPLAIN", "1", 1);
+    body();
+    unsetenv("BINOSPLAT_SIMULATED_EXPLAIN");
+    std::fflush(stderr);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    std::string text;
+    std::rewind(said);
+    for (int c = std::fgetc(said); c != EOF; c = std::fgetc(said)) text += static_cast<char>(c);
+    std::fclose(said);
+    return text;
+}
 
 constexpr const char* kLeaving = "size 128 128\nframes every 10\npress right squeeze 0.1 0.3\nat 0.4 exit\n";
 constexpr const char* kValidation =
@@ -61,9 +69,7 @@ constexpr const char* kValidation =
 }  // namespace
 
 TEST_CASE("the library shows one function, which negotiates version 1") {
-    const std::filesystem::path library =
-        std::filesystem::path(BINOSPLAT_SIMULATED_RUNTIME).parent_path() / "libbinosplat_simulated_runtime.so";
-    void* const handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const handle = dlopen(Direct::path().c_str(), RTLD_NOW | RTLD_LOCAL);
     REQUIRE(handle != nullptr);
     // What is found then belongs to another library that this one needs.
     for (const char* name : {"xrCreateInstance", "xrGetInstanceProcAddr", "vkCreateInstance"}) {
@@ -71,8 +77,7 @@ TEST_CASE("the library shows one function, which negotiates version 1") {
         void* const found = dlsym(handle, name);
         CHECK((found == nullptr || (dladdr(found, &owner) != 0 && !contains(owner.dli_fname, "binosplat"))));
     }
-    const auto negotiate =
-        reinterpret_cast<XrResult (*)(const LoaderInfo*, RuntimeRequest*)>(dlsym(handle, "xrNegotiateLoaderRuntimeInterface"));
+    const auto negotiate = reinterpret_cast<Negotiate>(dlsym(handle, "xrNegotiateLoaderRuntimeInterface"));
     REQUIRE((negotiate != nullptr));
     const auto negotiated = [&](auto&& change) {
         LoaderInfo info;
@@ -105,6 +110,23 @@ TEST_CASE("the library shows one function, which negotiates version 1") {
     CHECK(count == 0);
     CHECK(enumerateLayers(0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     dlclose(handle);
+}
+
+TEST_CASE("what the loader asks for after a refused instance is not explained, what the program asked for is") {
+    const Headset headset(kLeaving);
+    const Direct runtime;
+    const std::string explained = explainedBy([&] {
+        XrInstanceCreateInfo info = instanceInfo({});
+        info.createFlags = 1;
+        XrInstance instance = XR_NULL_HANDLE;
+        CHECK(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_ERROR_VALIDATION_FAILURE);
+        PFN_xrVoidFunction found = nullptr;
+        for (const char* name : {"xrWaitFrame", "xrEndFrame", "xrCreateHandTrackerEXT"}) {
+            CHECK(runtime.get(XR_NULL_HANDLE, name, &found) == XR_ERROR_HANDLE_INVALID);
+            CHECK(runtime.get(instance, name, &found) == XR_ERROR_HANDLE_INVALID);
+        }
+    });
+    CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: no instance creation flags are known\n");
 }
 
 TEST_CASE("openxr_runtime_list finds it") {

@@ -133,12 +133,14 @@ TEST_CASE("whatIsTooMuchIsRefused") {
 TEST_CASE("settingsStandOnce") {
     refuses("rate 90\nsize 1 1\nrate 90", "a.script:3: rate is set again, first on line 1, must be set once");
     refuses("eye left cant 1\neye left cant 2", "eye left cant is set again");
-    refuses("extension XR_a off\nextension XR_a off", "XR_a is off already");
+    refuses("extension XR_KHR_visibility_mask off\nextension XR_KHR_visibility_mask off", "XR_KHR_visibility_mask is off already");
     CHECK(messageOf("eye left cant 1\neye right cant 2\neye left angles -1 1 1 -1") == "accepted");
 }
 
-TEST_CASE("extensionsHaveTheirPrefixAndCanOnlyBeTurnedOff") {
-    refuses("extension KHR_visibility_mask off", "must begin with XR_");
+TEST_CASE("extensionsAreThoseOfTheRuntimeAndCanOnlyBeTurnedOff") {
+    refuses("\nextension XR_KHR_visibilty_mask off",
+            "a.script:2: XR_KHR_visibilty_mask is no extension of this runtime, must be one of: XR_KHR_vulkan_enable2, ");
+    refuses("extension KHR_visibility_mask off", "KHR_visibility_mask is no extension of this runtime");
     refuses("extension XR_KHR_visibility_mask on", "what to do with it is on, must be off");
 }
 
@@ -222,6 +224,24 @@ TEST_CASE("aScriptCutOffAnywhereIsAScriptOrAnError") {
     // Cut at the ends of lines it is a shorter script, within most words it is none.
     CHECK(accepted > 20);
     CHECK(refused > 200);
+}
+
+TEST_CASE("inputsThatTheControllersLackAreNamedWithTheirLine") {
+    refuses("profile valve/index\n", "a.script:1: valve/index is not a profile of controllers, must be one of: oculus/touch_controller, ");
+    refuses("profile htc/vive_pro\n", "htc/vive_pro is not a profile of controllers");
+    refuses("press left a 0 1\nprofile oculus/touch_controller\n",
+            "a.script:1: the left hand of oculus/touch_controller has no a, must be one of: trigger, squeeze, thumbstick, x, y, menu, "
+            "thumbrest");
+    refuses("profile khr/simple_controller\npress right select 0 1\naxis right trigger 0 1\n",
+            "a.script:3: the right hand of khr/simple_controller has no trigger, must be one of: menu, select");
+    refuses("profile valve/index_controller\nprofile valve/index_controller", "profile is set again");
+    CHECK(messageOf("profile valve/index_controller\npress left a 0 1\naxis right trackpad 0 1 1\n") == "accepted");
+    CHECK(messageOf("press left a 0 1\npress left menu 0 1\n") == "accepted");
+}
+
+TEST_CASE("aHeadCannotLookAtItself") {
+    refuses("head 0 position 1 2 3 look 1 2 3", "a.script:1: the point to look at is where it looks from");
+    refuses("head 0 look 1 2", "position z is missing");
 }
 
 TEST_CASE("aScriptWithAnyByteChangedIsAScriptOrAnError") {

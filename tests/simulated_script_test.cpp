@@ -95,6 +95,18 @@ TEST_CASE("rotationsAreMadeToLengthOne") {
     CHECK(isNear(script.at(0.0).stage_from_head.orientation, glm::dquat(kHalfRoot, 0.0, kHalfRoot, 0.0)));
 }
 
+TEST_CASE("looksGoToAPointOfTheRoomUpright") {
+    const Pose down = parse("head 0 position 1 2 3 look 1 0 1").at(0).stage_from_head;
+    CHECK(isNear(forwardOf(down), glm::dvec3(0.0, -1.0, -1.0) / std::sqrt(2.0)));
+    // Upright: the right-hand side stays level.
+    const Pose askew = parse("head 0 position 0 1 0 look 3 5 -2").at(0).stage_from_head;
+    CHECK(isNear(forwardOf(askew), glm::normalize(glm::dvec3(3.0, 4.0, -2.0))));
+    CHECK(std::abs((askew.orientation * glm::dvec3(1, 0, 0)).y) < 1e-12);
+    CHECK(isNear(forwardOf(parse("head 0 position 0 1 0 look 0 9 0").at(0).stage_from_head), {0.0, 1.0, 0.0}));
+    // From where the head is said to be before.
+    CHECK(isNear(forwardOf(parse("head 0 position 5 1 0\nhead 1 look 6 1 0").at(1).stage_from_head), {1.0, 0.0, 0.0}));
+}
+
 TEST_CASE("turnsGoLeftThenUp") {
     CHECK(isNear(forwardOf(parse("head 0 turn 90 0").at(0).stage_from_head), {-1.0, 0.0, 0.0}));
     CHECK(isNear(forwardOf(parse("head 0 turn 0 90").at(0).stage_from_head), {0.0, 1.0, 0.0}));
@@ -368,5 +380,5 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 16);
+    CHECK(commands == 17);
 }

@@ -65,7 +65,7 @@ TEST_CASE_FIXTURE(SessionFixture, "the stage has bounds, other spaces have none"
     CHECK(bounds.width > 0);
     CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_LOCAL, &bounds) == XR_SPACE_BOUNDS_UNAVAILABLE);
     CHECK(bounds.width == 0);
-    CHECK(xrGetReferenceSpaceBoundsRect(session, static_cast<XrReferenceSpaceType>(99), &bounds) == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
+    CHECK(xrGetReferenceSpaceBoundsRect(session, static_cast<XrReferenceSpaceType>(99), &bounds) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrGetReferenceSpaceBoundsRect(session, XR_REFERENCE_SPACE_TYPE_STAGE, nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
 
@@ -142,6 +142,13 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls") 
     std::vector<std::uint32_t> indices(mask.indexCountOutput);
     mask.vertices = vertices.data();
     mask.indices = indices.data();
+    // Either capacity of 0 asks for both counts.
+    const std::uint32_t vertex_count = mask.vertexCountOutput;
+    mask.vertexCapacityInput = 1;
+    mask.vertexCountOutput = mask.indexCountOutput = 0;
+    CHECK(getMask(session, stereo, 0, hidden, &mask) == XR_SUCCESS);
+    CHECK(mask.vertexCountOutput == vertex_count);
+    CHECK(mask.indexCountOutput == indices.size());
     mask.vertexCapacityInput = mask.vertexCountOutput;
     mask.indexCapacityInput = mask.indexCountOutput - 1;
     CHECK(getMask(session, stereo, 0, hidden, &mask) == XR_ERROR_SIZE_INSUFFICIENT);

@@ -75,6 +75,7 @@ XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
         Session& owner = getSession(session);
         const XrActionsSyncInfo& info = checked(syncInfo, XR_TYPE_ACTIONS_SYNC_INFO);
         const std::vector<ActiveSet> active = checkedActiveSets(owner, info);
+        if (owner.isHeadless() && owner.is_running) owner.passHeadlessFrame();
         const bool is_focused = owner.state == XR_SESSION_STATE_FOCUSED;
         if (owner.attachment) {
             if (is_focused && owner.attachment->chooseProfile(owner.instance)) {

@@ -128,14 +128,16 @@ XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrIntera
         Instance& owner = getInstance(instance);
         const XrInteractionProfileSuggestedBinding& info = checked(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
         const Profile* const profile = findProfile(owner.paths.textOf(info.interactionProfile));
-        require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, "not an interaction profile of the core");
+        require(profile != nullptr && owner.has(*profile), XR_ERROR_PATH_UNSUPPORTED,
+                "not an interaction profile of this version, nor of an extension that is enabled");
         require(info.countSuggestedBindings > 0 && info.suggestedBindings != nullptr, XR_ERROR_VALIDATION_FAILURE, "no bindings");
         SuggestedProfile suggested{info.interactionProfile, {}};
         for (std::uint32_t i = 0; i < info.countSuggestedBindings; ++i) {
             const Action& action = getAction(owner, info.suggestedBindings[i].action);
             require(!action.set().is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "an action set is attached already");
             const XrPath path = info.suggestedBindings[i].binding;
-            require(allowsBinding(*profile, owner.paths.textOf(path)), XR_ERROR_PATH_UNSUPPORTED, "the profile has no such path");
+            require(allowsBinding(*profile, owner.paths.textOf(path), owner.vocabulary()), XR_ERROR_PATH_UNSUPPORTED,
+                    "the profile has no such path");
             suggested.bindings.push_back({action.number, path});
         }
         std::erase_if(owner.suggestions, [&](const auto& earlier) { return earlier.profile == suggested.profile; });

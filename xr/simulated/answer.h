@@ -3,6 +3,7 @@
 
 #include <mutex>
 #include <new>
+#include <string>
 #include <utility>
 
 #include "xr/simulated/openxr.h"
@@ -11,7 +12,7 @@ namespace simulated {
 
 struct Refusal {
     XrResult result;
-    const char* reason;
+    std::string reason;
 };
 
 inline void require(bool holds, XrResult otherwise, const char* reason) {
@@ -38,10 +39,18 @@ XrResult answerUnlocked(const char* function, Body&& body) {
     }
 }
 
+// What explain() has for the application's own function (messages.h), once the lock is free.
+void deliverMessages();
+
 template <class Body>
 XrResult answer(const char* function, Body&& body) {
-    const std::lock_guard guard(runtimeLock());
-    return answerUnlocked(function, std::forward<Body>(body));
+    XrResult result = XR_SUCCESS;
+    {
+        const std::lock_guard guard(runtimeLock());
+        result = answerUnlocked(function, std::forward<Body>(body));
+    }
+    deliverMessages();
+    return result;
 }
 
 }  // namespace simulated

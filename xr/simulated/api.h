@@ -25,6 +25,9 @@
     _(xrEnumerateBoundSourcesForAction) _(xrGetInputSourceLocalizedName)                                                                \
     _(xrApplyHapticFeedback) _(xrStopHapticFeedback)
 
+// For instances of API 1.1.
+#define SIMULATED_CORE_1_1_FUNCTIONS(_) _(xrLocateSpaces)
+
 // Function, and the extension that has to be enabled for it.
 #define SIMULATED_EXTENSION_FUNCTIONS(_)                                                                                                 \
     _(xrCreateVulkanInstanceKHR, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME)                                                                  \
@@ -35,7 +38,23 @@
     _(xrGetVulkanDeviceExtensionsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                              \
     _(xrGetVulkanGraphicsDeviceKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                                \
     _(xrGetVulkanGraphicsRequirementsKHR, XR_KHR_VULKAN_ENABLE_EXTENSION_NAME)                                                          \
-    _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)
+    _(xrGetVisibilityMaskKHR, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)                                                                    \
+    _(xrLocateSpacesKHR, XR_KHR_LOCATE_SPACES_EXTENSION_NAME)                                                                          \
+    _(xrConvertTimespecTimeToTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
+    _(xrConvertTimeToTimespecTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
+    _(xrCreateDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                \
+    _(xrDestroyDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                               \
+    _(xrSubmitDebugUtilsMessageEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                  \
+    _(xrSetDebugUtilsObjectNameEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                  \
+    _(xrSessionBeginDebugUtilsLabelRegionEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                        \
+    _(xrSessionEndDebugUtilsLabelRegionEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                          \
+    _(xrSessionInsertDebugUtilsLabelEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                             \
+    _(xrCreateHandTrackerEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                      \
+    _(xrDestroyHandTrackerEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                     \
+    _(xrLocateHandJointsEXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME)                                                                       \
+    _(xrEnumerateDisplayRefreshRatesFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                      \
+    _(xrGetDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)                                                             \
+    _(xrRequestDisplayRefreshRateFB, XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)
 // clang-format on
 
 namespace simulated {
@@ -43,6 +62,7 @@ namespace simulated {
 #define SIMULATED_DECLARE(name) std::remove_pointer_t<PFN_##name> name;
 #define SIMULATED_DECLARE_EXTENSION(name, extension) std::remove_pointer_t<PFN_##name> name;
 SIMULATED_CORE_FUNCTIONS(SIMULATED_DECLARE)
+SIMULATED_CORE_1_1_FUNCTIONS(SIMULATED_DECLARE)
 SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_DECLARE_EXTENSION)
 #undef SIMULATED_DECLARE
 #undef SIMULATED_DECLARE_EXTENSION

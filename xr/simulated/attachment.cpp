@@ -4,6 +4,7 @@
 
 #include "xr/simulated/actions.h"
 #include "xr/simulated/profiles.h"
+#include "xr/simulated/script_profile.h"
 #include "xr/simulated/session.h"
 
 namespace simulated {
@@ -17,16 +18,17 @@ bool endsIn(std::string_view path, std::initializer_list<std::string_view> compo
 }
 
 // The component that a suggested path means for an action of this type, as the specification's rules have it; none: it stays unbound.
-std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path, XrActionType type) {
+std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path, XrActionType type,
+                                   const Vocabulary& words) {
     const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {
         for (const char* component : components) {
             const std::string whole = std::string(path) + component;
-            if (hasComponent(profile, user_path, whole)) return whole;
+            if (hasComponent(profile, user_path, whole, words)) return whole;
         }
         return std::nullopt;
     };
-    const bool is_whole = hasComponent(profile, user_path, path);
-    const bool is_number = is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/x", "/y"});
+    const bool is_whole = hasComponent(profile, user_path, path, words);
+    const bool is_number = is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/proximity", "/x", "/y"});
     switch (type) {
         case XR_ACTION_TYPE_BOOLEAN_INPUT:
             if (is_number) return std::string(path);
@@ -50,7 +52,8 @@ std::optional<BoundSource> bind(const Instance& instance, const Profile& profile
     const std::string& text = instance.paths.textOf(path);
     const std::string_view user_path = userPathOf(text);
     if (!user_path.starts_with("/user/hand/")) return std::nullopt;  // the simulated wearer has no gamepad
-    const std::optional<std::string> component = resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type);
+    const std::optional<std::string> component =
+        resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type, instance.vocabulary());
     if (!component) return std::nullopt;
     const Side side = user_path == "/user/hand/left" ? kLeft : kRight;
     const std::size_t start = component->find('/', 1) + 1;
@@ -64,6 +67,16 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
     const double value = controller.input(source.component);
     if (type == XR_ACTION_TYPE_BOOLEAN_INPUT) return {value >= kPressed ? 1.0 : 0.0, 0.0};
     return {value, 0.0};
+}
+
+// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round.
+Pose poseOf(const ControllerState& controller, const BoundSource& source) {
+    constexpr double kPalm_m = 0.02;
+    if (source.source == "aim") return controller.stage_from_aim;
+    if (source.source == "grip") return controller.stage_from_grip;
+    Pose grip_from_palm;
+    grip_from_palm.position.x = source.side == kLeft ? -kPalm_m : kPalm_m;
+    return compose(controller.stage_from_grip, grip_from_palm);
 }
 
 bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
@@ -123,6 +136,7 @@ bool Attachment::chooseProfile(Instance& instance) {
         const XrPath path = instance.paths.findPath(candidate.path);
         const auto suggested = std::find_if(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
         if (suggested == suggestions.end()) continue;
+        checkInputs(instance.simulation->script, candidate);
         profile = findProfile(candidate.path);
         for (const SuggestedBinding& binding : suggested->bindings) {
             AttachedAction* const action = find(binding.action);
@@ -165,7 +179,7 @@ std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action
             if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
             const ControllerState& controller = state.controllers[source.side];
             if (!controller.tracked) return std::nullopt;
-            return source.source == "aim" ? controller.stage_from_aim : controller.stage_from_grip;
+            return poseOf(controller, source);
         }
     }
     return std::nullopt;

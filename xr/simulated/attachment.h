@@ -57,7 +57,7 @@ struct Attachment {
     const Profile* profile = nullptr;
 
     [[nodiscard]] AttachedAction* find(std::uint64_t action);
-    // False if there is none that it could change to.
+    // False if there is none that it could change to. Throws ScriptError if the script moves what the controllers lack.
     bool chooseProfile(Instance& instance);
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };

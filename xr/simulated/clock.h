@@ -2,7 +2,9 @@
 // sleeps, and every run is the same. With the real clock, frames are paced as by a display.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 
 #include "xr/simulated/openxr.h"
@@ -26,16 +28,28 @@ public:
     // Seconds since the first frame: the time that scripts know. It does not count how long a program takes to start.
     double secondsAt(XrTime time) const { return static_cast<double>(time - kStart) * 1e-9; }
     XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
+    // Another display rate, from the next frame on.
+    void setPeriod(XrDuration period);
+    // What CLOCK_MONOTONIC says less OpenXR's time, the same for the clock's life. In lock-step the two are told apart when this is
+    // first asked for; with the real clock they go alike, and time begins then if there was no frame yet.
+    std::int64_t monotonicOffset();
 
 private:
     // Not zero, which is no valid time, and the same in every run.
     static constexpr XrTime kStart = 1'000'000'000;
 
+    // When the frame on display is.
+    XrTime shown() const { return origin + std::max<std::int64_t>(frame, 0) * frame_period; }
+
     bool is_real;
     XrDuration frame_period;
-    // The number of the frame on display, counted in periods since the start.
+    // The frame on display, counted in periods since this period began.
+    XrTime origin = kStart;
     std::int64_t frame = -1;
     std::optional<std::chrono::steady_clock::time_point> birth;
+    // Time began before the first frame.
+    bool is_early = false;
+    std::optional<std::int64_t> offset;
 };
 
 }  // namespace simulated

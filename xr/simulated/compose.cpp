@@ -1,6 +1,7 @@
 // The composition of layers: each pixel of an eye looks along its ray through all of them.
 #include "xr/simulated/compose.h"
 
+#include "xr/simulated/seen_shapes.h"
 #include "xr/simulated/texels.h"
 
 #include <glm/geometric.hpp>
@@ -84,6 +85,7 @@ public:
         const glm::dvec3 direction = quad_from_eye_ * direction_eye;
         // From the front only, and only ahead: the eye is on the +z side and looks towards -z.
         if (!(eye_quad_.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
+        if (size_m_.x <= 0.0 || size_m_.y <= 0.0) { return std::nullopt; }
         const glm::dvec3 hit = eye_quad_ - direction * (eye_quad_.z / direction.z);
         const glm::dvec2 uv(hit.x / size_m_.x + 0.5, 0.5 - hit.y / size_m_.y);
         if (!isInside(uv)) { return std::nullopt; }
@@ -98,7 +100,7 @@ private:
 };
 
 struct SeenLayer {
-    std::variant<SeenView, SeenQuad> shape;
+    std::variant<SeenView, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
     Blending blending;
 };
 
@@ -111,8 +113,14 @@ std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Lay
     for (const Layer& layer : layers) {
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
             seen.push_back({SeenView(eye, projection->views[side]), projection->blending});
-        } else if (const auto& quad = std::get<QuadLayer>(layer); isShownTo(side, quad.visibility)) {
-            seen.push_back({SeenQuad(eye, quad), quad.blending});
+        } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
+            if (isShownTo(side, quad->visibility)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
+        } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {
+            if (isShownTo(side, cylinder->visibility)) { seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending}); }
+        } else if (const auto* sphere = std::get_if<SphereLayer>(&layer)) {
+            if (isShownTo(side, sphere->visibility)) { seen.push_back({SeenSphere(eye, *sphere), sphere->blending}); }
+        } else if (const auto& cube = std::get<CubeLayer>(layer); isShownTo(side, cube.visibility)) {
+            seen.push_back({SeenCube(eye, cube), cube.blending});
         }
     }
     return seen;

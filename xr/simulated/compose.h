@@ -64,7 +64,39 @@ struct QuadLayer {
     Blending blending;
 };
 
-using Layer = std::variant<ProjectionLayer, QuadLayer>;
+// The inside of a cylinder about the y axis of its pose, the middle of its picture at -z. A radius of 0 or infinity: it is infinitely far.
+struct CylinderLayer {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_cylinder;
+    double radius_m = 0.0;
+    double central_angle_rad = 0.0;
+    double aspect_ratio = 1.0;  // of the picture: width on the arc to height
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z. Radii as of cylinders.
+struct SphereLayer {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_sphere;
+    double radius_m = 0.0;
+    double horizontal_angle_rad = 0.0;
+    double upper_angle_rad = 0.0, lower_angle_rad = 0.0;
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+// A cube map infinitely far: faces +x, -x, +y, -y, +z, -z, laid out as Vulkan reads them.
+struct CubeLayer {
+    std::array<Picture, 6> faces;
+    glm::dquat stage_from_cube{1.0, 0.0, 0.0, 0.0};
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+using Layer = std::variant<ProjectionLayer, QuadLayer, CylinderLayer, SphereLayer, CubeLayer>;
 
 // 8-bit sRGB, three bytes per pixel, rows from the top.
 struct RgbPicture {

@@ -177,7 +177,7 @@ void Device::prepare(const DeviceImage& image) {
 
 std::vector<std::byte> Device::read(const DeviceImage& image) {
     Implementation& my = *implementation;
-    const auto& [format, size, layers, mips, usage, flags] = image.info;
+    const auto& [format, size, layers, mips, usage, flags, faces] = image.info;
     std::vector<std::byte> texels(std::size_t{size.width} * size.height * layers * format.texel_bytes);
 
     const auto buffer = my.device.createBufferUnique({{}, texels.size(), vk::BufferUsageFlagBits::eTransferDst}, nullptr, my.dispatch);

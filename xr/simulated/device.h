@@ -36,6 +36,8 @@ struct ImageInfo {
     std::uint32_t mips;
     VkImageUsageFlags usage;
     VkImageCreateFlags flags;
+    // 6 of a cube map, whose faces are array layers: `layers` counts them all.
+    std::uint32_t faces = 1;
 };
 
 class DeviceImage;

@@ -12,13 +12,17 @@ struct Entry {
     const char* name;
     PFN_xrVoidFunction function;
     const char* extension;
+    bool is_1_1 = false;
 };
 
 const Entry kEntries[] = {
 #define SIMULATED_ENTRY(name) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), nullptr},
+#define SIMULATED_1_1_ENTRY(name) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), nullptr, true},
 #define SIMULATED_EXTENSION_ENTRY(name, extension) {#name, reinterpret_cast<PFN_xrVoidFunction>(&name), extension},
-    SIMULATED_CORE_FUNCTIONS(SIMULATED_ENTRY) SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_EXTENSION_ENTRY)
+    SIMULATED_CORE_FUNCTIONS(SIMULATED_ENTRY) SIMULATED_CORE_1_1_FUNCTIONS(SIMULATED_1_1_ENTRY)
+        SIMULATED_EXTENSION_FUNCTIONS(SIMULATED_EXTENSION_ENTRY)
 #undef SIMULATED_ENTRY
+#undef SIMULATED_1_1_ENTRY
 #undef SIMULATED_EXTENSION_ENTRY
 };
 
@@ -45,10 +49,11 @@ XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoid
         for (const Entry& entry : kEntries) {
             if (std::strcmp(entry.name, name) != 0) continue;
             if (entry.extension != nullptr && !owner->extensions.contains(entry.extension)) break;
+            if (entry.is_1_1 && !owner->is_1_1) break;
             output = entry.function;
             return XR_SUCCESS;
         }
-        throw Refusal{XR_ERROR_FUNCTION_UNSUPPORTED, "no such function, or its extension was not enabled"};
+        throw Refusal{XR_ERROR_FUNCTION_UNSUPPORTED, "no such function, or its extension or version was not asked for"};
     });
 }
 

@@ -23,8 +23,11 @@ XrSession sessionOf(const XrEventDataBuffer& event) {
         case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
             return reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).session;
         default:
-            return XR_NULL_HANDLE;
+            break;
     }
+    if (event.type == XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT)
+        return reinterpret_cast<const XrEventDataUserPresenceChangedEXT&>(event).session;
+    return XR_NULL_HANDLE;
 }
 
 }  // namespace

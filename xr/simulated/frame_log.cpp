@@ -42,6 +42,7 @@ Json jsonOf(const LoggedLayer& layer) {
     Json json{{"type", layer.type}, {"flags", layer.flags}, {"space", layer.space}, {"stage_from_space", jsonOf(layer.stage_from_space)}};
     if (layer.pose) { json["pose"] = jsonOf(*layer.pose); }
     if (layer.size_m) { json["size"] = {layer.size_m->x, layer.size_m->y}; }
+    for (const auto& [name, value] : layer.numbers) { json[name] = value; }
     if (!layer.eye_visibility.empty()) { json["eye_visibility"] = layer.eye_visibility; }
     json["views"] = Json::array();
     for (const LoggedView& view : layer.views) { json["views"].push_back(jsonOf(view)); }

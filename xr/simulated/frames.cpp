@@ -25,6 +25,7 @@ std::condition_variable& frameBegun() {
 Session& runningSession(XrSession session) {
     Session& found = getSession(session);
     require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+    require(!found.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no frames");
     return found;
 }
 
@@ -44,13 +45,13 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const Session& owner = getSession(session);
         const XrViewLocateInfo& info = checked(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
         XrViewState& output = checked(viewState, XR_TYPE_VIEW_STATE);
-        checkViewConfiguration(info.viewConfigurationType);
+        checkViewConfiguration(owner.instance, info.viewConfigurationType);
         const Space& space = getSpace(owner, info.space);
         checkTime(info.displayTime);
         output.viewStateFlags = 0;
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return successOf(owner);
         for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW);
-        const State state = owner.instance.simulation->at(info.displayTime);
+        const State state = owner.at(info.displayTime);
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             const EyeState& seen = state.eyes[eye];
@@ -80,6 +81,7 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         const State state = simulation.at(frame.display_time);
         owner.meetEvents(frame.display_time);
         owner.announceMasks(state);
+        owner.announcePresence(state);
         const bool is_visible = owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
         owner.frames.waited = frame.display_time;
         owner.frames.should_render = is_visible && state.should_render;
@@ -90,6 +92,7 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         return successOf(owner);
     });
     lock.unlock();
+    deliverMessages();
     if (XR_SUCCEEDED(result)) std::this_thread::sleep_until(frame.wake_time);
     return result;
 }
@@ -115,7 +118,7 @@ XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
         checkBlendMode(info.environmentBlendMode);
         checkLayers(owner, info);
         owner.frames.begun.reset();
-        const State state = owner.instance.simulation->at(info.displayTime);
+        const State state = owner.at(info.displayTime);
         showFrame(owner, info, state);
         owner.step(state);
         return successOf(owner);

@@ -5,23 +5,12 @@
 #include <cstring>
 
 #include "xr/simulated/api.h"
+#include "xr/simulated/extensions.h"
 #include "xr/simulated/names.h"
 #include "xr/simulated/structures.h"
 
 namespace simulated {
 namespace {
-
-struct Extension {
-    const char* name;
-    std::uint32_t version;
-};
-
-constexpr Extension kExtensions[] = {
-    {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_vulkan_enable2_SPEC_VERSION},
-    {XR_KHR_VULKAN_ENABLE_EXTENSION_NAME, XR_KHR_vulkan_enable_SPEC_VERSION},
-    {XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_composition_layer_depth_SPEC_VERSION},
-    {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_KHR_visibility_mask_SPEC_VERSION},
-};
 
 std::vector<Extension> offeredExtensions(const Script& script) {
     std::vector<Extension> offered;
@@ -39,11 +28,23 @@ Script scriptBeforeInstance() {
 }
 
 void checkApplication(const XrApplicationInfo& application) {
+    const auto isEnded = [](const auto& name) { return strnlen(name, sizeof name) < sizeof name; };
+    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "nothing ends a name");
     require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
-    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) == 0, XR_ERROR_API_VERSION_UNSUPPORTED,
-            "this runtime implements OpenXR 1.0");
+    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED,
+            "this runtime implements OpenXR 1.0 and 1.1");
+}
+
+[[noreturn]] void refuseExtension(const char* name) {
+    // Programs of other graphics are not let into a session that cannot be: they hear at once what there is.
+    for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
+        if (std::strcmp(name, graphics) != 0) continue;
+        throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT,
+                      std::string(name) + ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable"};
+    }
+    throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
 }
 
 std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
@@ -56,7 +57,7 @@ std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const 
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
         const bool is_offered =
             std::any_of(offered.begin(), offered.end(), [&](const auto& one) { return std::strcmp(one.name, name) == 0; });
-        require(is_offered, XR_ERROR_EXTENSION_NOT_PRESENT, name);
+        if (!is_offered) refuseExtension(name);
         names.emplace(name);
     }
     return names;
@@ -100,14 +101,16 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t 
 }
 
 XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* instance) {
+    const CreationMessenger messenger(createInfo);
     return answer(__func__, [&] {
         const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkedOutput(instance);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no instance creation flags are known");
-        require(info.enabledApiLayerCount == 0, XR_ERROR_API_LAYER_NOT_PRESENT, "a runtime has no layers");
+        // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
+        created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
         created->simulation = Simulation::begin();
         created->extensions = checkedExtensions(info, created->simulation->script);
         output = handleOf(adopt(root(), std::move(created)));

@@ -9,7 +9,9 @@
 #include "xr/simulated/bindings.h"
 #include "xr/simulated/events.h"
 #include "xr/simulated/handles.h"
+#include "xr/simulated/messages.h"
 #include "xr/simulated/paths.h"
+#include "xr/simulated/profiles.h"
 #include "xr/simulated/simulation.h"
 
 namespace simulated {
@@ -19,6 +21,8 @@ struct Session;
 struct Instance : Object {
     using Handle = XrInstance;
 
+    // Of API 1.1, not 1.0.
+    bool is_1_1 = false;
     std::set<std::string> extensions;
     Paths paths;
     Events events;
@@ -28,6 +32,7 @@ struct Instance : Object {
     // What the application suggested, by interaction profile, in the order in which it first named them.
     std::vector<SuggestedProfile> suggestions;
     bool has_asked_requirements = false;
+    ObjectNames object_names;
     // What xrGetVulkanGraphicsDevice(2)KHR gave and for which VkInstance, and where the functions of each VkInstance come from.
     VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
     VkInstance graphics_instance = VK_NULL_HANDLE;
@@ -35,6 +40,13 @@ struct Instance : Object {
     Session* session = nullptr;
 
     ~Instance() override { Simulation::end(std::move(simulation)); }
+
+    [[nodiscard]] bool has(const Profile& profile) const {
+        return profile.since == Since::k1_0 || is_1_1 || extensions.contains(std::string(profile.extension));
+    }
+    [[nodiscard]] Vocabulary vocabulary() const { return {is_1_1, extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)}; }
+    // What the core has since 1.1, and what 1.0 has with an extension.
+    [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
 };
 
 // XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST.
@@ -46,7 +58,7 @@ constexpr std::uint32_t kMostSwapchainPixels = 16384;
 
 // XR_ERROR_SYSTEM_INVALID.
 void checkSystem(XrSystemId system);
-// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for all but primary stereo.
-void checkViewConfiguration(XrViewConfigurationType type);
+// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for mono, XR_ERROR_VALIDATION_FAILURE for what is none.
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type);
 
 }  // namespace simulated

@@ -5,6 +5,7 @@
 #include "xr/simulated/poses.h"
 #include "xr/simulated/spaces.h"
 #include "xr/simulated/structures.h"
+#include "xr/simulated/surrounding_layers.h"
 #include "xr/simulated/swapchains.h"
 
 namespace simulated {
@@ -28,6 +29,7 @@ Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& imag
 
 void checkColour(const Swapchain& swapchain) {
     require(swapchain.info.format.aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_LAYER_INVALID, "a depth image shown as a picture");
+    require(swapchain.info.faces == 1, XR_ERROR_LAYER_INVALID, "a cube map shown as a picture");
 }
 
 const XrCompositionLayerDepthInfoKHR* depthOf(const Session& session, const XrCompositionLayerProjectionView& view) {
@@ -60,53 +62,16 @@ void checkProjection(const Session& session, const XrCompositionLayerProjection&
 }
 
 void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
-    require(layer.eyeVisibility >= XR_EYE_VISIBILITY_BOTH && layer.eyeVisibility <= XR_EYE_VISIBILITY_RIGHT, XR_ERROR_VALIDATION_FAILURE,
-            "no such eye visibility");
+    checkEyeVisibility(layer.eyeVisibility);
     checkPose(layer.pose);
-    require(layer.size.width > 0 && layer.size.height > 0, XR_ERROR_VALIDATION_FAILURE, "a quad without size");
+    // A quad may be a line or a point: nobody sees it.
+    require(layer.size.width >= 0 && layer.size.height >= 0, XR_ERROR_VALIDATION_FAILURE, "a quad of negative size");
     checkColour(checkSubImage(session, layer.subImage));
 }
 
-Picture pictureOf(const Session& session, const XrSwapchainSubImage& image) {
-    Swapchain& swapchain = getSwapchain(session, image.swapchain);
-    fetchTexels(swapchain);
-    const VkFormat format = swapchain.info.format.format;
-    Picture picture;
-    picture.size_px = {swapchain.info.size.width, swapchain.info.size.height};
-    const bool is_bgra = format == VK_FORMAT_B8G8R8A8_SRGB || format == VK_FORMAT_B8G8R8A8_UNORM;
-    picture.texels = format == VK_FORMAT_R16G16B16A16_SFLOAT ? Texels::kRgba16f : is_bgra ? Texels::kBgra8 : Texels::kRgba8;
-    const bool is_srgb = format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB;
-    picture.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
-    const std::size_t layer_bytes = swapchain.released_texels.size() / swapchain.info.layers;
-    picture.bytes = std::span<const std::byte>(swapchain.released_texels).subspan(image.imageArrayIndex * layer_bytes, layer_bytes);
-    return picture;
-}
-
-Rect rectOf(const XrRect2Di& rect) { return {{rect.offset.x, rect.offset.y}, {rect.extent.width, rect.extent.height}}; }
-
-Blending blendingOf(XrCompositionLayerFlags flags) {
-    return {(flags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0,
-            (flags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0};
-}
-
 ProjectionView composable(const Session& session, const XrCompositionLayerProjectionView& view, const Pose& stage_from_space) {
-    return {pictureOf(session, view.subImage), rectOf(view.subImage.imageRect), compose(stage_from_space, fromXr(view.pose)),
-            fromXr(view.fov)};
-}
-
-LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image) {
-    const Swapchain& swapchain = getSwapchain(session, image.swapchain);
-    const auto& [offset, extent] = image.imageRect;
-    LoggedView logged;
-    logged.swapchain = swapchain.number;
-    logged.image_index = swapchain.released_index;
-    logged.array_index = image.imageArrayIndex;
-    logged.format = swapchain.info.format.name;
-    logged.x = offset.x;
-    logged.y = offset.y;
-    logged.width = extent.width;
-    logged.height = extent.height;
-    return logged;
+    return {pictureOf(getSwapchain(session, view.subImage.swapchain), view.subImage.imageArrayIndex), rectOf(view.subImage.imageRect),
+            compose(stage_from_space, fromXr(view.pose)), fromXr(view.fov)};
 }
 
 LoggedView loggedView(const Session& session, const XrCompositionLayerProjectionView& view) {
@@ -128,12 +93,61 @@ std::vector<std::string> loggedFlags(XrCompositionLayerFlags flags) {
     return names;
 }
 
-template <class T>
-const T& as(const XrCompositionLayerBaseHeader& layer) {
-    return reinterpret_cast<const T&>(layer);
+}  // namespace
+
+void checkEyeVisibility(XrEyeVisibility visibility) {
+    require(visibility >= XR_EYE_VISIBILITY_BOTH && visibility <= XR_EYE_VISIBILITY_RIGHT, XR_ERROR_VALIDATION_FAILURE,
+            "no such eye visibility");
 }
 
-}  // namespace
+Visibility visibilityOf(XrEyeVisibility visibility) {
+    return visibility == XR_EYE_VISIBILITY_BOTH   ? Visibility::kBoth
+           : visibility == XR_EYE_VISIBILITY_LEFT ? Visibility::kLeft
+                                                  : Visibility::kRight;
+}
+
+const char* nameOf(XrEyeVisibility visibility) {
+    constexpr const char* kNames[] = {"both", "left", "right"};
+    return kNames[visibility];
+}
+
+void checkPicture(const Session& session, const XrSwapchainSubImage& image) { checkColour(checkSubImage(session, image)); }
+
+Picture pictureOf(Swapchain& swapchain, std::uint32_t array_layer) {
+    fetchTexels(swapchain);
+    const VkFormat format = swapchain.info.format.format;
+    Picture picture;
+    picture.size_px = {swapchain.info.size.width, swapchain.info.size.height};
+    const bool is_bgra = format == VK_FORMAT_B8G8R8A8_SRGB || format == VK_FORMAT_B8G8R8A8_UNORM;
+    picture.texels = format == VK_FORMAT_R16G16B16A16_SFLOAT ? Texels::kRgba16f : is_bgra ? Texels::kBgra8 : Texels::kRgba8;
+    const bool is_srgb = format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB;
+    picture.transfer = is_srgb ? Transfer::kSrgb : Transfer::kLinear;
+    const std::size_t layer_bytes = swapchain.released_texels.size() / swapchain.info.layers;
+    picture.bytes = std::span<const std::byte>(swapchain.released_texels).subspan(array_layer * layer_bytes, layer_bytes);
+    return picture;
+}
+
+Rect rectOf(const XrRect2Di& rect) { return {{rect.offset.x, rect.offset.y}, {rect.extent.width, rect.extent.height}}; }
+
+Blending blendingOf(XrCompositionLayerFlags flags) {
+    return {(flags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0,
+            (flags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0};
+}
+
+LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image) {
+    const Swapchain& swapchain = getSwapchain(session, image.swapchain);
+    const auto& [offset, extent] = image.imageRect;
+    LoggedView logged;
+    logged.swapchain = swapchain.number;
+    logged.image_index = swapchain.released_index;
+    logged.array_index = image.imageArrayIndex;
+    logged.format = swapchain.info.format.name;
+    logged.x = offset.x;
+    logged.y = offset.y;
+    logged.width = extent.width;
+    logged.height = extent.height;
+    return logged;
+}
 
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, "more layers than maxLayerCount");
@@ -141,12 +155,16 @@ void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         require(info.layers[i] != nullptr, XR_ERROR_LAYER_INVALID, "a layer is null");
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];
-        const bool is_known = layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD;
-        require(is_known, XR_ERROR_LAYER_INVALID, "a layer of another type than projection and quad");
+        const bool is_surrounding = isSurrounding(session, layer.type);
+        const bool is_known =
+            layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding;
+        require(is_known, XR_ERROR_LAYER_INVALID, "a layer that is neither projection nor quad nor of an extension that is enabled");
         checkChain(layer.next);
         require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags");
         getSpace(session, layer.space);
-        if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD)
+        if (is_surrounding)
+            checkSurrounding(session, layer);
+        else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD)
             checkQuad(session, as<XrCompositionLayerQuad>(layer));
         else
             checkProjection(session, as<XrCompositionLayerProjection>(layer));
@@ -160,16 +178,15 @@ std::vector<Layer> composableLayers(const Session& session, const XrFrameEndInfo
         const std::optional<Pose> stage_from_space = stageFromSpace(getSpace(session, layer.space), state);
         if (!stage_from_space) continue;
         const Blending blending = blendingOf(layer.layerFlags);
-        if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
+        if (isSurrounding(session, layer.type)) {
+            layers.push_back(surroundingLayer(session, layer, *stage_from_space));
+        } else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
             const auto& quad = as<XrCompositionLayerQuad>(layer);
-            const Visibility visibility = quad.eyeVisibility == XR_EYE_VISIBILITY_BOTH   ? Visibility::kBoth
-                                          : quad.eyeVisibility == XR_EYE_VISIBILITY_LEFT ? Visibility::kLeft
-                                                                                         : Visibility::kRight;
-            layers.emplace_back(QuadLayer{pictureOf(session, quad.subImage),
+            layers.emplace_back(QuadLayer{pictureOf(getSwapchain(session, quad.subImage.swapchain), quad.subImage.imageArrayIndex),
                                           rectOf(quad.subImage.imageRect),
                                           compose(*stage_from_space, fromXr(quad.pose)),
                                           {quad.size.width, quad.size.height},
-                                          visibility,
+                                          visibilityOf(quad.eyeVisibility),
                                           blending});
         } else {
             const auto& views = as<XrCompositionLayerProjection>(layer).views;
@@ -189,14 +206,15 @@ std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndIn
         entry.flags = loggedFlags(layer.layerFlags);
         entry.space = nameOf(space);
         entry.stage_from_space = stageFromSpace(space, state).value_or(Pose{});
-        if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
+        if (isSurrounding(session, layer.type)) {
+            logSurrounding(session, layer, entry);
+        } else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
             const auto& quad = as<XrCompositionLayerQuad>(layer);
-            constexpr const char* kVisibilities[] = {"both", "left", "right"};
             entry.type = "quad";
             entry.views = {loggedImage(session, quad.subImage)};
             entry.pose = fromXr(quad.pose);
             entry.size_m = {quad.size.width, quad.size.height};
-            entry.eye_visibility = kVisibilities[quad.eyeVisibility];
+            entry.eye_visibility = nameOf(quad.eyeVisibility);
         } else {
             const auto& projection = as<XrCompositionLayerProjection>(layer);
             entry.type = "projection";

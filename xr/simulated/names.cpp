@@ -2,17 +2,50 @@
 
 #include <openxr/openxr_reflection.h>
 
+#include <span>
+
 namespace simulated {
 
 #define SIMULATED_CASE(name, value) \
     case name:                      \
         return #name;
 
+namespace {
+
+// Values that the headers may not list yet.
+template <class Value>
+struct LaterName {
+    Value value;
+    const char* name;
+};
+
+constexpr LaterName<XrResult> kLaterResults[] = {
+    {XR_ERROR_PERMISSION_INSUFFICIENT, "XR_ERROR_PERMISSION_INSUFFICIENT"},
+    {XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED, "XR_ERROR_EXTENSION_DEPENDENCY_NOT_ENABLED"},
+};
+constexpr LaterName<XrStructureType> kLaterTypes[] = {
+    {XR_TYPE_SPACES_LOCATE_INFO, "XR_TYPE_SPACES_LOCATE_INFO"},
+    {XR_TYPE_SPACE_LOCATIONS, "XR_TYPE_SPACE_LOCATIONS"},
+    {XR_TYPE_SPACE_VELOCITIES, "XR_TYPE_SPACE_VELOCITIES"},
+    {XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, "XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT"},
+    {XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, "XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT"},
+};
+
+template <class Value>
+const char* findName(std::span<const LaterName<Value>> names, Value value) {
+    for (const auto& [later, name] : names) {
+        if (later == value) return name;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
 const char* nameOf(XrResult result) {
     switch (result) {
         XR_LIST_ENUM_XrResult(SIMULATED_CASE);
         default:
-            return nullptr;
+            return findName<XrResult>(kLaterResults, result);
     }
 }
 
@@ -20,7 +53,7 @@ const char* nameOf(XrStructureType type) {
     switch (type) {
         XR_LIST_ENUM_XrStructureType(SIMULATED_CASE);
         default:
-            return nullptr;
+            return findName<XrStructureType>(kLaterTypes, type);
     }
 }
 

@@ -1,4 +1,5 @@
 // The one symbol that the library exports: the loader asks for the rest through it.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,6 +11,7 @@ namespace {
 enum class InterfaceStructure : int { LoaderInfo = 1, RuntimeRequest = 3 };
 constexpr std::uint32_t kInterfaceVersion = 1;
 constexpr std::uint32_t kStructureVersion = 1;
+constexpr XrVersion kApiVersion = XR_MAKE_VERSION(1, 1, 41);
 
 struct NegotiateLoaderInfo {
     InterfaceStructure structure_type;
@@ -48,7 +50,8 @@ extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRunt
                                                                                              NegotiateRuntimeRequest* request) {
     if (!isUnderstood(loader_info) || !isUnderstood(request)) return XR_ERROR_INITIALIZATION_FAILED;
     request->interface_version = kInterfaceVersion;
-    request->api_version = XR_CURRENT_API_VERSION;
+    // What this runtime implements, or what the loader can do with.
+    request->api_version = std::min<XrVersion>(kApiVersion, loader_info->most_api_version);
     request->get_instance_proc_addr = simulated::xrGetInstanceProcAddr;
     return XR_SUCCESS;
 }

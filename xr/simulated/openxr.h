@@ -3,8 +3,12 @@
 
 #define XR_NO_PROTOTYPES
 #define XR_USE_GRAPHICS_API_VULKAN
+#define XR_USE_TIMESPEC
 #define VK_NO_PROTOTYPES
+#include <time.h>
 #include <vulkan/vulkan.h>
 //
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
+//
+#include "xr/simulated/openxr_later.h"

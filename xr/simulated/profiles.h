@@ -1,10 +1,13 @@
-// Section 6.4 of the specification: which input and output paths each interaction profile of the core has.
+// Section 6.4 of the specification: which input and output paths each interaction profile of the core, 1.0 and 1.1, has.
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace simulated {
+
+enum class Since { k1_0, k1_1 };
 
 struct Profile {
     std::string_view path;
@@ -12,15 +15,28 @@ struct Profile {
     std::span<const std::string_view> user_paths;
     std::span<const std::string_view> components;
     std::span<const std::string_view> left_components, right_components;
+    // Otherwise of 1.0, with this extension, if there is one.
+    Since since = Since::k1_0;
+    std::string_view extension = {};
+};
+
+// What of all hands' paths an instance has: grip_surface came with 1.1, palm_ext is XR_EXT_palm_pose's name for it.
+struct Vocabulary {
+    bool has_grip_surface = false;
+    bool has_palm_ext = false;
 };
 
 // In the order in which the simulated controllers like to play them; those that they cannot play come last.
 std::span<const Profile> allProfiles();
 // Null if the core has no such profile.
 const Profile* findProfile(std::string_view path);
+// Of controllers held in the hands, by what follows /interaction_profiles/; null if there is none.
+const Profile* findHandProfile(std::string_view name);
+// All of these names, for messages.
+std::string handProfiles();
 // Whether "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
-bool allowsBinding(const Profile& profile, std::string_view binding);
-bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component);
+bool allowsBinding(const Profile& profile, std::string_view binding, const Vocabulary& words);
+bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component, const Vocabulary& words);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill.
 bool isUserPath(std::string_view path);

@@ -98,6 +98,7 @@ State Script::at(double time_s) const {
     state.should_render = should_render.at(time_s);
     state.visible = visible.at(time_s);
     state.focused = focused.at(time_s);
+    state.present = present.at(time_s);
     return state;
 }
 
@@ -110,6 +111,12 @@ std::vector<ScriptEvent> Script::eventsIn(double from_s, double to_s) const {
 }
 
 Pose Script::stageFromLocal() const { return levelled(stage_from_head.at(0.0)); }
+
+Pose Script::stageFromLocalFloor() const {
+    Pose floor = stageFromLocal();
+    floor.position.y = 0.0;
+    return floor;
+}
 
 std::optional<InputPath> parseInputPath(std::string_view path) {
     for (const Side side : kSides) {

@@ -61,6 +61,7 @@ struct State {
     bool should_render = true;
     bool visible = true;  // else the session is at most SYNCHRONIZED
     bool focused = true;  // else the session is at most VISIBLE
+    bool present = true;  // whether somebody wears the headset
 };
 
 // What happens once, when the display time first reaches `time_s`.
@@ -102,6 +103,8 @@ public:
     [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
     // LOCAL's origin is the head at time 0, without tilt. STAGE's is on the floor.
     [[nodiscard]] Pose stageFromLocal() const;
+    // LOCAL's, brought down to the floor.
+    [[nodiscard]] Pose stageFromLocalFloor() const;
 
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
@@ -114,6 +117,7 @@ public:
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;
+    std::string profile;  // "valve/index_controller": the controllers to play; none: whatever the program knows
 
     struct Hand {
         Track<Pose> stage_from_grip;
@@ -126,11 +130,12 @@ public:
             bool touch_only;
         };
         std::vector<Press> presses;
+        std::map<std::string, std::string> input_places;  // each input that moves, and the line that names it first
     };
     Track<Pose> stage_from_head;
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
-    Steps<bool> should_render{true}, visible{true}, focused{true};
+    Steps<bool> should_render{true}, visible{true}, focused{true}, present{true};
     std::vector<ScriptEvent> events;  // by time
 };
 

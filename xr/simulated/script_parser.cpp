@@ -1,11 +1,16 @@
 // From a script's text to the script: one function per command.
+#include "xr/simulated/extensions.h"
+#include "xr/simulated/profiles.h"
 #include "xr/simulated/script.h"
 #include "xr/simulated/script_files.h"
 #include "xr/simulated/script_inputs.h"
+#include "xr/simulated/script_profile.h"
 #include "xr/simulated/script_words.h"
 
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include <cmath>
 #include <map>
 
 namespace simulated {
@@ -13,6 +18,11 @@ namespace simulated {
 namespace {
 
 namespace fs = std::filesystem;
+
+// To the left about the vertical, then upwards.
+glm::dquat turned(double yaw_rad, double pitch_rad) {
+    return glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0));
+}
 
 class Parser {
 public:
@@ -29,6 +39,7 @@ public:
             words.requireEnd();
         }
         finishPoses();
+        if (!script_.profile.empty()) { checkInputs(script_, *findHandProfile(script_.profile)); }
         return std::move(script_);
     }
 
@@ -48,6 +59,7 @@ private:
                                                                            {"headset", &Parser::parseHeadsetLine},
                                                                            {"ipd", &Parser::parseIpd},
                                                                            {"press", &Parser::parsePress},
+                                                                           {"profile", &Parser::parseProfile},
                                                                            {"rate", &Parser::parseRate},
                                                                            {"size", &Parser::parseSize},
                                                                            {"touch", &Parser::parseTouch},
@@ -110,7 +122,7 @@ private:
         for (const Side side : kSides) { script_.fovs[side].setInitial(headset.fovs[side]); }
     }
 
-    // [position x y z] [rotation x y z w | turn YAW PITCH]; what is left out stays as it was.
+    // [position x y z] [rotation x y z w | turn YAW PITCH | look x y z]; what is left out stays as it was.
     Pose parsePose(Words& words, Pose pose) {
         bool is_given = false;
         if (words.takeIf("position")) {
@@ -123,11 +135,20 @@ private:
         } else if (words.takeIf("turn")) {
             const double yaw = words.number("the turn to the left in degrees", -3600.0, 3600.0);
             const double pitch = words.number("the turn upwards in degrees", -3600.0, 3600.0);
-            pose.orientation =
-                glm::angleAxis(glm::radians(yaw), glm::dvec3(0, 1, 0)) * glm::angleAxis(glm::radians(pitch), glm::dvec3(1, 0, 0));
+            pose.orientation = turned(glm::radians(yaw), glm::radians(pitch));
+            is_given = true;
+        } else if (words.takeIf("look")) {
+            const glm::dvec3 way = words.position() - pose.position;
+            if (glm::length(way) < 1e-6) { words.fail("the point to look at is where it looks from, must be another"); }
+            // Straight up and down have no heading: as if ahead.
+            const double level = std::hypot(way.x, way.z);
+            const double yaw = level < 1e-9 ? 0.0 : std::atan2(-way.x, -way.z);
+            pose.orientation = turned(yaw, std::atan2(way.y, level));
             is_given = true;
         }
-        if (!is_given) { words.fail("the pose is missing, must be position X Y Z, rotation X Y Z W or turn YAW PITCH, or both"); }
+        if (!is_given) {
+            words.fail("the pose is missing, must be position X Y Z, or rotation X Y Z W, turn YAW PITCH or look X Y Z, or both");
+        }
         return pose;
     }
 
@@ -171,30 +192,31 @@ private:
         script_.hands[side].grip_from_aim = parsePose(words, {});
     }
 
-    std::string inputName(Words& words) {
+    std::string inputName(Words& words, Script::Hand& hand) {
         const std::string name = words.text("the input");
         if (!kindOfInput(name)) {
             std::string known;
             for (const auto& [one, kind] : kInputs) { known += (known.empty() ? "" : ", ") + std::string(one); }
             words.fail("{} is not an input, must be one of: {}", shown(name), known);
         }
+        hand.input_places.try_emplace(name, words.place());
         return name;
     }
 
     void addPress(Words& words, bool touch_only) {
-        const Side side = words.side();
-        std::string input = inputName(words);
+        Script::Hand& hand = script_.hands[words.side()];
+        std::string input = inputName(words, hand);
         const double from_s = words.time("the time from which on");
         const double to_s = words.time("the time until which");
         if (from_s >= to_s) { words.fail("it lasts from {} to {}, must end after it begins", from_s, to_s); }
-        script_.hands[side].presses.push_back({std::move(input), from_s, to_s, touch_only});
+        hand.presses.push_back({std::move(input), from_s, to_s, touch_only});
     }
     void parsePress(Words& words) { addPress(words, false); }
     void parseTouch(Words& words) { addPress(words, true); }
 
     void parseAxis(Words& words) {
         Script::Hand& hand = script_.hands[words.side()];
-        const std::string input = inputName(words);
+        const std::string input = inputName(words, hand);
         const InputKind kind = *kindOfInput(input);
         if (kind == InputKind::kButton) { words.fail("{} has no axis, must be trigger, squeeze, thumbstick or trackpad", input); }
         const double time_s = words.time();
@@ -222,7 +244,7 @@ private:
         last_at_s_ = time_s;
         const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
         switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                              "eye", "controller"})) {
+                                              "eye", "controller", "present"})) {
             case 0:
                 return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
             case 1:
@@ -243,18 +265,33 @@ private:
                 (void)words.choice("what changes", {"angles"});
                 return addStep(words, script_.fovs[side], time_s, words.angles());
             }
-            default: {
+            case 8: {
                 const Side side = words.side();
                 return addStep(words, script_.hands[side].tracked, time_s, words.onOff("whether it is tracked"));
             }
+            default:
+                return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
         }
     }
 
     void parseExtension(Words& words) {
         const std::string name = words.text("the extension's name");
-        if (!name.starts_with("XR_")) { words.fail("the extension's name is {}, must begin with XR_", shown(name)); }
+        if (!isExtension(name)) {
+            std::string known;
+            for (const Extension& extension : kExtensions) { known += (known.empty() ? "" : ", ") + std::string(extension.name); }
+            words.fail("{} is no extension of this runtime, must be one of: {}", shown(name), known);
+        }
         (void)words.choice("what to do with it", {"off"});
         if (!script_.extensions_off.insert(name).second) { words.fail("{} is off already, must be named once", shown(name)); }
+    }
+
+    void parseProfile(Words& words) {
+        requireFirst(words, "profile");
+        const std::string name = words.text("the controllers' profile");
+        if (findHandProfile(name) == nullptr) {
+            words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), handProfiles());
+        }
+        script_.profile = name;
     }
 
     void parseMask(Words& words) {

@@ -14,9 +14,10 @@ XrSessionState targetOf(const Session& session, const State& wanted) {
     return wanted.focused ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_VISIBLE;
 }
 
-// Graphics bindings of the two extensions are the same structure with the same type.
-const XrGraphicsBindingVulkan2KHR& checkedBinding(const Instance& instance, const XrSessionCreateInfo& info) {
+// Graphics bindings of the two extensions are the same structure with the same type. None: the session is headless.
+const XrGraphicsBindingVulkan2KHR* checkedBinding(const Instance& instance, const XrSessionCreateInfo& info) {
     const XrBaseInStructure* const found = findInChain(info.next, XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR);
+    if (found == nullptr && instance.extensions.contains(XR_MND_HEADLESS_EXTENSION_NAME)) return nullptr;
     const bool is_enabled = instance.extensions.contains(XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME) ||
                             instance.extensions.contains(XR_KHR_VULKAN_ENABLE_EXTENSION_NAME);
     require(found != nullptr && is_enabled, XR_ERROR_GRAPHICS_DEVICE_INVALID, "no graphics binding of an enabled extension in the chain");
@@ -29,7 +30,7 @@ const XrGraphicsBindingVulkan2KHR& checkedBinding(const Instance& instance, cons
             XR_ERROR_GRAPHICS_DEVICE_INVALID, "a Vulkan handle is null");
     require(instance.graphics_device == binding.physicalDevice, XR_ERROR_GRAPHICS_DEVICE_INVALID,
             "not the device that xrGetVulkanGraphicsDevice(2)KHR gave");
-    return binding;
+    return &binding;
 }
 
 GraphicsBinding graphicsOf(const Instance& instance, const XrGraphicsBindingVulkan2KHR& binding) {
@@ -44,13 +45,17 @@ GraphicsBinding graphicsOf(const Instance& instance, const XrGraphicsBindingVulk
 
 }  // namespace
 
-Session::Session(Instance& owner, const GraphicsBinding& binding) : instance(owner), device(binding) { instance.session = this; }
+Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(owner), device(std::move(graphics)) {
+    instance.session = this;
+}
 
 Session::~Session() {
     wakeFrameWaiters();
     instance.session = nullptr;
     instance.events.forget(handleOf(*this));
 }
+
+State Session::at(XrTime time) const { return instance.simulation->at(time); }
 
 void Session::enter(XrSessionState next) {
     state = next;
@@ -70,6 +75,24 @@ void Session::step(const State& wanted) {
         enter(static_cast<XrSessionState>(state - 1));
     else if (target > state)
         enter(static_cast<XrSessionState>(state + 1));
+}
+
+void Session::settle() {
+    const Simulation& simulation = *instance.simulation;
+    const State wanted = simulation.at(simulation.clock.now());
+    for (XrSessionState before = XR_SESSION_STATE_UNKNOWN; before != state;) {
+        before = state;
+        step(wanted);
+    }
+}
+
+void Session::passHeadlessFrame() {
+    Clock& clock = instance.simulation->clock;
+    if (!clock.isReal()) clock.nextFrame();
+    meetEvents(clock.now());
+    announcePresence(instance.simulation->at(clock.now()));
+    settle();
+    log_events.clear();  // nobody logs
 }
 
 void Session::meetEvents(XrTime display_time) {
@@ -101,6 +124,13 @@ void Session::meetEvents(XrTime display_time) {
         }
     }
     simulation.events_until_s = time_s;
+}
+
+void Session::announcePresence(const State& now) {
+    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == now.present) return;
+    announced_presence = now.present;
+    instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, handleOf(*this),
+                                                           static_cast<XrBool32>(now.present)});
 }
 
 void Session::announceMasks(const State& now) {
@@ -135,9 +165,10 @@ XrResult xrCreateSession(XrInstance instance, const XrSessionCreateInfo* createI
         XrSession& output = checkedOutput(session);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no session creation flags are known");
         checkSystem(info.systemId);
-        const XrGraphicsBindingVulkan2KHR& binding = checkedBinding(owner, info);
+        const XrGraphicsBindingVulkan2KHR* const binding = checkedBinding(owner, info);
         require(owner.session == nullptr, XR_ERROR_LIMIT_REACHED, "one session at a time");
-        Session& created = adopt(owner, std::make_unique<Session>(owner, graphicsOf(owner, binding)));
+        auto device = binding == nullptr ? nullptr : std::make_unique<Device>(graphicsOf(owner, *binding));
+        Session& created = adopt(owner, std::make_unique<Session>(owner, std::move(device)));
         created.enter(XR_SESSION_STATE_IDLE);
         created.enter(XR_SESSION_STATE_READY);
         output = handleOf(created);
@@ -156,11 +187,14 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
     return answer(__func__, [&] {
         Session& begun = getSession(session);
         const XrSessionBeginInfo& info = checked(beginInfo, XR_TYPE_SESSION_BEGIN_INFO);
-        checkViewConfiguration(info.primaryViewConfigurationType);
+        checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
         require(!begun.is_running, XR_ERROR_SESSION_RUNNING, "the session runs already");
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not READY");
         begun.is_running = true;
         begun.frames = {};
+        begun.announced_presence.reset();
+        begun.announcePresence(begun.instance.simulation->at(begun.instance.simulation->clock.now()));
+        if (begun.isHeadless()) begun.settle();
         return successOf(begun);
     });
 }
@@ -185,6 +219,7 @@ XrResult xrRequestExitSession(XrSession session) {
         Session& leaving = getSession(session);
         require(leaving.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
         leaving.wants_exit = true;
+        if (leaving.isHeadless()) leaving.settle();
         return successOf(leaving);
     });
 }

@@ -25,7 +25,8 @@ struct Session : Object {
     using Handle = XrSession;
 
     Instance& instance;
-    Device device;
+    // None of a headless session (XR_MND_headless).
+    std::unique_ptr<Device> device;
     XrSessionState state = XR_SESSION_STATE_UNKNOWN;
     bool is_running = false;
     bool wants_exit = false;
@@ -37,15 +38,26 @@ struct Session : Object {
     // The eyes' angles as of the frame before: a mask changes with them.
     std::optional<std::array<Fov, kEyes>> masked;
     std::vector<std::string> log_events;
+    Labels labels;
+    // What the application was told last of the wearer (XR_EXT_user_presence).
+    std::optional<bool> announced_presence;
 
-    Session(Instance& owner, const GraphicsBinding& binding);
+    Session(Instance& owner, std::unique_ptr<Device> graphics);
     ~Session() override;
 
+    // The script's state at a time.
+    [[nodiscard]] State at(XrTime time) const;
     void enter(XrSessionState next);
     // After an xrEndFrame whose frame shows the headset in this state.
     void step(const State& wanted);
+    // A headless session has no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time.
+    [[nodiscard]] bool isHeadless() const { return device == nullptr; }
+    void settle();
+    void passHeadlessFrame();
     // What the script lets happen once, up to this display time.
     void meetEvents(XrTime display_time);
+    // Tells whether somebody wears the headset, if that is new.
+    void announcePresence(const State& now);
     // Tells of visibility masks that are others than in the frame before.
     void announceMasks(const State& now);
 };

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "xr/simulated/profiles.h"
+#include "xr/simulated/script_profile.h"
 
 namespace simulated {
 namespace {
@@ -31,17 +32,15 @@ std::optional<Output> makeOutput() {
     return Output{folder, FrameLog(std::filesystem::path(folder) / "frames.jsonl")};
 }
 
-// "valve/index_controller".
-std::string favouriteProfile() {
-    const char* const name = environment("BINOSPLAT_SIMULATED_PROFILE");
-    if (name == nullptr) return {};
-    std::string path("/interaction_profiles/");
-    path.append(name);
-    if (findProfile(path) == nullptr) {
-        throw std::runtime_error(std::string("BINOSPLAT_SIMULATED_PROFILE is '").append(name) +
-                                 "', must be one of the core, such as oculus/touch_controller");
-    }
-    return path;
+// The environment's word counts before the script's.
+std::string favouriteProfile(const Script& script) {
+    const char* const wanted = environment("BINOSPLAT_SIMULATED_PROFILE");
+    const std::string name = wanted == nullptr ? script.profile : wanted;
+    if (name.empty()) return {};
+    const Profile* const profile = findHandProfile(name);
+    if (profile == nullptr) throw std::runtime_error("BINOSPLAT_SIMULATED_PROFILE is '" + name + "', must be one of: " + handProfiles());
+    checkInputs(script, *profile);
+    return std::string(profile->path);
 }
 
 std::unique_ptr<Simulation>& survivor() {
@@ -77,7 +76,9 @@ std::unique_ptr<Simulation> Simulation::begin() {
     }
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
-    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), favouriteProfile()});
+    std::string profile = favouriteProfile(script);
+    const double rate_hz = script.rate_hz;
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile), rate_hz});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

@@ -30,6 +30,8 @@ struct Simulation {
     std::optional<Output> output;
     // The interaction profile that the controllers play if the application knows it.
     std::string favourite_profile;
+    // The display's, which the application may change.
+    double rate_hz = 90;
     std::uint64_t frames_shown = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.

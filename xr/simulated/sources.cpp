@@ -47,10 +47,8 @@ void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_
     }
 }
 
-// A session that does not run has nothing to say about focus; what it sends is dropped all the same.
-XrResult successOfHaptic(const Session& session) {
-    return session.is_running && session.state != XR_SESSION_STATE_FOCUSED ? XR_SESSION_NOT_FOCUSED : XR_SUCCESS;
-}
+// Also before the session begins: what is sent then is dropped.
+XrResult successOfHaptic(const Session& session) { return session.state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED; }
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "xr/simulated/spaces.h"
 
+#include <algorithm>
+
 #include "xr/simulated/actions.h"
 #include "xr/simulated/api.h"
 #include "xr/simulated/session.h"
@@ -15,22 +17,39 @@ constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_B
 // A millisecond to either side: short against any motion, long against rounding.
 constexpr XrDuration kDifference = 1'000'000;
 
-void checkReferenceType(XrReferenceSpaceType type) {
-    const bool is_known =
-        type == XR_REFERENCE_SPACE_TYPE_VIEW || type == XR_REFERENCE_SPACE_TYPE_LOCAL || type == XR_REFERENCE_SPACE_TYPE_STAGE;
-    require(is_known, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+std::vector<XrReferenceSpaceType> referenceSpacesOf(const Instance& instance) {
+    std::vector<XrReferenceSpaceType> types{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE};
+    if (instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+    return types;
+}
+
+bool isKnown(const Instance& instance, XrReferenceSpaceType type) {
+    const std::vector<XrReferenceSpaceType> types = referenceSpacesOf(instance);
+    return std::find(types.begin(), types.end(), type) != types.end();
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
-    const State state = space.session.instance.simulation->at(time);
+    const State state = space.session.at(time);
     const std::optional<Pose> stage_from_space = stageFromSpace(space, state), stage_from_base = stageFromSpace(base, state);
     if (!stage_from_space || !stage_from_base) return std::nullopt;
     return compose(inverse(*stage_from_base), *stage_from_space);
 }
 
+struct Location {
+    XrSpaceLocationFlags flags = 0;
+    XrPosef pose = toXr(Pose{});
+};
+
+Location locate(const Space& space, const Space& base, XrTime time) {
+    const std::optional<Pose> pose = baseFromSpace(space, base, time);
+    return pose ? Location{kPoseKnown, toXr(*pose)} : Location{};
+}
+
 // Motion of the space's origin, in the base's axes.
-void differentiate(const Space& space, const Space& base, XrTime time, XrSpaceVelocity& velocity) {
-    velocity = {velocity.type, velocity.next, 0, {}, {}};
+template <class Velocity>
+void differentiate(const Space& space, const Space& base, XrTime time, Velocity& velocity) {
+    velocity.velocityFlags = 0;
+    velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
     const std::optional<Pose> before = baseFromSpace(space, base, time - kDifference),
                               after = baseFromSpace(space, base, time + kDifference);
     if (!before || !after) return;
@@ -61,6 +80,9 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
         if (!stage_from_source) return std::nullopt;
         return compose(*stage_from_source, space.origin_from_space);
     }
+    // No case of its own: older headers' enumeration lacks it.
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR)
+        return compose(space.session.instance.simulation->script.stageFromLocalFloor(), space.origin_from_space);
     switch (*space.reference) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return compose(state.stage_from_head, space.origin_from_space);
@@ -71,8 +93,37 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
     }
 }
 
+namespace {
+
+// Of 1.1's xrLocateSpaces and its elder.
+XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
+    const Session& owner = getSession(session);
+    const XrSpacesLocateInfo& info = checked(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
+    XrSpaceLocations& output = checked(space_locations, XR_TYPE_SPACE_LOCATIONS);
+    require(info.spaceCount > 0 && info.spaces != nullptr, XR_ERROR_VALIDATION_FAILURE, "no spaces");
+    require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE,
+            "not a location for each space");
+    const XrBaseInStructure* const chained = findInChain(output.next, XR_TYPE_SPACE_VELOCITIES);
+    auto* const velocities = const_cast<XrSpaceVelocities*>(reinterpret_cast<const XrSpaceVelocities*>(chained));
+    require(velocities == nullptr || (velocities->velocityCount == info.spaceCount && velocities->velocities != nullptr),
+            XR_ERROR_VALIDATION_FAILURE, "not a velocity for each space");
+    const Space& base = getSpace(owner, info.baseSpace);
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) getSpace(owner, info.spaces[i]);
+    checkTime(info.time);
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) {
+        const Space& space = getSpace(owner, info.spaces[i]);
+        const auto [flags, pose] = locate(space, base, info.time);
+        output.locations[i] = {flags, pose};
+        if (velocities != nullptr) differentiate(space, base, info.time, velocities->velocities[i]);
+    }
+    return successOf(owner);
+}
+
+}  // namespace
+
 const char* nameOf(const Space& space) {
     if (!space.reference) return "action";
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) return "LOCAL_FLOOR";
     switch (*space.reference) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return "VIEW";
@@ -87,8 +138,7 @@ XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInp
                                     XrReferenceSpaceType* spaces) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        fillArray(spaceCapacityInput, spaceCountOutput, spaces,
-                  {XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE});
+        fillArray(spaceCapacityInput, spaceCountOutput, spaces, referenceSpacesOf(owner.instance));
         return successOf(owner);
     });
 }
@@ -98,7 +148,7 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         Session& owner = getSession(session);
         const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
-        checkReferenceType(info.referenceSpaceType);
+        require(isKnown(owner.instance, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -131,7 +181,8 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
 XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkReferenceType(referenceSpaceType);
+        // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
+        require(isKnown(owner.instance, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
         checkedOutput(bounds) = {0, 0};
         if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
         *bounds = {3, 2};
@@ -146,17 +197,22 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         const Space& base = getSpace(located.session, baseSpace);
         XrSpaceLocation& output = checked(location, XR_TYPE_SPACE_LOCATION);
         checkTime(time);
-        output.locationFlags = 0;
-        output.pose = toXr(Pose{});
-        if (const std::optional<Pose> pose = baseFromSpace(located, base, time)) {
-            output.locationFlags = kPoseKnown;
-            output.pose = toXr(*pose);
-        }
+        const auto [flags, pose] = locate(located, base, time);
+        output.locationFlags = flags;
+        output.pose = pose;
         const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
         if (velocity != nullptr)
             differentiate(located, base, time, *const_cast<XrSpaceVelocity*>(reinterpret_cast<const XrSpaceVelocity*>(velocity)));
         return successOf(located.session);
     });
+}
+
+XrResult xrLocateSpaces(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
+    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
+}
+
+XrResult xrLocateSpacesKHR(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
+    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
 }
 
 XrResult xrDestroySpace(XrSpace space) {

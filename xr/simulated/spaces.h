@@ -30,7 +30,7 @@ Space& getSpace(const Session& session, XrSpace space);
 
 // None while the controller behind it is inactive or not tracked.
 std::optional<Pose> stageFromSpace(const Space& space, const State& state);
-// "VIEW", "LOCAL", "STAGE", "action".
+// "VIEW", "LOCAL", "LOCAL_FLOOR", "STAGE", "action".
 const char* nameOf(const Space& space);
 
 // XR_ERROR_TIME_INVALID.

@@ -35,7 +35,7 @@ VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
 }
 
 const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted) {
-    const auto& formats = session.device.formats();
+    const auto& formats = session.device->formats();
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) { return format.format == wanted; });
     require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "a format that was not enumerated");
     return *found;
@@ -55,11 +55,17 @@ ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info
             "larger than maxSwapchainImageWidth and Height");
     require(info.mipCount <= std::bit_width(std::max(info.width, info.height)), XR_ERROR_VALIDATION_FAILURE, "more mips than the size has");
     require(info.faceCount == 1 || info.faceCount == 6, XR_ERROR_VALIDATION_FAILURE, "one face, or six");
-    require(info.faceCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "no cube maps");
+    const bool is_cube = info.faceCount == 6;
+    require(!is_cube || session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME), XR_ERROR_FEATURE_UNSUPPORTED,
+            "cube maps are of XR_KHR_composition_layer_cube");
+    require(!is_cube || (info.width == info.height && is_colour), XR_ERROR_VALIDATION_FAILURE, "a cube map's faces are coloured squares");
+    require(info.arraySize <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "too many array layers");
     require(info.sampleCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "more samples than maxSwapchainSampleCount");
-    const ImageInfo image{format,        {info.width, info.height},        info.arraySize,
-                          info.mipCount, usageOf(info.usageFlags, format), flagsOf(info.usageFlags)};
-    session.device.checkImage(image);
+    const VkImageCreateFlags flags = flagsOf(info.usageFlags) | (is_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0);
+    const ImageInfo image{format,        {info.width, info.height},        info.arraySize * info.faceCount,
+                          info.mipCount, usageOf(info.usageFlags, format), flags,
+                          info.faceCount};
+    session.device->checkImage(image);
     return image;
 }
 
@@ -74,7 +80,7 @@ Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
 void fetchTexels(Swapchain& swapchain) {
     // Depth is looked at by nobody here.
     if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) return;
-    swapchain.released_texels = swapchain.session.device.read(*swapchain.images[swapchain.released_index]);
+    swapchain.released_texels = swapchain.session.device->read(*swapchain.images[swapchain.released_index]);
     swapchain.has_texels = true;
 }
 
@@ -82,7 +88,9 @@ XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityI
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
         std::vector<int64_t> values;
-        for (const SwapchainFormat& format : owner.device.formats()) values.push_back(format.format);
+        if (!owner.isHeadless()) {
+            for (const SwapchainFormat& format : owner.device->formats()) values.push_back(format.format);
+        }
         fillArray(formatCapacityInput, formatCountOutput, formats, values);
         return successOf(owner);
     });
@@ -93,11 +101,12 @@ XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* creat
         Session& owner = getSession(session);
         const XrSwapchainCreateInfo& info = checked(createInfo, XR_TYPE_SWAPCHAIN_CREATE_INFO);
         XrSwapchain& output = checkedOutput(swapchain);
+        require(!owner.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no swapchains");
         auto created = std::make_unique<Swapchain>(owner);
         created->info = checkedImage(owner, info);
         created->is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
         created->is_prepared.resize(created->is_static ? 1 : kImages);
-        for (std::size_t i = 0; i < created->is_prepared.size(); ++i) created->images.push_back(owner.device.createImage(created->info));
+        for (std::size_t i = 0; i < created->is_prepared.size(); ++i) created->images.push_back(owner.device->createImage(created->info));
         output = handleOf(adopt(owner, std::move(created)));
         return successOf(owner);
     });
@@ -134,7 +143,7 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         const auto next = static_cast<std::uint32_t>(owner.acquisitions % owner.images.size());
         // The image on show is given away again: the application holds all others.
         if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);
-        if (!owner.is_prepared[next]) owner.session.device.prepare(*owner.images[next]);
+        if (!owner.is_prepared[next]) owner.session.device->prepare(*owner.images[next]);
         owner.is_prepared[next] = true;
         ++owner.acquisitions;
         owner.acquired.push_back(next);

@@ -11,11 +11,22 @@ namespace {
 // Three images of this size fit on small devices; a script may recommend larger ones.
 constexpr std::uint32_t kMostViewPixels = 4096;
 
+// An extension's structure to fill, if it is there and the extension is enabled.
+template <class Structure>
+Structure* chained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
+    if (!instance.extensions.contains(extension)) return nullptr;
+    return reinterpret_cast<Structure*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
+}
+
 }  // namespace
 
 void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
 
-void checkViewConfiguration(XrViewConfigurationType type) {
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
+    // Values of extensions that this runtime does not have are no view configurations at all.
+    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
+                          (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET && instance.is_1_1);
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
     require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
 }
 
@@ -24,8 +35,6 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
         getInstance(instance);
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
-        const bool is_known = info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY || info.formFactor == XR_FORM_FACTOR_HANDHELD_DISPLAY;
-        require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such form factor");
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
         output = kSystemId;
         return XR_SUCCESS;
@@ -42,6 +51,12 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         copyText(output.systemName, owner.simulation->script.system_name);
         output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
         output.trackingProperties = {XR_TRUE, XR_TRUE};
+        if (auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
+                                                                     XR_EXT_HAND_TRACKING_EXTENSION_NAME))
+            hands->supportsHandTracking = XR_TRUE;
+        if (auto* presence = chained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
+                                                                        XR_EXT_USER_PRESENCE_EXTENSION_NAME))
+            presence->supportsUserPresence = XR_TRUE;
         return XR_SUCCESS;
     });
 }
@@ -59,9 +74,9 @@ XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId,
 XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
                                           XrViewConfigurationProperties* configurationProperties) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
         output.viewConfigurationType = viewConfigurationType;
         // Scripts change the angles in mid-run.
@@ -75,7 +90,7 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return XR_SUCCESS;
         for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW);
         const glm::uvec2 size_px = owner.simulation->script.size_px;
@@ -95,9 +110,9 @@ XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId system
                                           uint32_t environmentBlendModeCapacityInput, uint32_t* environmentBlendModeCountOutput,
                                           XrEnvironmentBlendMode* environmentBlendModes) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner, viewConfigurationType);
         return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes,
                          {XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
     });

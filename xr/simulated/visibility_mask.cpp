@@ -25,7 +25,7 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
                                 XrVisibilityMaskTypeKHR visibilityMaskType, XrVisibilityMaskKHR* visibilityMask) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkViewConfiguration(viewConfigurationType);
+        checkViewConfiguration(owner.instance, viewConfigurationType);
         require(viewIndex < kEyes, XR_ERROR_VALIDATION_FAILURE, "no such view");
         XrVisibilityMaskKHR& output = checked(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
         const Simulation& simulation = *owner.instance.simulation;
@@ -33,7 +33,7 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
         if (!simulation.script.visibility_mask) mesh = {};
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
-        if (output.vertexCapacityInput == 0 && output.indexCapacityInput == 0) return successOf(owner);
+        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) return successOf(owner);
         const bool has_room = output.vertexCapacityInput >= mesh.vertices.size() && output.indexCapacityInput >= mesh.indices.size();
         require(has_room, XR_ERROR_SIZE_INSUFFICIENT, "an array is too small");
         require(output.vertices != nullptr && output.indices != nullptr, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
