@@ -46,6 +46,8 @@ struct Session : Object {
     void step(const State& wanted);
     // What the script lets happen once, up to this display time.
     void meetEvents(XrTime display_time);
+    // Time passes while nobody wears the headset: a period with every look for events that finds none.
+    void idle();
     // Tells of visibility masks that are others than in the frame before.
     void announceMasks(const State& now);
 };

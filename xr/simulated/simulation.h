@@ -31,6 +31,7 @@ struct Simulation {
     // The interaction profile that the controllers play if the application knows it.
     std::string favourite_profile;
     std::uint64_t frames_shown = 0;
+    std::uint32_t calls_without_headset = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
     bool survives = false;

@@ -15,10 +15,20 @@ constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_B
 // A millisecond to either side: short against any motion, long against rounding.
 constexpr XrDuration kDifference = 1'000'000;
 
-void checkReferenceType(XrReferenceSpaceType type) {
-    const bool is_known =
-        type == XR_REFERENCE_SPACE_TYPE_VIEW || type == XR_REFERENCE_SPACE_TYPE_LOCAL || type == XR_REFERENCE_SPACE_TYPE_STAGE;
+bool hasStage(const Session& session) { return session.instance.simulation->script.has_stage; }
+
+void checkReferenceType(const Session& session, XrReferenceSpaceType type) {
+    const bool is_known = type == XR_REFERENCE_SPACE_TYPE_VIEW || type == XR_REFERENCE_SPACE_TYPE_LOCAL ||
+                          (type == XR_REFERENCE_SPACE_TYPE_STAGE && hasStage(session));
     require(is_known, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+}
+
+// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one.
+XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
+    const auto follows_head = [](const Space& one) { return one.reference == XR_REFERENCE_SPACE_TYPE_VIEW; };
+    if (follows_head(space) == follows_head(base) || state.head_place_known) return kPoseKnown;
+    if (!state.head_turn_known) return 0;
+    return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
@@ -65,7 +75,7 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return compose(state.stage_from_head, space.origin_from_space);
         case XR_REFERENCE_SPACE_TYPE_LOCAL:
-            return compose(space.session.instance.simulation->script.stageFromLocal(), space.origin_from_space);
+            return compose(space.session.instance.simulation->script.stageFromLocal(state.time_s), space.origin_from_space);
         default:
             return space.origin_from_space;
     }
@@ -87,8 +97,9 @@ XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInp
                                     XrReferenceSpaceType* spaces) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        fillArray(spaceCapacityInput, spaceCountOutput, spaces,
-                  {XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE});
+        std::vector<XrReferenceSpaceType> offered{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL};
+        if (hasStage(owner)) offered.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
+        fillArray(spaceCapacityInput, spaceCountOutput, spaces, offered);
         return successOf(owner);
     });
 }
@@ -98,7 +109,7 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         Session& owner = getSession(session);
         const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
-        checkReferenceType(info.referenceSpaceType);
+        checkReferenceType(owner, info.referenceSpaceType);
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -131,7 +142,7 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
 XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkReferenceType(referenceSpaceType);
+        checkReferenceType(owner, referenceSpaceType);
         checkedOutput(bounds) = {0, 0};
         if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
         *bounds = {3, 2};
@@ -149,8 +160,8 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         output.locationFlags = 0;
         output.pose = toXr(Pose{});
         if (const std::optional<Pose> pose = baseFromSpace(located, base, time)) {
-            output.locationFlags = kPoseKnown;
-            output.pose = toXr(*pose);
+            output.locationFlags = kPoseKnown & locationFlagsOf(located, base, located.session.instance.simulation->at(time));
+            if (output.locationFlags != 0) output.pose = toXr(*pose);
         }
         const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
         if (velocity != nullptr)

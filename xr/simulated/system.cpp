@@ -21,12 +21,17 @@ void checkViewConfiguration(XrViewConfigurationType type) {
 
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
         const bool is_known = info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY || info.formFactor == XR_FORM_FACTOR_HANDHELD_DISPLAY;
         require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such form factor");
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        std::uint32_t& calls = owner.simulation->calls_without_headset;
+        if (calls < owner.simulation->script.calls_without_headset) {
+            ++calls;
+            throw Refusal{XR_ERROR_FORM_FACTOR_UNAVAILABLE, "the headset is not there yet"};
+        }
         output = kSystemId;
         return XR_SUCCESS;
     });
