@@ -19,11 +19,21 @@ EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Forma
     : presenter_(presenter), size_px_(size_px) {
     const std::array depth_formats{vk::Format::eD32Sfloat};
     const bool depth = session.instance().takesDepth() && xr::chooseFormat(session, depth_formats) == vk::Format::eD32Sfloat;
-    for (std::size_t e = 0; e < 2; ++e) {
-        const std::string eye = e == kLeft ? "the left eye" : "the right eye";
-        colour_[e] = xr::Swapchain(session, eye, size_px, format, xr::ImageUse::kCopy);
-        if (depth) { depth_[e] = xr::Swapchain(session, eye + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth); }
-    }
+    const auto nameOf = [](std::size_t e) -> std::string { return e == kLeft ? "the left eye" : "the right eye"; };
+    for (std::size_t e = 0; e < 2; ++e) { colour_[e] = xr::Swapchain(session, nameOf(e), size_px, format, xr::ImageUse::kCopy); }
+    if (!depth) { return; }
+    try {
+        for (std::size_t e = 0; e < 2; ++e) {
+            depth_[e] = xr::Swapchain(session, nameOf(e) + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth);
+        }
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error&) { dropDepth(); }  // offered, and not there: the picture does without
+}
+
+void EyeImages::dropDepth() {
+    depth_ = {};
+    shows_depth_ = {};
 }
 
 void EyeImages::acquire(int eye, bool with_depth) {

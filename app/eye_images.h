@@ -17,6 +17,8 @@ public:
     EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    // The runtime refuses depth after all: from now on there is none.
+    void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
 
     // Before anything is recorded: the images of a frame, with that of the eye's depth where it will have one and the runtime takes it.

@@ -71,6 +71,9 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : conte
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
         if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
     });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+        if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
+    });
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
     check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
@@ -120,8 +123,10 @@ WindowInput MirrorWindow::poll() {
     for (const int key : std::exchange(pressed_, {})) {
         input.toggle_panel ^= key == GLFW_KEY_TAB;
         input.reload_shaders |= key == GLFW_KEY_F5;
+        input.recentre |= key == GLFW_KEY_R;
         input.quit |= key == GLFW_KEY_ESCAPE;
     }
+    input.dropped = std::exchange(dropped_, {});
     input.quit |= glfwWindowShouldClose(window_) == GLFW_TRUE;
     input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
                   pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 struct GLFWwindow;
@@ -35,7 +36,9 @@ struct WindowInput {
     double turn_rate = 0.0;  // by keys, -1 to 1
     bool toggle_panel = false;
     bool reload_shaders = false;
+    bool recentre = false;
     bool quit = false;
+    std::string dropped;  // a file let fall on the window; empty: none
 };
 
 class MirrorWindow {
@@ -75,6 +78,7 @@ private:
     std::uint32_t index_ = 0;
     glm::dvec2 cursor_{0.0};
     std::vector<int> pressed_;  // GLFW's keys, since the last poll
+    std::string dropped_;       // likewise
 };
 
 }  // namespace binosplat

@@ -115,10 +115,9 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
     ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kLabelShare);
-    text(status.scene);
-    if (status.loading) {
-        ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f));
-    } else {
+    text(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene));
+    if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
+    if (status.has_scene) {
         drawMethod(settings);
         drawResolution(settings);
         actions.save = ImGui::Button("Save");
@@ -130,6 +129,8 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         actions.quit = ImGui::Button("Quit");
         ImGui::SameLine();
         actions.reload_shaders = ImGui::Button("Shaders");
+        ImGui::SameLine();
+        actions.recentre = ImGui::Button("Recentre");
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
         drawTimes(status);

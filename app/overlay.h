@@ -15,7 +15,9 @@ namespace binosplat {
 // What the panel shows.
 struct OverlayStatus {
     std::string scene;
-    std::optional<double> loading;       // share done, while the scene is on its way
+    std::string state;                   // why the headset shows nothing; empty: it does
+    bool has_scene = false;              // there is something to see
+    std::optional<double> loading;       // share done, while a scene is on its way
     const FrameResult* frame = nullptr;  // the last one; null before the first
     std::vector<float> frame_ms;         // from frame to frame by the clock on the wall, oldest first
     std::string message;                 // what came of the last button
@@ -23,7 +25,7 @@ struct OverlayStatus {
 
 // Buttons that were pressed.
 struct OverlayActions {
-    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false;
+    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false;
 };
 
 // Says the widgets of a whole canvas of `size_px`, between Canvas::begin and record. Changes `settings` as the wearer does.

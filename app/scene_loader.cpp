@@ -17,26 +17,30 @@ struct Cancelled {};
 }  // namespace
 
 SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options)
-    : thread_([this, &context, name = std::move(scene), run = std::move(options)] { load(context, name, run); }) {}
+    : scene_(std::move(scene)), thread_([this, &context, run = std::move(options)] { load(context, run); }) {}
 
 SceneLoader::~SceneLoader() {
     cancelled_ = true;
     if (thread_.joinable()) { thread_.join(); }
 }
 
-void SceneLoader::load(const Context& context, const std::string& name, const RunOptions& options) {
+void SceneLoader::load(const Context& context, const RunOptions& options) {
     try {
         LoadNotes notes;
-        Scene scene = loadScene(
-            name, 0, &notes, [this](double share) { progress_ = kReadingShare * share; },
-            levelChoice(options.load, options.memory_limit_mib));
+        // Readers may report from threads of their own, which must not throw.
+        const auto reading = [this, own = std::this_thread::get_id()](double share) {
+            if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
+            progress_ = kReadingShare * share;
+        };
+        Scene scene = loadScene(scene_, 0, &notes, reading, levelChoice(options.load, options.memory_limit_mib));
+        reading(1.0);
         drawAs(options.load, scene, notes);
         const Similarity start = startPlacement(options, scene);
-        // Readers may report from threads of their own, which must not throw; the upload reports from this one.
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         });
+        loaded_->name = scene_;
         loaded_->start = start;
         loaded_->notes = std::move(notes);
     } catch (const Cancelled&) {  // nobody waits

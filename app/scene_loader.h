@@ -17,13 +17,14 @@ namespace binosplat {
 struct LoadedScene {
     LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
         : gpu_scene(context, scene, progress), frame(context, gpu_scene) {}
+    std::string name;
     GpuScene gpu_scene;
     StereoFrame frame;
     Similarity start;  // see startPlacement
     LoadNotes notes;
 };
 
-// Loads on a thread of its own. Until the scene is taken nobody else may make Buffers: their count is not guarded.
+// Loads on a thread of its own.
 class SceneLoader {
 public:
     SceneLoader(const Context& context, std::string scene, RunOptions options);
@@ -32,6 +33,7 @@ public:
     // Gives up where it can, and waits for the rest.
     ~SceneLoader();
 
+    [[nodiscard]] const std::string& scene() const { return scene_; }
     // Share done, 0 to 1.
     [[nodiscard]] double progress() const { return progress_; }
     [[nodiscard]] bool isDone() const { return done_; }
@@ -39,8 +41,9 @@ public:
     [[nodiscard]] std::unique_ptr<LoadedScene> take();
 
 private:
-    void load(const Context& context, const std::string& scene, const RunOptions& options);
+    void load(const Context& context, const RunOptions& options);
 
+    std::string scene_;
     std::atomic<double> progress_ = 0.0;
     std::atomic<bool> done_ = false, cancelled_ = false;
     std::unique_ptr<LoadedScene> loaded_;

@@ -1,17 +1,44 @@
 // `binosplat view`: a scene in a headset.
 #include "app/commands.h"
 #include "app/device_options.h"
+#include "app/interrupt.h"
 #include "app/mirror_window.h"
 #include "app/simulate.h"
 #include "app/viewer.h"
 #include "engine/error.h"
 
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
 namespace binosplat {
 
-void runView(const ViewOptions& given) {
-    ViewOptions options = given;
-    if (options.simulate) { simulateHeadset(options); }
-    const xr::Instance instance;
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks(200);
+
+ViewSettings startSettings(const ViewOptions& options) {
+    ViewSettings settings;
+    settings.stereo = options.run.stereo;
+    settings = readViewSettings(options.tables, settings);
+    if (options.hide_panel) { settings.panel = false; }
+    const char* const mask = std::getenv("BINOSPLAT_VISIBILITY_MASK");
+    if (mask != nullptr && std::strcmp(mask, "0") == 0) { settings.visibility_mask = false; }
+    return settings;
+}
+
+// Until the headset is there, or until Ctrl-C.
+void waitForHeadset(const std::string& runtime, bool& said) {
+    if (!std::exchange(said, true)) {
+        fmt::print("{} has no headset yet: waiting for it (Ctrl-C ends)\n", runtime);
+        std::fflush(stdout);
+    }
+    stopIfInterrupted();
+    std::this_thread::sleep_for(kBetweenLooks);
+}
+
+void showScene(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance) {
     ContextOptions context_options = contextOptions(options.run);
     context_options.maker = instance.deviceMaker();
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
@@ -20,14 +47,30 @@ void runView(const ViewOptions& given) {
         context_options.device_extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     }
     const Context context(context_options);
-    {
-        xr::Session session(instance, context);
-        const glm::uvec2 size_px = instance.recommendedSizePx();
-        fmt::print("{}, {}x{} per eye, on {}\n", instance.description(), size_px.x, size_px.y, context.deviceName());
-        Viewer(options, session, windows != nullptr).run();
-    }
+    const glm::uvec2 size_px = instance.recommendedSizePx();
+    fmt::print("{}, {}x{} per eye, on {}\n", instance.description(), size_px.x, size_px.y, context.deviceName());
+    Viewer(options, settings, instance, context, windows != nullptr).run();
     if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
     context.requireNoValidationMessages();
+}
+
+}  // namespace
+
+void runView(const ViewOptions& given) {
+    ViewOptions options = given;
+    if (options.simulate) { simulateHeadset(options); }
+    const ViewSettings settings = startSettings(options);
+    xr::InstanceOptions instance_options;
+    instance_options.visibility_mask = settings.visibility_mask;
+    instance_options.wait_for_headset = [said = false](const std::string& runtime) mutable { waitForHeadset(runtime, said); };
+    std::unique_ptr<xr::Instance> instance;
+    try {
+        instance = std::make_unique<xr::Instance>(instance_options);
+    } catch (const Interrupted&) {
+        fmt::print("0 frames; stopped before there was a headset\n");
+        return;
+    }
+    showScene(options, settings, *instance);
 }
 
 }  // namespace binosplat

@@ -42,7 +42,8 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
 std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& settings) {
     return {{"resolution-scale", fmt::format("{}", settings.resolution_scale)},
             {"tint", settings.tint ? "true" : "false"},
-            {"panel", settings.panel ? "true" : "false"}};
+            {"panel", settings.panel ? "true" : "false"},
+            {"visibility-mask", settings.visibility_mask ? "true" : "false"}};
 }
 
 }  // namespace
@@ -58,6 +59,8 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 settings.tint = readFlag(setting);
             } else if (key == "panel") {
                 settings.panel = readFlag(setting);
+            } else if (key == "visibility-mask") {
+                settings.visibility_mask = readFlag(setting);
             } else if (key == "scene-position") {
                 placement.position = readVector(setting);
                 ++placed;

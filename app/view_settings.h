@@ -15,11 +15,12 @@ struct ViewSettings {
     double resolution_scale = 1.0;  // of what the headset recommends, each way
     bool tint = false;              // show what made the affiliated picture
     bool panel = true;
+    bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 };
 
-// The config's [view] over `settings`: keys resolution-scale, tint, panel, scene-position, scene-orientation (w, x, y, z), units-per-metre.
-// Throws Error with file and line.
+// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, scene-position, scene-orientation (w, x, y, z),
+// units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
 // A config that --config takes, also of `render`.

@@ -16,23 +16,15 @@ namespace {
 
 constexpr glm::uvec2 kCanvasPx(768, 896);
 constexpr double kPanelWidthMetres = 0.6;
-constexpr glm::uvec2 kRayPx(8, 8);
-constexpr glm::vec4 kRayColour(1.0f, 0.7f, 0.1f, 1.0f);
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr std::size_t kPlottedFrames = 120;
 // By keys of the window.
 constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
-// How often to look whether the session has begun to run.
-constexpr std::chrono::milliseconds kIdle(5);
-
-ViewSettings startSettings(const ViewOptions& options) {
-    ViewSettings settings;
-    settings.stereo = options.run.stereo;
-    settings = readViewSettings(options.tables, settings);
-    if (options.hide_panel) { settings.panel = false; }
-    return settings;
-}
+// How often to look whether the session has begun to run, and how often the window is drawn meanwhile.
+constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
+// So many sessions lost in a row before one has shown a frame are too many.
+constexpr int kMostLosses = 3;
 
 glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
     const glm::dvec2 wanted = glm::round(scale * glm::dvec2(instance.recommendedSizePx()));
@@ -41,70 +33,113 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, xr::Session& session, bool mirrored)
+Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance, const Context& context,
+               bool mirrored)
     : options_(options),
-      session_(session),
-      context_(session.context()),
-      input_(session),
-      format_(chooseEyeFormat(session)),
+      instance_(instance),
+      context_(context),
+      stay_(std::make_unique<HeadsetStay>(instance, context, kCanvasPx)),
+      format_(stay_->format),
       presenter_(context_, format_),
       canvas_(context_, kCanvasPx, format_),
-      panel_images_(session, "the panel", kCanvasPx, format_, xr::ImageUse::kDraw),
-      ray_image_(session, "the ray", kRayPx, format_, xr::ImageUse::kDraw),
       panel_(kCanvasPx, kPanelWidthMetres),
       commands_(context_),
-      settings_(startSettings(options)),
-      loader_(context_, options.scene, options.run) {
+      settings_(settings),
+      loader_(std::make_unique<SceneLoader>(context_, options.scene, options.run)) {
     status_.scene = options.scene;
     if (mirrored) { openWindow(); }
     fitResolution();
-    fillRay();
     if (options.load_first) { takeScene(); }
 }
 
 void Viewer::run() {
     const Interrupt interrupt;
-    std::string why;
-    bool asked = false;
     try {
-        for (;;) {
-            if (!asked && (interrupt.came() || (options_.frames != 0 && frames_ >= options_.frames))) {
-                session_.requestExit();
-                asked = true;
+        for (bool goes_on = true; goes_on;) {
+            if (!leaving_ && (interrupt.came() || (options_.frames != 0 && frames_ >= options_.frames))) { leave(); }
+            try {
+                goes_on = step();
+            } catch (const xr::Lost& lost) {
+                if (leaving_) { break; }
+                renewStay(lost.what());
             }
-            const xr::FrameOutcome outcome = session_.beginFrame();
-            if (outcome == xr::FrameOutcome::kExit) { break; }
-            if (outcome == xr::FrameOutcome::kWait) {
-                std::this_thread::sleep_for(kIdle);
-                continue;
-            }
-            if (outcome == xr::FrameOutcome::kRender) {
-                drawFrame();
-            } else {
-                session_.endFrame({});
-            }
-            ++frames_;
         }
-        why = session_.whyEnded();
-    } catch (const xr::Lost& lost) { why = lost.what(); }
-    fmt::print("{} frames; {}\n", frames_, why);
+    } catch (const xr::InstanceLost& lost) {
+        fmt::print("{} frames; {}\n", frames_, lost.what());
+        throw;
+    }
+    const std::string& why = stay_->session.whyEnded();
+    fmt::print("{} frames; {}\n", frames_, why.empty() ? "the session was lost as it ended" : why);
+}
+
+bool Viewer::step() {
+    switch (stay_->session.beginFrame()) {
+        case xr::FrameOutcome::kExit:
+            return false;
+        case xr::FrameOutcome::kWait:
+            drawWindowAlone("The headset rests: put it on");
+            std::this_thread::sleep_for(kIdle);
+            return true;
+        case xr::FrameOutcome::kRender:
+            drawFrame();
+            losses_ = 0;
+            break;
+        case xr::FrameOutcome::kSkip:
+            drawWindowAlone("The headset shows something else, or nothing");
+            stay_->session.endFrame({});
+            break;
+    }
+    ++frames_;
+    return true;
+}
+
+void Viewer::leave() {
+    leaving_ = true;
+    stay_->session.requestExit();
+}
+
+void Viewer::renewStay(const std::string& why) {
+    if (++losses_ > kMostLosses) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
+    }
+    fmt::print("frame {}: {}; another one begins\n", frames_, why);
+    waitForQueue();
+    panel_now_ = nullptr;
+    stay_.reset();
+    stay_ = std::make_unique<HeadsetStay>(instance_, context_, kCanvasPx);
+    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why + ": the next one has other formats of images"); }
+    fitResolution();
+}
+
+void Viewer::settle() {
+    xr::Session& session = stay_->session;
+    if (!session.settle(recentre_asked_)) { return; }
+    recentre_asked_ = false;
+    const std::optional<double> floor_m = session.floorBelowMetres();
+    fmt::print("frame {}: the wearer's place is the room's{}\n", frames_,
+               floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : "");
+    panel_.hangBefore({});
 }
 
 void Viewer::drawFrame() {
-    const std::optional<std::array<xr::EyeView, 2>> views = session_.locateEyes();
+    settle();
+    const std::optional<std::array<xr::EyeView, 2>> views = stay_->session.locateEyes();
     if (!views) {
-        session_.endFrame({});
+        drawWindowAlone("The headset does not know where it is");
+        stay_->session.endFrame({});
         return;
     }
-    if (!scene_ && loader_.isDone()) { takeScene(); }
+    if (loader_ && loader_->isDone()) { takeScene(); }
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(*views);
-    const Pose room_from_head = roomFromHead(room_from_eyes);
+    room_from_head_ = roomFromHead(room_from_eyes);
     const ViewSettings before = settings_;
-    controls_.update(input_.read(), room_from_head, session_.stepSeconds(), panel_, settings_.panel, scene_from_room_);
-    obeyWindow(room_from_head);
+    const double step_seconds = stay_->session.stepSeconds();
+    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_.panel, scene_from_room_);
+    obeyWindow(room_from_head_, step_seconds);
     fitResolution();
 
-    if (settings_.panel || window_) { layOutPanel(); }
+    status_.state.clear();
+    if (settings_.panel || window_) { layOutPanel(settings_.panel); }
     if (window_) { window_->acquire(); }
     if (scene_) {
         renderScene(*views, room_from_eyes);
@@ -112,14 +147,7 @@ void Viewer::drawFrame() {
         renderWaiting();
     }
     if (window_) { window_->show(); }
-    images_->release();
-    xr::Layers layers(session_);
-    addEyes(layers, *views);
-    if (std::exchange(panel_now_, nullptr)) {
-        panel_images_.release();
-        addPanel(layers, room_from_head);
-    }
-    session_.endFrame(layers.list());
+    showFrame(*views, room_from_head_);
 
     const std::string change = describeChange(before, settings_);
     if (!change.empty()) { fmt::print("frame {}: {}\n", frames_, change); }
@@ -129,8 +157,60 @@ void Viewer::drawFrame() {
     last_end_ = now;
 }
 
+void Viewer::showFrame(const std::array<xr::EyeView, 2>& views, const Pose& room_from_head) {
+    stay_->images->release();
+    const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
+    if (has_panel) { stay_->panel_images.release(); }
+    const auto submit = [&] {
+        xr::Layers layers(stay_->session);
+        addEyes(layers, views);
+        if (has_panel) { addPanel(layers, room_from_head); }
+        stay_->session.endFrame(layers.list());
+    };
+    try {
+        submit();
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error&) {
+        if (!std::exchange(takes_depth_, false)) { throw; }
+        fmt::print("frame {}: the runtime refuses depth; on without depth\n", frames_);
+        stay_->images->dropDepth();
+        submit();
+    }
+}
+
+void Viewer::drawWindowAlone(const std::string& why) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!window_ || now - last_alone_ < kWindowAlone) { return; }
+    const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
+    last_alone_ = now;
+    if (loader_ && loader_->isDone()) { takeScene(); }
+    const ViewSettings before = settings_;
+    obeyWindow(room_from_head_, step_seconds);
+    status_.state = why;
+    layOutPanel(false);
+    window_->acquire();
+    commands_.begin();
+    recordPanel(commands_);
+    commands_.submitAndWait();
+    window_->show();
+    const std::string change = describeChange(before, settings_);
+    if (!change.empty()) { fmt::print("frame {}: {}\n", frames_, change); }
+}
+
 void Viewer::takeScene() {
-    scene_ = loader_.take();
+    const std::unique_ptr<SceneLoader> loader = std::move(loader_);
+    try {
+        std::unique_ptr<LoadedScene> taken = loader->take();
+        waitForQueue();
+        scene_ = std::move(taken);
+    } catch (const Error& error) {
+        if (!scene_) { throw; }  // nothing to show instead
+        say(error.what());
+        return;
+    }
+    status_.scene = scene_->name;
+    last_ = {};
     scene_from_room_ = settings_.scene_from_room.value_or(scene_->start);
     for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
 }
@@ -144,34 +224,41 @@ void Viewer::openWindow() {
 }
 
 void Viewer::fitResolution() {
-    const glm::uvec2 size_px = scaledSize(session_.instance(), settings_.resolution_scale);
-    if (images_ && images_->sizePx() == size_px) { return; }
-    images_.reset();
-    images_ = std::make_unique<EyeImages>(session_, presenter_, format_, size_px);
+    const glm::uvec2 size_px = scaledSize(instance_, settings_.resolution_scale);
+    std::unique_ptr<EyeImages>& images = stay_->images;
+    if (images && images->sizePx() == size_px) { return; }
+    images.reset();
+    images = std::make_unique<EyeImages>(stay_->session, presenter_, format_, size_px);
+    if (!takes_depth_) { images->dropDepth(); }
 }
 
 void Viewer::renderWaiting() {
-    for (const int e : {kLeft, kRight}) { images_->acquire(e, false); }
+    for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
-    for (const int e : {kLeft, kRight}) { images_->clear(commands_, e, colour); }
+    for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
     recordPanel(commands_);
     commands_.submitAndWait();
 }
 
 void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes) {
     std::array<Eye, 2> eyes;
-    for (std::size_t e = 0; e < 2; ++e) { eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, images_->sizePx()); }
+    for (std::size_t e = 0; e < 2; ++e) {
+        eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, stay_->images->sizePx());
+    }
     FrameSettings frame = frameSettings(options_.run.camera, settings_.stereo);
+    frame.near = options_.run.camera.near * scene_from_room_.scale;  // of the wearer, however large the scene is
     frame.dominant = settings_.stereo.dominant;
-    frame.keep_depth = frame.keep_both_depths = images_->takesDepth();
+    frame.keep_depth = frame.keep_both_depths = stay_->images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings_.tint;
     // One eye's picture for both is seen through either lens.
-    if (!showsOneEye()) { frame.hidden_tiles = lens_mask_.update(session_, views, images_->sizePx()); }
+    if (!showsOneEye() && settings_.visibility_mask) {
+        frame.hidden_tiles = stay_->lens_mask.update(stay_->session, views, stay_->images->sizePx());
+    }
     for (const int e : {kLeft, kRight}) {
-        if (!showsOneEye() || e == frame.dominant) { images_->acquire(e, true); }
+        if (!showsOneEye() || e == frame.dominant) { stay_->images->acquire(e, true); }
     }
     last_ = scene_->frame.render(showsOneEye() ? std::span<const Eye>(&eyes[frame.dominant], 1) : std::span<const Eye>(eyes), frame,
                                  [&](Commands& commands) {
@@ -187,10 +274,10 @@ void Viewer::recordEyes(Commands& commands, const FrameSettings& frame) {
         if (frame.mode == Mode::kMono && !dominant) { continue; }
         const bool tinted = settings_.tint && reprojects(frame.mode) && !dominant;
         const EyeImage& image = scene_->frame.image(frame.mode == Mode::kMono ? 0 : e);
-        images_->present(commands, e, image, tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
+        stay_->images->present(commands, e, image, tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = frame.mode == Mode::kMono || dominant != settings_.tint;
-        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), images_->sizePx(), format_); }
+        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), stay_->images->sizePx(), format_); }
     }
 }
 
@@ -205,20 +292,20 @@ void Viewer::sayHidden() {
 }
 
 void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const {
-    const double near_m = options_.run.camera.near / scene_from_room_.scale;
     const auto layerEye = [&](int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
         const int e = scene_ && showsOneEye() ? settings_.stereo.dominant : shown_to;
-        return images_->layerEye(e, views[static_cast<std::size_t>(e)], near_m);
+        return stay_->images->layerEye(e, views[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
     layers.addEyes({layerEye(kLeft), layerEye(kRight)});
 }
 
-void Viewer::layOutPanel() {
-    status_.loading = scene_ ? std::nullopt : std::optional(loader_.progress());
+void Viewer::layOutPanel(bool hung) {
+    status_.loading = loader_ ? std::optional(loader_->progress()) : std::nullopt;
+    status_.has_scene = scene_ != nullptr;
     status_.frame = last_.counters.empty() ? nullptr : &last_;
-    if (settings_.panel) { panel_now_ = panel_images_.acquire(); }
-    canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), session_.stepSeconds());
+    if (hung) { panel_now_ = stay_->panel_images.acquire(); }
+    canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
     obey(drawOverlay(kCanvasPx, settings_, status_));
 }
 
@@ -230,25 +317,27 @@ void Viewer::recordPanel(Commands& commands) {
     if (window_) { window_->record(commands); }
 }
 
-void Viewer::obeyWindow(const Pose& room_from_head) {
+void Viewer::obeyWindow(const Pose& room_from_head, double step_seconds) {
     if (!window_) { return; }
     window_input_ = window_->poll();
-    if (window_input_.quit) { session_.requestExit(); }
+    if (window_input_.quit) { leave(); }
+    recentre_asked_ = recentre_asked_ || window_input_.recentre;
+    if (!window_input_.dropped.empty()) { loader_ = std::make_unique<SceneLoader>(context_, window_input_.dropped, options_.run); }
     if (window_input_.reload_shaders) { reloadShaders(); }
     if (window_input_.toggle_panel) {
         settings_.panel = !settings_.panel;
         panel_.hangBefore(room_from_head);
     }
-    const double turn_rad = window_input_.turn_rad + session_.stepSeconds() * window_input_.turn_rate * kTurnRadiansPerSecond;
+    const double turn_rad = window_input_.turn_rad + step_seconds * window_input_.turn_rate * kTurnRadiansPerSecond;
     if (turn_rad != 0.0) { scene_from_room_ = turnedBy(scene_from_room_, turn_rad, room_from_head.position); }
     const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0)), down(0.0, 1.0, 0.0);
     const glm::dvec3 walk = window_input_.walk.x * glm::cross(down, forward) + window_input_.walk.y * down + window_input_.walk.z * forward;
-    if (walk != glm::dvec3(0.0)) { scene_from_room_ = movedBy(scene_from_room_, session_.stepSeconds() * kWalkMetresPerSecond * walk); }
+    if (walk != glm::dvec3(0.0)) { scene_from_room_ = movedBy(scene_from_room_, step_seconds * kWalkMetresPerSecond * walk); }
 }
 
 void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
-    layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), panel_images_);
-    if (const auto ray = panel_.ray(room_from_head)) { layers.addPanel(ray->room_from_strip, ray->size_m, ray_image_); }
+    layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images);
+    if (const auto ray = panel_.ray(room_from_head)) { layers.addPanel(ray->room_from_strip, ray->size_m, stay_->ray_image); }
 }
 
 void Viewer::obey(const OverlayActions& actions) {
@@ -265,7 +354,8 @@ void Viewer::obey(const OverlayActions& actions) {
     if (actions.reload_shaders) { reloadShaders(); }
     if (actions.reset_scene) { scene_from_room_ = scene_->start; }
     if (actions.save || actions.load) { fmt::print("frame {}: {}\n", frames_, status_.message); }
-    if (actions.quit) { session_.requestExit(); }
+    recentre_asked_ = recentre_asked_ || actions.recentre;
+    if (actions.quit) { leave(); }
 }
 
 void Viewer::reloadShaders() {
@@ -277,11 +367,14 @@ void Viewer::reloadShaders() {
     fmt::print("frame {}: {}\n", frames_, status_.message);
 }
 
-void Viewer::fillRay() {
-    commands_.begin();
-    commands_.clearImage(ray_image_.acquire(), kRayColour);
-    commands_.submitAndWait();
-    ray_image_.release();
+void Viewer::waitForQueue() const {
+    const std::lock_guard lock(context_.queueMutex());
+    context_.queue().waitIdle();
+}
+
+void Viewer::say(const std::string& message) {
+    status_.message = message;
+    fmt::print("frame {}: {}\n", frames_, message);
 }
 
 }  // namespace binosplat

@@ -2,16 +2,13 @@
 #pragma once
 
 #include "app/canvas.h"
-#include "app/eye_images.h"
-#include "app/lens_mask.h"
+#include "app/headset_stay.h"
 #include "app/mirror_window.h"
 #include "app/overlay.h"
 #include "app/overlay_panel.h"
 #include "app/scene_loader.h"
 #include "app/view_settings.h"
 #include "app/wearer_controls.h"
-#include "xr/input.h"
-#include "xr/layers.h"
 
 #include <chrono>
 #include <memory>
@@ -20,48 +17,57 @@ namespace binosplat {
 
 class Viewer {
 public:
-    // `session` outlives the viewer. Begins to load the scene. With a window beside the headset where `mirrored`.
-    Viewer(const ViewOptions& options, xr::Session& session, bool mirrored);
+    // `instance` and `context` outlive the viewer. Begins to load the scene. With a window beside the headset where `mirrored`.
+    Viewer(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance, const Context& context, bool mirrored);
 
     // Until the runtime, the wearer, Ctrl-C or --frames ends it. Says on stdout what was changed in which frame, and why it ended.
-    // Throws what went wrong with the scene or the device; a lost session is no error.
+    // A lost session is followed by another one, with the scene as it is. Throws what went wrong with the scene or the device, and
+    // Error (exit code 3) where the runtime is lost.
     void run();
 
 private:
+    // One turn of the loop; false at its end.
+    bool step();
+    // Another session in place of one that was lost.
+    void renewStay(const std::string& why);
     void drawFrame();
+    // The window's own life while no frame is drawn for the headset.
+    void drawWindowAlone(const std::string& why);
     void takeScene();
     // The headset does not need it: where it does not open, a line says why.
     void openWindow();
     void fitResolution();
+    // The room begins where the head is, once that is known or when it is asked for.
+    void settle();
     // Renders and shows, in one submission: the scene if it is there, and the panel.
     void renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes);
     void renderWaiting();
     void recordEyes(Commands& commands, const FrameSettings& frame);
     void recordPanel(Commands& commands);
     void sayHidden();
+    void showFrame(const std::array<xr::EyeView, 2>& views, const Pose& room_from_head);
     void addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const;
-    // The widgets; takes the panel's image where it is shown.
-    void layOutPanel();
-    void obeyWindow(const Pose& room_from_head);
+    // The widgets; takes the panel's image where it is `hung`.
+    void layOutPanel(bool hung);
+    void obeyWindow(const Pose& room_from_head, double step_seconds);
     void addPanel(xr::Layers& layers, const Pose& room_from_head) const;
     void obey(const OverlayActions& actions);
     void reloadShaders();
-    void fillRay();
+    void say(const std::string& message);
+    void leave();
+    void waitForQueue() const;
     [[nodiscard]] bool showsOneEye() const { return settings_.stereo.mode == "mono"; }
 
     ViewOptions options_;
-    xr::Session& session_;
+    const xr::Instance& instance_;
     const Context& context_;
-    xr::Input input_;
-    vk::Format format_;
+    std::unique_ptr<HeadsetStay> stay_;
+    vk::Format format_;  // of every session's images
     Presenter presenter_;
-    std::unique_ptr<EyeImages> images_;
     Canvas canvas_;
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
-    xr::Swapchain panel_images_, ray_image_;
-    vk::Image panel_now_;  // of this frame, where the panel is shown
-    LensMask lens_mask_;
+    vk::Image panel_now_;                          // of this frame, where the panel is shown
     std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
     OverlayPanel panel_;
     WearerControls controls_;
@@ -71,9 +77,12 @@ private:
     std::unique_ptr<LoadedScene> scene_;
     FrameResult last_;
     OverlayStatus status_;
+    Pose room_from_head_;  // as last known
+    bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
+    int losses_ = 0;  // since a frame was shown
     std::uint64_t frames_ = 0;
-    std::chrono::steady_clock::time_point last_end_{};
-    SceneLoader loader_;  // last: its thread ends first
+    std::chrono::steady_clock::time_point last_end_{}, last_alone_{};
+    std::unique_ptr<SceneLoader> loader_;  // last: its thread ends first
 };
 
 }  // namespace binosplat

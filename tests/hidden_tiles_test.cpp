@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 
 using namespace binosplat;
@@ -32,6 +33,33 @@ TEST_CASE("a tile is hidden if all of it is, and up is up") {
     CHECK(findHiddenTiles(rectangle(-1.5f, -0.57f, 0.5f, 1.5f), kIntrinsics, kSizePx) == Tiles(9, 0));
     // The lowest row, of half tiles, and more than the picture.
     CHECK(findHiddenTiles(rectangle(-9.0f, 9.0f, -9.0f, -0.5f), kIntrinsics, kSizePx) == Tiles{0, 0, 0, 0, 0, 0, 1, 1, 1});
+}
+
+TEST_CASE("a margin about what shows keeps whole tiles, and none beyond it") {
+    // All but the middle tile's middle pixel, from four sides; five tiles by five.
+    constexpr glm::uvec2 size(80, 80);
+    const Intrinsics intrinsics{1.0, 1.0, 0.0, 0.0};
+    HiddenMesh mesh;
+    const auto add = [&](float left, float right, float top, float bottom) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {{left, -top}, {right, -top}, {right, -bottom}, {left, -bottom}});
+        for (const std::uint32_t corner : {0, 1, 2, 0, 2, 3}) { mesh.indices.push_back(first + corner); }
+    };
+    add(0.0f, 80.0f, 0.0f, 40.0f);
+    add(0.0f, 80.0f, 41.0f, 80.0f);
+    add(0.0f, 40.0f, 40.0f, 41.0f);
+    add(41.0f, 80.0f, 40.0f, 41.0f);
+    const auto shown = [&](std::uint32_t margin_px) {
+        const Tiles tiles = findHiddenTiles(mesh, intrinsics, size, margin_px);
+        return std::count(tiles.begin(), tiles.end(), 0);
+    };
+    CHECK(shown(0) == 1);
+    CHECK(shown(7) == 1);  // 33 to 47
+    CHECK(shown(8) == 4);  // to 48, in the next tile
+    CHECK(shown(9) == 9);
+    CHECK(shown(24) == 16);
+    CHECK(shown(1000) == 25);
+    CHECK(xr::hiddenMarginPx({1000.0, 800.0, 0.0, 0.0}) == 18);
 }
 
 TEST_CASE("triangles may turn either way and meet within a tile") {

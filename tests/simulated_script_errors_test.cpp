@@ -114,6 +114,11 @@ TEST_CASE("choicesAreListed") {
     refuses("eye middle cant 5", "the side is middle, must be left or right");
     refuses("eye left", "what is set is missing, must be angles or cant");
     refuses("at 1 should-render maybe", "whether to render is maybe, must be on or off");
+    refuses("at 1 head maybe", "whether it is tracked is maybe, must be on, off or turn-only");
+    refuses("refuse-depth all", "what is refused is all, must be images or layers");
+    refuses("visibility-mask perhaps", "whether there is a mask is perhaps, must be on, off or broken");
+    refuses("local", "the pose is missing");
+    refuses("no-headset-for 0", "the number of calls is 0, must be a whole number from 1");
     refuses("at 1 dance", "what happens is dance, must be should-render, visible, focused, slow-images");
     refuses("press left nose 0 1", "nose is not an input, must be one of: trigger, squeeze");
     refuses("axis left a 0 1", "a has no axis, must be trigger, squeeze, thumbstick or trackpad");

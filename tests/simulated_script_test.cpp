@@ -154,6 +154,33 @@ TEST_CASE("localStandsWhereTheHeadIsAtTimeZeroWithoutItsTilt") {
     CHECK(isNear(forwardOf(parse("head 0 turn 90 40").stageFromLocal()), {-1.0, 0.0, 0.0}));
 }
 
+TEST_CASE("localStandsWhereTheScriptSaysUntilItIsRecentred") {
+    const Script script =
+        parse("local position 3 0.5 1 turn 90 0\nhead 0 position 0 1.6 0\nhead 2 position 2 1.6 0 turn 0 30\nat 1 recentre\nat 2 recentre");
+    CHECK(isNear(script.stageFromLocal(0.999).position, {3.0, 0.5, 1.0}));
+    CHECK(isNear(forwardOf(script.stageFromLocal(0.0)), {-1.0, 0.0, 0.0}));
+    CHECK(isNear(script.stageFromLocal(1.0).position, {1.0, 1.6, 0.0}));
+    CHECK(isNear(script.stageFromLocal(9.0).position, {2.0, 1.6, 0.0}));
+    CHECK(isNear(forwardOf(script.stageFromLocal(9.0)), {0.0, 0.0, -1.0}));
+    CHECK(script.eventsIn(0.5, 1.5).size() == 1);
+    CHECK(script.eventsIn(0.5, 1.5).at(0).kind == ScriptEvent::Kind::kRecentre);
+}
+
+TEST_CASE("whatIsKnownOfTheHeadAndWhetherItIsWornChangeAtTheirTime") {
+    const Script script = parse("at 1 head off\nat 2 head turn-only\nat 3 head on\nat 4 worn off\nat 5 worn on");
+    const auto known = [&](double time_s) {
+        const State state = script.at(time_s);
+        return std::pair(state.head_turn_known, state.head_place_known);
+    };
+    CHECK((known(0.5) == std::pair(true, true)));
+    CHECK((known(1.5) == std::pair(false, false)));
+    CHECK((known(2.5) == std::pair(true, false)));
+    CHECK((known(3.5) == std::pair(true, true)));
+    CHECK(script.at(3.9).worn);
+    CHECK_FALSE(script.at(4.5).worn);
+    CHECK(script.at(5.0).worn);
+}
+
 TEST_CASE("controllersMoveAndAimFromTheirGrip") {
     const Script script =
         parse("controller right 0 position 0 1 0 turn 90 0\ncontroller right 2 position 0 3 0\naim right position 0 0 -0.1 turn 0 90\n");
@@ -380,5 +407,5 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 17);
+    CHECK(commands == 22);
 }

@@ -22,7 +22,8 @@ XrResult checkResult(XrResult result, const char* call) {
     if (XR_SUCCEEDED(result)) { return result; }
     const std::string_view text(call);
     const std::string message = fmt::format("OpenXR: {} failed: {}", text.substr(0, text.find('(')), nameOf(result));
-    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { throw Lost(ExitCode::kNoDevice, message); }
+    if (result == XR_ERROR_SESSION_LOST) { throw Lost(ExitCode::kNoDevice, message); }
+    if (result == XR_ERROR_INSTANCE_LOST) { throw InstanceLost(ExitCode::kNoDevice, message); }
     throw Error(ExitCode::kNoDevice, message);
 }
 

@@ -7,8 +7,14 @@
 
 namespace binosplat::xr {
 
-// The session or the whole runtime is gone. Session turns it into an outcome; nobody else needs to catch it.
+// The session is gone; the runtime may give another one.
 class Lost : public Error {
+public:
+    using Error::Error;
+};
+
+// The whole runtime is gone, and with it the Vulkan device.
+class InstanceLost : public Error {
 public:
     using Error::Error;
 };
@@ -16,7 +22,7 @@ public:
 // "XR_ERROR_SESSION_LOST", or the number of a result that this build does not know.
 std::string nameOf(XrResult result);
 
-// Returns `result` if it is a success of any kind. Throws Lost where the session or the instance is lost, Error (exit code 3)
+// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost where that is so, Error (exit code 3)
 // otherwise, with the name of the function in `call`.
 XrResult checkResult(XrResult result, const char* call);
 

@@ -9,8 +9,13 @@
 
 namespace binosplat::xr {
 
-// A byte a tile, row-major: 1 where every pixel's centre lies under the mesh. Pixels beside the picture, in the last tiles of rows and
-// columns, count as hidden.
-std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsics& intrinsics, glm::uvec2 size_px);
+// How near the mesh's edge a tile may come, in pixels. Compositors turn a picture by what the head turned since, and bring in what lay
+// just under the mesh: a tile's steps must not be seen there.
+std::uint32_t hiddenMarginPx(const Intrinsics& intrinsics);
+
+// A byte a tile, row-major: 1 where the centre of every pixel in it and within `margin_px` of it lies under the mesh. Pixels beside the
+// picture count as hidden.
+std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsics& intrinsics, glm::uvec2 size_px,
+                                          std::uint32_t margin_px = 0);
 
 }  // namespace binosplat::xr

@@ -10,6 +10,8 @@
 namespace binosplat::xr {
 namespace {
 
+// Of OpenXR 1.1; elder headers have not its name.
+constexpr const char* kLocalFloorExtension = "XR_EXT_local_floor";
 constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
 
 [[noreturn]] void refuse(const std::string& what, XrResult result) {
@@ -34,12 +36,12 @@ std::vector<XrExtensionProperties> listExtensions() {
 
 }  // namespace
 
-Instance::Instance() {
+Instance::Instance(const InstanceOptions& options) {
     // The loader speaks on stderr where it finds nothing; one line of ours says it better.
     setenv("XR_LOADER_DEBUG", "none", 0);
-    create();
+    create(options);
     try {
-        findSystem();
+        findSystem(options);
         readViews();
     } catch (...) {
         xrDestroyInstance(instance_);
@@ -49,7 +51,7 @@ Instance::Instance() {
 
 Instance::~Instance() { xrDestroyInstance(instance_); }
 
-void Instance::create() {
+void Instance::create(const InstanceOptions& options) {
     const std::vector<XrExtensionProperties> available = listExtensions();
     const auto has = [&](const char* name) {
         return std::ranges::any_of(available, [&](const auto& extension) { return std::strcmp(extension.extensionName, name) == 0; });
@@ -58,9 +60,11 @@ void Instance::create() {
         refuse("the OpenXR runtime has not XR_KHR_vulkan_enable2", XR_ERROR_EXTENSION_NOT_PRESENT);
     }
     takes_depth_ = has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
-    has_visibility_mask_ = has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
+    has_visibility_mask_ = options.visibility_mask && has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
+    has_local_floor_ = has(kLocalFloorExtension);
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
+    if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
     if (has_visibility_mask_) { extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
 
     auto info = structure<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
@@ -74,12 +78,16 @@ void Instance::create() {
     if (XR_FAILED(result)) { refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereLookedFor()), result); }
 }
 
-void Instance::findSystem() {
+void Instance::findSystem(const InstanceOptions& options) {
     auto runtime = structure<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
     BINOSPLAT_XR(xrGetInstanceProperties(instance_, &runtime));
     auto wanted = structure<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
     wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-    const XrResult result = xrGetSystem(instance_, &wanted, &system_);
+    XrResult result = xrGetSystem(instance_, &wanted, &system_);
+    while (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE && options.wait_for_headset) {
+        options.wait_for_headset(runtime.runtimeName);
+        result = xrGetSystem(instance_, &wanted, &system_);
+    }
     if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime.runtimeName), result); }
     auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
     BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));

@@ -6,16 +6,25 @@
 
 #include <glm/glm.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace binosplat::xr {
 
+struct InstanceOptions {
+    bool visibility_mask = true;  // some runtimes have nothing behind the function that they offer
+    // Asked again and again, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
+    // wait.
+    std::function<void(const std::string& runtime)> wait_for_headset;
+};
+
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth and XR_KHR_visibility_mask where they are.
-    // Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset.
-    Instance();
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask and XR_EXT_local_floor where
+    // they are. Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset, and what
+    // `wait_for_headset` throws.
+    explicit Instance(const InstanceOptions& options = {});
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
     ~Instance();
@@ -26,6 +35,7 @@ public:
     [[nodiscard]] const std::string& description() const { return description_; }
     [[nodiscard]] bool takesDepth() const { return takes_depth_; }
     [[nodiscard]] bool hasVisibilityMask() const { return has_visibility_mask_; }
+    [[nodiscard]] bool hasLocalFloor() const { return has_local_floor_; }
     // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
@@ -45,14 +55,14 @@ public:
     }
 
 private:
-    void create();
-    void findSystem();
+    void create(const InstanceOptions& options);
+    void findSystem(const InstanceOptions& options);
     void readViews();
 
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string description_;
-    bool takes_depth_ = false, has_visibility_mask_ = false;
+    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 };

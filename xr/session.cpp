@@ -1,9 +1,11 @@
 // The session state machine.
 #include "xr/session.h"
 
+#include "xr/convert.h"
 #include "xr/platform.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace binosplat::xr {
 namespace {
@@ -12,6 +14,25 @@ constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 // For runtimes that state no period, or an absurd one.
 constexpr double kUsualPeriodSeconds = 1.0 / 90.0;
 constexpr double kLongestStepSeconds = 0.1;
+constexpr double kShortestPeriodMs = 1.0, kLongestPeriodMs = 100.0;
+constexpr float kHalfIpdMetres = 0.0315f;  // while the headset does not say where its eyes are
+constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
+// XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR, which elder headers have not.
+constexpr auto kLocalFloor = static_cast<XrReferenceSpaceType>(1000426000);
+
+// The head without its tilt, in our axes; one that looks straight up or down keeps the heading of its right-hand side.
+Pose upright(const Pose& head) {
+    const glm::dvec3 forward = head.orientation * glm::dvec3(0.0, 0.0, 1.0), right = head.orientation * glm::dvec3(1.0, 0.0, 0.0);
+    const bool is_level = std::hypot(forward.x, forward.z) > 0.1;
+    const double heading = is_level ? std::atan2(forward.x, forward.z) : std::atan2(-right.z, right.x);
+    return {glm::angleAxis(heading, glm::dvec3(0.0, 1.0, 0.0)), head.position};
+}
+
+// The middle between the eyes.
+Pose headOf(const std::array<EyeView, 2>& eyes) {
+    const Pose left = fromXr(eyes[kLeft].pose), right = fromXr(eyes[kRight].pose);
+    return {glm::slerp(left.orientation, right.orientation, 0.5), 0.5 * (left.position + right.position)};
+}
 
 }  // namespace
 
@@ -28,10 +49,9 @@ Session::Session(const Instance& instance, const Context& context) : instance_(i
     info.systemId = instance.system();
     BINOSPLAT_XR(xrCreateSession(instance.handle(), &info, &session_));
     try {
-        auto space_info = structure<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
-        space_info.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
-        space_info.poseInReferenceSpace.orientation.w = 1.0f;
-        BINOSPLAT_XR(xrCreateReferenceSpace(session_, &space_info, &space_));
+        local_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
+        space_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
+        findFloor();
         for (int eye = 0; eye < 2; ++eye) { readHiddenMesh(eye); }
     } catch (...) {
         xrDestroySession(session_);  // and all that was made of it
@@ -42,19 +62,16 @@ Session::Session(const Instance& instance, const Context& context) : instance_(i
 Session::~Session() { xrDestroySession(session_); }
 
 FrameOutcome Session::beginFrame() {
-    try {
-        pollEvents();
-        if (ended_) { return FrameOutcome::kExit; }
-        if (!running_) { return FrameOutcome::kWait; }
-        const XrFrameWaitInfo wait_info{XR_TYPE_FRAME_WAIT_INFO, nullptr};
-        frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
-        BINOSPLAT_XR(xrWaitFrame(session_, &wait_info, &frame_state_));
-        const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
+    pollEvents();
+    if (ended_) { return FrameOutcome::kExit; }
+    if (!running_) { return FrameOutcome::kWait; }
+    const XrFrameWaitInfo wait_info{XR_TYPE_FRAME_WAIT_INFO, nullptr};
+    frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
+    BINOSPLAT_XR(xrWaitFrame(session_, &wait_info, &frame_state_));
+    const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
+    {
         const std::lock_guard lock(context_.queueMutex());
         BINOSPLAT_XR(xrBeginFrame(session_, &begin_info));
-    } catch (const Lost& lost) {
-        end(lost.what());
-        return FrameOutcome::kExit;
     }
     const double since_last = static_cast<double>(frame_state_.predictedDisplayTime - last_display_time_) * 1e-9;
     const bool known = last_display_time_ != 0 && since_last > 0.0;
@@ -69,10 +86,13 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
     info.environmentBlendMode = instance_.blendMode();
     info.layerCount = static_cast<std::uint32_t>(layers.size());
     info.layers = layers.empty() ? nullptr : layers.data();
-    try {
-        const std::lock_guard lock(context_.queueMutex());
-        BINOSPLAT_XR(xrEndFrame(session_, &info));
-    } catch (const Lost& lost) { end(lost.what()); }
+    const std::lock_guard lock(context_.queueMutex());
+    BINOSPLAT_XR(xrEndFrame(session_, &info));
+}
+
+double Session::periodMs() const {
+    const double period_ms = static_cast<double>(frame_state_.predictedDisplayPeriod) * 1e-6;
+    return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
 }
 
 void Session::requestExit() {
@@ -92,12 +112,18 @@ void Session::pollEvents() {
                 break;
             }
             case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
-                end("the OpenXR runtime is going away");
+                throw InstanceLost(ExitCode::kNoDevice, "the OpenXR runtime is going away");
+            case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
+                const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
+                if (change.session == session_ && change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) {
+                    recentred_from_ = change.changeTime;
+                }
                 break;
+            }
             case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
                 readHiddenMesh(static_cast<int>(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex));
                 break;
-            default:  // a re-centred space moves the scene with it; a changed controller shows in its actions
+            default:  // a changed controller shows in its actions
                 break;
         }
     }
@@ -122,8 +148,7 @@ void Session::changeState(XrSessionState state) {
             end("the runtime asked for the end");
             break;
         case XR_SESSION_STATE_LOSS_PENDING:
-            end("the session is lost");
-            break;
+            throw Lost(ExitCode::kNoDevice, "the session is lost");
         default:
             break;
     }
@@ -135,25 +160,82 @@ void Session::end(const std::string& why) {
     running_ = false;
 }
 
-std::optional<std::array<EyeView, 2>> Session::locateEyes() const {
+Session::Located Session::locate(XrSpace space) const {
     auto info = structure<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
     info.viewConfigurationType = kStereo;
     info.displayTime = frame_state_.predictedDisplayTime;
-    info.space = space_;
+    info.space = space;
     auto state = structure<XrViewState>(XR_TYPE_VIEW_STATE);
     std::array<XrView, 2> views{XrView{XR_TYPE_VIEW, nullptr, {}, {}}, XrView{XR_TYPE_VIEW, nullptr, {}, {}}};
     std::uint32_t count = 0;
-    try {
-        BINOSPLAT_XR(xrLocateViews(session_, &info, &state, 2, &count, views.data()));
-    } catch (const Lost&) { return std::nullopt; }
-    if (count != 2 || (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) == 0) { return std::nullopt; }
-    const bool placed = (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0;
-    std::array<EyeView, 2> eyes;
-    for (std::size_t e = 0; e < 2; ++e) {
-        eyes[e] = {views[e].pose, views[e].fov};
-        if (!placed) { eyes[e].pose.position = {e == kLeft ? -0.0315f : 0.0315f, 0.0f, 0.0f}; }
+    BINOSPLAT_XR(xrLocateViews(session_, &info, &state, 2, &count, views.data()));
+    Located located;
+    for (std::size_t e = 0; e < 2; ++e) { located.eyes[e] = {views[e].pose, views[e].fov}; }
+    located.turn_known = count == 2 && (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) != 0;
+    located.place_known = located.turn_known && (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0;
+    return located;
+}
+
+std::optional<std::array<EyeView, 2>> Session::locateEyes() {
+    Located located = locate(space_);
+    if (!located.turn_known) { return std::nullopt; }
+    if (located.place_known) {
+        last_place_ = toXr(headOf(located.eyes).position);
+        return located.eyes;
     }
-    return eyes;
+    for (const int e : {kLeft, kRight}) {
+        XrPosef& pose = located.eyes[static_cast<std::size_t>(e)].pose;
+        pose.position = last_place_;
+        const glm::dvec3 aside(static_cast<double>(e == kLeft ? -kHalfIpdMetres : kHalfIpdMetres), 0.0, 0.0);
+        pose.position = toXr(transform(fromXr(pose), aside));
+    }
+    return located.eyes;
+}
+
+bool Session::settle(bool demanded) {
+    const bool moved = recentred_from_ && frame_state_.predictedDisplayTime >= *recentred_from_;
+    Located located = locate(local_);
+    // A headset that never says where it is turns all the same.
+    const bool first = !turn_settled_ || (!place_settled_ && located.place_known);
+    if (!located.turn_known || (!first && !moved && !demanded)) { return false; }
+    if (!located.place_known) {
+        for (EyeView& eye : located.eyes) { eye.pose.position = {}; }
+    }
+    const XrSpace room = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, toXr(upright(headOf(located.eyes))));
+    xrDestroySpace(std::exchange(space_, room));
+    turn_settled_ = true;
+    place_settled_ = located.place_known;
+    recentred_from_.reset();
+    last_place_ = {};
+    return true;
+}
+
+std::optional<double> Session::floorBelowMetres() const {
+    if (floor_ == XR_NULL_HANDLE) { return std::nullopt; }
+    auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
+    BINOSPLAT_XR(xrLocateSpace(floor_, space_, frame_state_.predictedDisplayTime, &location));
+    if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) { return std::nullopt; }
+    return -static_cast<double>(location.pose.position.y);
+}
+
+XrSpace Session::makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const {
+    auto info = structure<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+    info.referenceSpaceType = type;
+    info.poseInReferenceSpace = pose;
+    XrSpace space = XR_NULL_HANDLE;
+    BINOSPLAT_XR(xrCreateReferenceSpace(session_, &info, &space));
+    return space;
+}
+
+void Session::findFloor() {
+    std::uint32_t count = 0;
+    BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, 0, &count, nullptr));
+    std::vector<XrReferenceSpaceType> offered(count);
+    BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, count, &count, offered.data()));
+    for (const XrReferenceSpaceType type : {XR_REFERENCE_SPACE_TYPE_STAGE, kLocalFloor}) {
+        const bool is_floor = type == kLocalFloor ? instance_.hasLocalFloor() : std::ranges::find(offered, type) != offered.end();
+        if (is_floor && floor_ == XR_NULL_HANDLE) { floor_ = makeSpace(type, kHere); }
+    }
 }
 
 void Session::readHiddenMesh(int eye) {

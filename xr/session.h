@@ -16,7 +16,7 @@ enum class FrameOutcome {
     kRender,  // a frame is open and will be seen: draw, then endFrame with its layers
     kSkip,    // a frame is open but nobody sees it: endFrame without layers
     kWait,    // no frame is open since the session does not run (yet, or for now): come again
-    kExit,    // the runtime or the user wants the end, or the session is lost: leave; whyEnded() says which
+    kExit,    // the runtime or the user wants the end: leave; whyEnded() says which
 };
 
 // An eye at the predicted display time.
@@ -39,9 +39,11 @@ public:
     Session& operator=(const Session&) = delete;
     ~Session();
 
-    // Takes the runtime's events, waits for the next frame and opens it.
+    // Takes the runtime's events, waits for the next frame and opens it. Throws Lost where the session is lost or about to be, InstanceLost
+    // where the runtime is.
     FrameOutcome beginFrame();
-    // Closes the frame with these layers, back to front. Loss of the session shows at the next beginFrame.
+    // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error where the runtime refuses a layer: then
+    // the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
     // Asks the runtime for the end; frames go on until beginFrame() returns kExit.
     void requestExit();
@@ -50,8 +52,19 @@ public:
     [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
     // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
-    // Where the eyes are in space(); empty where the headset does not know how it is turned.
-    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() const;
+    // What the runtime gives a frame, in milliseconds; 90 Hz where it states none.
+    [[nodiscard]] double periodMs() const;
+    // Where the eyes are in space(); empty where the headset does not know how it is turned. While it does not know where it is, it stays
+    // where it was last.
+    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes();
+
+    // The room begins at the head, upright, and ahead is where it looks: nothing may be assumed of where the runtime's own spaces begin.
+    // Puts it there for the open frame and those after it, the first time that the head's pose is known, again when the runtime recentred
+    // its space, and where `demanded`. Whether it did.
+    bool settle(bool demanded);
+    // How far below the room's origin the floor lies, in metres; empty where the runtime does not know.
+    [[nodiscard]] std::optional<double> floorBelowMetres() const;
+
     // Whether input comes to this program.
     [[nodiscard]] bool isFocused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
     [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
@@ -59,7 +72,7 @@ public:
     [[nodiscard]] XrSession handle() const { return session_; }
     [[nodiscard]] const Instance& instance() const { return instance_; }
     [[nodiscard]] const Context& context() const { return context_; }
-    // LOCAL: its origin is where the head was at the start, upright.
+    // The room: see settle(). Before that, LOCAL.
     [[nodiscard]] XrSpace space() const { return space_; }
     // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
     [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
@@ -67,6 +80,14 @@ public:
     [[nodiscard]] int hiddenMeshVersion() const { return hidden_mesh_version_; }
 
 private:
+    // Of xrLocateViews, with what is known of it.
+    struct Located {
+        std::array<EyeView, 2> eyes;
+        bool turn_known = false, place_known = false;
+    };
+    [[nodiscard]] Located locate(XrSpace space) const;
+    [[nodiscard]] XrSpace makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const;
+    void findFloor();
     void pollEvents();
     void changeState(XrSessionState state);
     void end(const std::string& why);
@@ -75,12 +96,16 @@ private:
     const Instance& instance_;
     const Context& context_;
     XrSession session_ = XR_NULL_HANDLE;
-    XrSpace space_ = XR_NULL_HANDLE;
+    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE;
+    XrSpace floor_ = XR_NULL_HANDLE;  // on the floor, somewhere; null: the runtime has none
     XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
     bool running_ = false, ended_ = false;
+    bool turn_settled_ = false, place_settled_ = false;
+    std::optional<XrTime> recentred_from_;  // the runtime's own recentring
+    XrVector3f last_place_{};               // of the head in space(), as it was last known
     std::string why_ended_;
     std::array<HiddenMesh, 2> hidden_meshes_;
     int hidden_mesh_version_ = 0;

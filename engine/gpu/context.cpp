@@ -189,12 +189,20 @@ void Context::createDevice(const ContextOptions& options) {
     queue_family_ = queueFamilyOf(physical_device_).value();
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    vk::PhysicalDeviceVulkan12Features features;
-    features.bufferDeviceAddress = VK_TRUE;
-    features.scalarBlockLayout = VK_TRUE;
-    const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
-    features.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
-    dynamic_broadcast_ = features.subgroupBroadcastDynamicId == VK_TRUE;
+    // Who makes the device may add features of its own, each by its own struct: beside one for all of Vulkan 1.2 such a struct would be an
+    // error. What has no struct of its own is then left.
+    vk::PhysicalDeviceScalarBlockLayoutFeatures scalar_layout(VK_TRUE);
+    vk::PhysicalDeviceBufferDeviceAddressFeatures addresses(VK_TRUE);
+    scalar_layout.pNext = &addresses;
+    vk::PhysicalDeviceVulkan12Features vulkan12;
+    vulkan12.bufferDeviceAddress = vulkan12.scalarBlockLayout = VK_TRUE;
+    void* features = &scalar_layout;
+    if (!options.maker.create_device) {
+        const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+        vulkan12.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
+        dynamic_broadcast_ = vulkan12.subgroupBroadcastDynamicId == VK_TRUE;
+        features = &vulkan12;
+    }
     std::vector<const char*> extensions;
     for (const vk::ExtensionProperties& offered : physical_device_.enumerateDeviceExtensionProperties()) {
         for (const char* wanted : options.device_extensions) {
@@ -208,10 +216,10 @@ void Context::createDevice(const ContextOptions& options) {
         using Statistics = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR;
         statistics = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, Statistics>().get<Statistics>();
         kernel_statistics_ = statistics.pipelineExecutableInfo == VK_TRUE;
-        statistics.pNext = nullptr;
-        features.pNext = &statistics;
+        statistics.pNext = features;
+        features = &statistics;
     }
-    const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, &features);
+    const vk::DeviceCreateInfo info({}, queue_info, {}, extensions, nullptr, features);
     const DeviceMaker& maker = options.maker;
     device_ = maker.create_device ? vk::raii::Device(physical_device_, maker.create_device(loader_->getDispatcher()->vkGetInstanceProcAddr,
                                                                                            *physical_device_, info))

@@ -15,6 +15,11 @@ Clock::Frame Clock::nextFrame() {
     return {shown(), *birth + std::max(wake, std::chrono::nanoseconds(0))};
 }
 
+void Clock::pass() {
+    if (!birth) birth = std::chrono::steady_clock::now();
+    if (!is_real) ++frame;
+}
+
 XrTime Clock::now() const {
     if (!is_real || !birth) return shown();
     return kStart + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - *birth).count();

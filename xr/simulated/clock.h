@@ -22,6 +22,8 @@ public:
         std::chrono::steady_clock::time_point wake_time;
     };
     Frame nextFrame();
+    // A period without a frame, as long as nobody asks for any.
+    void pass();
     XrTime now() const;
     XrDuration period() const { return frame_period; }
     bool isReal() const { return is_real; }

@@ -59,7 +59,9 @@ XrResult xrPollEvent(XrInstance instance, XrEventDataBuffer* eventData) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
         XrEventDataBuffer& event = checked(eventData, XR_TYPE_EVENT_DATA_BUFFER);
-        return owner.events.pop(event) ? XR_SUCCESS : XR_EVENT_UNAVAILABLE;
+        if (owner.events.pop(event)) return XR_SUCCESS;
+        if (owner.session != nullptr) owner.session->idle();
+        return XR_EVENT_UNAVAILABLE;
     });
 }
 

@@ -13,8 +13,8 @@
 namespace simulated {
 namespace {
 
-constexpr XrViewStateFlags kViewsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT |
-                                         XR_VIEW_STATE_ORIENTATION_TRACKED_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
+constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
+                           kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
 
 // An xrWaitFrame on another thread waits here for xrBeginFrame.
 std::condition_variable& frameBegun() {
@@ -55,10 +55,18 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             const EyeState& seen = state.eyes[eye];
-            views[eye].pose = toXr(stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{});
+            Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
+            // What is not known is not told either.
+            if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
+                if (!state.head_place_known) pose.position = glm::dvec3(0.0);
+                if (!state.head_turn_known) pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0);
+            }
+            views[eye].pose = toXr(pose);
             views[eye].fov = toXr(seen.fov);
         }
-        if (stage_from_space) output.viewStateFlags = kViewsKnown;
+        const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
+        if (stage_from_space && (state.head_turn_known || is_in_head)) output.viewStateFlags = kTurnsKnown;
+        if (stage_from_space && (state.head_place_known || is_in_head)) output.viewStateFlags |= kPlacesKnown;
         return successOf(owner);
     });
 }

@@ -39,6 +39,8 @@ const XrCompositionLayerDepthInfoKHR* depthOf(const Session& session, const XrCo
 
 void checkDepth(const Session& session, const XrCompositionLayerDepthInfoKHR& depth) {
     const Swapchain& swapchain = checkSubImage(session, depth.subImage);
+    const bool takes_depth = session.instance.simulation->script.depth != Script::Depth::kNoLayers;
+    require(takes_depth, XR_ERROR_LAYER_INVALID, "the script takes no depth");
     require((swapchain.info.format.aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0, XR_ERROR_LAYER_INVALID, "a colour image given as depth");
     const bool is_range = depth.minDepth >= 0 && depth.maxDepth <= 1 && depth.minDepth <= depth.maxDepth;
     require(is_range, XR_ERROR_VALIDATION_FAILURE, "minDepth and maxDepth are not in order within 0 to 1");

@@ -66,6 +66,8 @@ const char* nameOf(ScriptEvent::Kind kind) {
     switch (kind) {
         case ScriptEvent::Kind::kSlowImages:
             return "slow-images";
+        case ScriptEvent::Kind::kRecentre:
+            return "recentre";
         case ScriptEvent::Kind::kLoseSession:
             return "lose-session";
         case ScriptEvent::Kind::kLoseInstance:
@@ -95,7 +97,10 @@ State Script::at(double time_s) const {
         state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])), fovs[side].at(time_s)};
         state.controllers[side] = controllerAt(hands[side], time_s);
     }
+    state.head_turn_known = head_turn_known.at(time_s);
+    state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
     state.should_render = should_render.at(time_s);
+    state.worn = worn.at(time_s);
     state.visible = visible.at(time_s);
     state.focused = focused.at(time_s);
     state.present = present.at(time_s);
@@ -110,10 +115,14 @@ std::vector<ScriptEvent> Script::eventsIn(double from_s, double to_s) const {
     return chosen;
 }
 
-Pose Script::stageFromLocal() const { return levelled(stage_from_head.at(0.0)); }
+Pose Script::stageFromLocal(double time_s) const {
+    const auto next = std::ranges::upper_bound(recentres_s, time_s);
+    if (next != recentres_s.begin()) { return levelled(stage_from_head.at(*std::prev(next))); }
+    return stage_from_local ? *stage_from_local : levelled(stage_from_head.at(0.0));
+}
 
-Pose Script::stageFromLocalFloor() const {
-    Pose floor = stageFromLocal();
+Pose Script::stageFromLocalFloor(double time_s) const {
+    Pose floor = stageFromLocal(time_s);
     floor.position.y = 0.0;
     return floor;
 }

@@ -56,9 +56,11 @@ struct EyeState {
 struct State {
     double time_s = 0.0;
     Pose stage_from_head;
-    std::array<EyeState, 2> eyes;                // by Side
-    std::array<ControllerState, 2> controllers;  // by Side
+    std::array<EyeState, 2> eyes;                          // by Side
+    std::array<ControllerState, 2> controllers;            // by Side
+    bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
     bool should_render = true;
+    bool worn = true;     // else the session stops, and is IDLE until the headset is put on again
     bool visible = true;  // else the session is at most SYNCHRONIZED
     bool focused = true;  // else the session is at most VISIBLE
     bool present = true;  // whether somebody wears the headset
@@ -68,6 +70,7 @@ struct State {
 struct ScriptEvent {
     enum class Kind {
         kSlowImages,    // the next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED
+        kRecentre,      // LOCAL's origin is where the head is
         kLoseSession,   // LOSS_PENDING, then XR_ERROR_SESSION_LOST from every call
         kLoseInstance,  // XrEventDataInstanceLossPending, then XR_ERROR_INSTANCE_LOST
         kExit,          // STOPPING, then EXITING, as if the wearer left the program
@@ -101,10 +104,11 @@ public:
     [[nodiscard]] State at(double time_s) const;
     // Events with from_s < time <= to_s, in order; pass -infinity as `from_s` for the first frame.
     [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
-    // LOCAL's origin is the head at time 0, without tilt. STAGE's is on the floor.
-    [[nodiscard]] Pose stageFromLocal() const;
+    // LOCAL's origin is the head at time 0 without tilt, or where the script says, or the head at the last recentring before `time_s`.
+    // STAGE's is on the floor.
+    [[nodiscard]] Pose stageFromLocal(double time_s = 0.0) const;
     // LOCAL's, brought down to the floor.
-    [[nodiscard]] Pose stageFromLocalFloor() const;
+    [[nodiscard]] Pose stageFromLocalFloor(double time_s = 0.0) const;
 
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
@@ -114,6 +118,13 @@ public:
     std::array<double, 2> cant_rad{0.0, 0.0};
     std::string system_name = "Simulated headset";  // or the headset file's name
     bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
+    bool visibility_mask_is_broken = false;         // the function is there and ends the program
+    bool adds_vulkan_features = false;              // the runtime adds a feature of its own to the application's device
+    bool has_stage = true;                          // whether there is a reference space STAGE
+    enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
+    std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
+    std::optional<Pose> stage_from_local;
+    std::vector<double> recentres_s;
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;
@@ -135,7 +146,7 @@ public:
     Track<Pose> stage_from_head;
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
-    Steps<bool> should_render{true}, visible{true}, focused{true}, present{true};
+    Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true}, head_turn_known{true}, head_place_known{true};
     std::vector<ScriptEvent> events;  // by time
 };
 

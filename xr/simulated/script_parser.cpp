@@ -58,12 +58,17 @@ private:
                                                                            {"head-motion", &Parser::parseHeadMotionLine},
                                                                            {"headset", &Parser::parseHeadsetLine},
                                                                            {"ipd", &Parser::parseIpd},
+                                                                           {"local", &Parser::parseLocal},
+                                                                           {"no-headset-for", &Parser::parseNoHeadset},
                                                                            {"press", &Parser::parsePress},
                                                                            {"profile", &Parser::parseProfile},
                                                                            {"rate", &Parser::parseRate},
+                                                                           {"refuse-depth", &Parser::parseRefusedDepth},
                                                                            {"size", &Parser::parseSize},
+                                                                           {"stage", &Parser::parseStage},
                                                                            {"touch", &Parser::parseTouch},
-                                                                           {"visibility-mask", &Parser::parseMask}};
+                                                                           {"visibility-mask", &Parser::parseMask},
+                                                                           {"vulkan-additions", &Parser::parseVulkanAdditions}};
         const std::string command = words.text("the command");
         const auto found = kCommands.find(command);
         if (found == kCommands.end()) {
@@ -244,7 +249,7 @@ private:
         last_at_s_ = time_s;
         const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
         switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                              "eye", "controller", "present"})) {
+                                              "eye", "controller", "worn", "head", "recentre", "present"})) {
             case 0:
                 return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
             case 1:
@@ -269,6 +274,16 @@ private:
                 const Side side = words.side();
                 return addStep(words, script_.hands[side].tracked, time_s, words.onOff("whether it is tracked"));
             }
+            case 9:
+                return addStep(words, script_.worn, time_s, words.onOff("whether it is worn"));
+            case 10: {
+                const std::size_t known = words.choice("whether it is tracked", {"on", "off", "turn-only"});
+                addStep(words, script_.head_turn_known, time_s, known != 1);
+                return addStep(words, script_.head_place_known, time_s, known == 0);
+            }
+            case 11:
+                script_.recentres_s.push_back(time_s);
+                return addEvent(ScriptEvent::Kind::kRecentre);
             default:
                 return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
         }
@@ -296,7 +311,35 @@ private:
 
     void parseMask(Words& words) {
         requireFirst(words, "visibility-mask");
-        script_.visibility_mask = words.onOff("whether there is a mask");
+        const std::size_t choice = words.choice("whether there is a mask", {"on", "off", "broken"});
+        script_.visibility_mask = choice == 0;
+        script_.visibility_mask_is_broken = choice == 2;
+    }
+
+    void parseVulkanAdditions(Words& words) {
+        requireFirst(words, "vulkan-additions");
+        script_.adds_vulkan_features = words.onOff("whether the runtime asks for Vulkan features of its own");
+    }
+
+    void parseLocal(Words& words) {
+        requireFirst(words, "local");
+        script_.stage_from_local = parsePose(words, {});
+    }
+
+    void parseStage(Words& words) {
+        requireFirst(words, "stage");
+        script_.has_stage = words.onOff("whether there is a STAGE");
+    }
+
+    void parseNoHeadset(Words& words) {
+        requireFirst(words, "no-headset-for");
+        script_.calls_without_headset = static_cast<std::uint32_t>(words.count("the number of calls", 1, 1000000));
+    }
+
+    void parseRefusedDepth(Words& words) {
+        requireFirst(words, "refuse-depth");
+        const bool images = words.choice("what is refused", {"images", "layers"}) == 0;
+        script_.depth = images ? Script::Depth::kNoImages : Script::Depth::kNoLayers;
     }
 
     void parseFrames(Words& words) {

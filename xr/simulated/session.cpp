@@ -9,7 +9,7 @@ namespace {
 
 // The state that the wearer and the script would have the session in.
 XrSessionState targetOf(const Session& session, const State& wanted) {
-    if (session.wants_exit) return XR_SESSION_STATE_STOPPING;
+    if (session.wants_exit || !wanted.worn) return XR_SESSION_STATE_STOPPING;
     if (!wanted.visible) return XR_SESSION_STATE_SYNCHRONIZED;
     return wanted.focused ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_VISIBLE;
 }
@@ -109,6 +109,15 @@ void Session::meetEvents(XrTime display_time) {
             case ScriptEvent::Kind::kExit:
                 wants_exit = true;
                 break;
+            case ScriptEvent::Kind::kRecentre:
+                instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+                                                                            nullptr,
+                                                                            handleOf(*this),
+                                                                            XR_REFERENCE_SPACE_TYPE_LOCAL,
+                                                                            display_time,
+                                                                            XR_FALSE,
+                                                                            {{0, 0, 0, 1}, {0, 0, 0}}});
+                break;
             case ScriptEvent::Kind::kLoseSession:
                 loss_announced = display_time;
                 lost_from = grace_ends;
@@ -127,10 +136,24 @@ void Session::meetEvents(XrTime display_time) {
 }
 
 void Session::announcePresence(const State& now) {
-    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == now.present) return;
-    announced_presence = now.present;
+    const bool present = now.present && now.worn;
+    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == present) return;
+    announced_presence = present;
     instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, handleOf(*this),
-                                                           static_cast<XrBool32>(now.present)});
+                                                           static_cast<XrBool32>(present)});
+}
+
+void Session::idle() {
+    if (state != XR_SESSION_STATE_IDLE || is_running) return;
+    Simulation& simulation = *instance.simulation;
+    simulation.clock.pass();
+    const XrTime now = simulation.clock.now();
+    meetEvents(now);
+    if (loss_announced) return;
+    if (wants_exit)
+        enter(XR_SESSION_STATE_EXITING);
+    else if (simulation.at(now).worn)
+        enter(XR_SESSION_STATE_READY);
 }
 
 void Session::announceMasks(const State& now) {
@@ -170,7 +193,7 @@ XrResult xrCreateSession(XrInstance instance, const XrSessionCreateInfo* createI
         auto device = binding == nullptr ? nullptr : std::make_unique<Device>(graphicsOf(owner, *binding));
         Session& created = adopt(owner, std::make_unique<Session>(owner, std::move(device)));
         created.enter(XR_SESSION_STATE_IDLE);
-        created.enter(XR_SESSION_STATE_READY);
+        if (owner.simulation->at(owner.simulation->clock.now()).worn) created.enter(XR_SESSION_STATE_READY);
         output = handleOf(created);
         return XR_SUCCESS;
     });
@@ -209,7 +232,7 @@ XrResult xrEndSession(XrSession session) {
         wakeFrameWaiters();
         if (ended.loss_announced) return XR_SESSION_LOSS_PENDING;
         ended.enter(XR_SESSION_STATE_IDLE);
-        ended.enter(XR_SESSION_STATE_EXITING);
+        if (ended.wants_exit) ended.enter(XR_SESSION_STATE_EXITING);
         return XR_SUCCESS;
     });
 }

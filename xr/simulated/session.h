@@ -58,6 +58,8 @@ struct Session : Object {
     void meetEvents(XrTime display_time);
     // Tells whether somebody wears the headset, if that is new.
     void announcePresence(const State& now);
+    // Time passes while nobody wears the headset: a period with every look for events that finds none.
+    void idle();
     // Tells of visibility masks that are others than in the frame before.
     void announceMasks(const State& now);
 };

@@ -33,6 +33,7 @@ struct Simulation {
     // The display's, which the application may change.
     double rate_hz = 90;
     std::uint64_t frames_shown = 0;
+    std::uint32_t calls_without_headset = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
     bool survives = false;

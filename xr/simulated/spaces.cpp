@@ -17,15 +17,26 @@ constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_B
 // A millisecond to either side: short against any motion, long against rounding.
 constexpr XrDuration kDifference = 1'000'000;
 
-std::vector<XrReferenceSpaceType> referenceSpacesOf(const Instance& instance) {
-    std::vector<XrReferenceSpaceType> types{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_STAGE};
-    if (instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+bool hasStage(const Session& session) { return session.instance.simulation->script.has_stage; }
+
+std::vector<XrReferenceSpaceType> referenceSpacesOf(const Session& session) {
+    std::vector<XrReferenceSpaceType> types{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL};
+    if (hasStage(session)) types.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
     return types;
 }
 
-bool isKnown(const Instance& instance, XrReferenceSpaceType type) {
-    const std::vector<XrReferenceSpaceType> types = referenceSpacesOf(instance);
+bool isKnown(const Session& session, XrReferenceSpaceType type) {
+    const std::vector<XrReferenceSpaceType> types = referenceSpacesOf(session);
     return std::find(types.begin(), types.end(), type) != types.end();
+}
+
+// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one.
+XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
+    const auto follows_head = [](const Space& one) { return one.reference == XR_REFERENCE_SPACE_TYPE_VIEW; };
+    if (follows_head(space) == follows_head(base) || state.head_place_known) return kPoseKnown;
+    if (!state.head_turn_known) return 0;
+    return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
@@ -42,7 +53,8 @@ struct Location {
 
 Location locate(const Space& space, const Space& base, XrTime time) {
     const std::optional<Pose> pose = baseFromSpace(space, base, time);
-    return pose ? Location{kPoseKnown, toXr(*pose)} : Location{};
+    const XrSpaceLocationFlags flags = pose ? locationFlagsOf(space, base, space.session.instance.simulation->at(time)) : 0;
+    return flags != 0 ? Location{flags, toXr(*pose)} : Location{};
 }
 
 // Motion of the space's origin, in the base's axes.
@@ -82,12 +94,12 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
     }
     // No case of its own: older headers' enumeration lacks it.
     if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR)
-        return compose(space.session.instance.simulation->script.stageFromLocalFloor(), space.origin_from_space);
+        return compose(space.session.instance.simulation->script.stageFromLocalFloor(state.time_s), space.origin_from_space);
     switch (*space.reference) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return compose(state.stage_from_head, space.origin_from_space);
         case XR_REFERENCE_SPACE_TYPE_LOCAL:
-            return compose(space.session.instance.simulation->script.stageFromLocal(), space.origin_from_space);
+            return compose(space.session.instance.simulation->script.stageFromLocal(state.time_s), space.origin_from_space);
         default:
             return space.origin_from_space;
     }
@@ -138,7 +150,7 @@ XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInp
                                     XrReferenceSpaceType* spaces) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        fillArray(spaceCapacityInput, spaceCountOutput, spaces, referenceSpacesOf(owner.instance));
+        fillArray(spaceCapacityInput, spaceCountOutput, spaces, referenceSpacesOf(owner));
         return successOf(owner);
     });
 }
@@ -148,7 +160,7 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         Session& owner = getSession(session);
         const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
-        require(isKnown(owner.instance, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+        require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -181,8 +193,10 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
 XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
+        const bool left_out = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !hasStage(owner);
+        require(!left_out, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
         // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
-        require(isKnown(owner.instance, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
+        require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
         checkedOutput(bounds) = {0, 0};
         if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
         *bounds = {3, 2};

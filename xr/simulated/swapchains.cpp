@@ -38,6 +38,8 @@ const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted
     const auto& formats = session.device->formats();
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) { return format.format == wanted; });
     require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "a format that was not enumerated");
+    const bool takes_depth = session.instance.simulation->script.depth != Script::Depth::kNoImages;
+    require(takes_depth || found->aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "the script takes no depth");
     return *found;
 }
 

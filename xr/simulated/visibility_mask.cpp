@@ -1,4 +1,6 @@
 // XR_KHR_visibility_mask: what of the picture the lens never shows. Empty unless the script turns it on, as on many runtimes.
+#include <cstdlib>
+
 #include "xr/simulated/api.h"
 #include "xr/simulated/session.h"
 #include "xr/simulated/structures.h"
@@ -30,6 +32,7 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
         XrVisibilityMaskKHR& output = checked(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
         const Simulation& simulation = *owner.instance.simulation;
         Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[viewIndex].fov, visibilityMaskType);
+        if (simulation.script.visibility_mask_is_broken) std::abort();
         if (!simulation.script.visibility_mask) mesh = {};
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());

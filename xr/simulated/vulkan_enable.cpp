@@ -168,7 +168,13 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
         require(info.vulkanPhysicalDevice != VK_NULL_HANDLE && info.vulkanPhysicalDevice == owner.graphics_device, XR_ERROR_HANDLE_INVALID,
                 "not the device that xrGetVulkanGraphicsDevice2KHR gave");
         const auto create = resolve<PFN_vkCreateDevice>(info.pfnGetInstanceProcAddr, owner.graphics_instance, "vkCreateDevice");
-        result = create(info.vulkanPhysicalDevice, info.vulkanCreateInfo, info.vulkanAllocator, &output);
+        // As Monado does it: a feature of the runtime's own, by its own struct.
+        VkPhysicalDeviceTimelineSemaphoreFeatures timeline{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES,
+                                                           const_cast<void*>(info.vulkanCreateInfo->pNext), VK_TRUE};
+        VkDeviceCreateInfo with_additions = *info.vulkanCreateInfo;
+        with_additions.pNext = &timeline;
+        const bool adds = owner.simulation->script.adds_vulkan_features;
+        result = create(info.vulkanPhysicalDevice, adds ? &with_additions : info.vulkanCreateInfo, info.vulkanAllocator, &output);
         return XR_SUCCESS;
     });
 }

@@ -1,0 +1,228 @@
+// Facts about holding the frame rate, on machines that are made up: what a frame costs is a function of time, method and resolution.
+#include "app/governor.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+using namespace binosplat;
+
+namespace {
+
+constexpr double kPeriodMs = 1000.0 / 90.0;
+const GovernedSettings kWish{"predicted", 0.22, 1.0};
+
+// Milliseconds of a frame; time counts from the start of the run.
+using Load = std::function<double(double time_s, const GovernedSettings&)>;
+
+// `ms` is what `shared` takes at full resolution. A third of it is the same whatever the resolution; a lossy method takes `lossy` of it,
+// and less with a smaller budget.
+double cost(double ms, double lossy, const GovernedSettings& settings) {
+    const double pixels = settings.resolution_scale * settings.resolution_scale;
+    const double method = settings.mode == "shared" ? 1.0 : lossy + 0.3 * (settings.budget - kWish.budget);
+    return ms * method * (1.0 / 3.0 + 2.0 / 3.0 * pixels);
+}
+
+// Small and large frames in turn, the same in every run.
+double shiver(std::size_t frame) { return 1.0 + 0.04 * std::sin(12.9898 * static_cast<double>(frame)); }
+
+struct Run {
+    struct Frame {
+        double time_s, gpu_ms, period_ms;
+        GovernedSettings settings;
+        bool beaten;
+        std::string sentence;
+    };
+    std::vector<Frame> frames;
+
+    [[nodiscard]] std::vector<std::size_t> changes() const {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 1; i < frames.size(); ++i) {
+            if (frames[i].settings != frames[i - 1].settings) { found.push_back(i); }
+        }
+        return found;
+    }
+    // The longest row of frames over the period, from `first` on.
+    [[nodiscard]] std::size_t longestOver(std::size_t first = 0) const {
+        std::size_t row = 0, longest = 0;
+        for (std::size_t i = first; i < frames.size(); ++i) {
+            row = frames[i].gpu_ms > frames[i].period_ms ? row + 1 : 0;
+            longest = std::max(longest, row);
+        }
+        return longest;
+    }
+    [[nodiscard]] const Frame& last() const { return frames.back(); }
+};
+
+Run govern(Quality quality, double seconds, const Load& load, const std::function<double(double)>& period = {},
+           const GovernedSettings& wish = kWish) {
+    Governor governor;
+    Run run;
+    double time_s = 0.0;
+    for (std::size_t frame = 0; time_s < seconds; ++frame) {
+        governor.wish(quality, wish);
+        const GovernedSettings settings = governor.settings();
+        const double period_ms = period ? period(time_s) : kPeriodMs;
+        const double gpu_ms = load(time_s, settings) * shiver(frame);
+        governor.measure({gpu_ms, period_ms});
+        run.frames.push_back({time_s, gpu_ms, period_ms, settings, governor.isBeaten(), governor.sentence()});
+        time_s += 1e-3 * period_ms;
+    }
+    return run;
+}
+
+// Times at which a load changes: 60 frames after each it has settled, and from then on changes at most once a second.
+void checkCalm(const Run& run, const std::vector<double>& upheavals_s) {
+    double last_s = -10.0;
+    for (const std::size_t i : run.changes()) {
+        const double time_s = run.frames[i].time_s;
+        const bool settling = std::any_of(upheavals_s.begin(), upheavals_s.end(),
+                                          [&](double from_s) { return time_s >= from_s && time_s <= from_s + 60 * 1e-3 * kPeriodMs; });
+        CAPTURE(time_s);
+        if (!settling) { CHECK(time_s - last_s >= 1.0 - 1e-9); }
+        last_s = time_s;
+    }
+}
+
+// Changes after a time.
+std::size_t changesAfter(const Run& run, double from_s) {
+    const auto changes = run.changes();
+    return static_cast<std::size_t>(
+        std::count_if(changes.begin(), changes.end(), [&](std::size_t i) { return run.frames[i].time_s >= from_s; }));
+}
+
+}  // namespace
+
+TEST_CASE("off, the settings are the wearer's, whatever they cost") {
+    const Run run = govern(Quality::kOff, 5.0, [](double, const GovernedSettings&) { return 40.0; });
+    CHECK(run.changes().empty());
+    CHECK(run.last().settings == kWish);
+    CHECK(run.last().sentence.empty());
+}
+
+TEST_CASE("where everything fits, nothing is lost and nothing changes") {
+    const Run run = govern(Quality::kBalanced, 20.0, [](double, const GovernedSettings& s) { return cost(6.0, 0.8, s); });
+    CHECK(run.changes().empty());
+    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.last().sentence.find("shared at 100 %: 6.") == 0);
+}
+
+TEST_CASE("of a load that does not change it finds what fits within 60 frames, and stays there") {
+    for (const Quality quality : {Quality::kSharp, Quality::kBalanced, Quality::kFast}) {
+        for (const double lossy : {0.7, 0.8, 0.9}) {
+            for (const double ms : {9.5, 10.5, 11.0, 12.0, 13.0, 15.0}) {
+                CAPTURE(static_cast<int>(quality));
+                CAPTURE(lossy);
+                CAPTURE(ms);
+                const Run run = govern(quality, 60.0, [&](double, const GovernedSettings& s) { return cost(ms, lossy, s); });
+                checkCalm(run, {0.0});
+                if (!run.last().beaten) { CHECK(run.longestOver() <= 10); }
+                CHECK(changesAfter(run, 30.0) <= 2);
+                CHECK(changesAfter(run, 50.0) <= 1);
+            }
+        }
+    }
+}
+
+TEST_CASE("a tenth of the period is spared") {
+    for (const double ms : {10.5, 12.0, 14.0, 18.0}) {
+        CAPTURE(ms);
+        const Run run = govern(Quality::kFast, 20.0, [&](double, const GovernedSettings& s) { return cost(ms, 0.8, s); });
+        std::vector<double> last;
+        for (std::size_t i = run.frames.size() - 300; i < run.frames.size(); ++i) { last.push_back(run.frames[i].gpu_ms); }
+        std::nth_element(last.begin(), last.begin() + 150, last.end());
+        CHECK(last[150] <= 0.9 * kPeriodMs * 1.01);
+        CHECK(last[150] >= 0.6 * kPeriodMs);  // and no more is given up than must be
+    }
+}
+
+TEST_CASE("a load that comes and goes: quality is given up at once and given back when there is room") {
+    const auto ms = [](double t) { return t < 5.0 ? 7.0 : t < 20.0 ? 16.0 : 7.0; };
+    const Run run = govern(Quality::kFast, 60.0, [&](double t, const GovernedSettings& s) { return cost(ms(t), 0.8, s); });
+    CHECK(run.longestOver() <= 10);
+    checkCalm(run, {5.0});
+    CHECK(run.frames[400].settings == GovernedSettings{"shared", 0.22, 1.0});
+    const auto at = [&](double time_s) {
+        return *std::find_if(run.frames.begin(), run.frames.end(), [&](const auto& frame) { return frame.time_s >= time_s; });
+    };
+    CHECK(at(15.0).settings.resolution_scale < 1.0);
+    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(at(6.0).sentence.find("took 16.") != std::string::npos);
+    CHECK(changesAfter(run, 40.0) == 0);
+}
+
+TEST_CASE("a lossy method that is slower than what loses nothing is found out in one trial, and not tried again soon") {
+    const Run run = govern(Quality::kFast, 40.0, [](double, const GovernedSettings& s) { return cost(14.0, 1.15, s); });
+    checkCalm(run, {0.0});
+    CHECK(run.longestOver() <= 10);
+    CHECK(run.last().settings.mode == "shared");
+    std::size_t lossy = 0;
+    for (const Run::Frame& frame : run.frames) { lossy += frame.settings.mode == "shared" ? 0 : 1; }
+    CHECK(lossy < run.frames.size() / 8);
+}
+
+TEST_CASE("a lossy method that becomes slower than what loses nothing is left") {
+    const auto lossy = [](double t) { return t < 15.0 ? 0.7 : 1.4; };
+    const Run run = govern(Quality::kFast, 60.0, [&](double t, const GovernedSettings& s) { return cost(12.5, lossy(t), s); });
+    CHECK(run.frames[1200].settings.mode == "predicted");
+    CHECK(run.longestOver() <= 10);
+    checkCalm(run, {0.0, 15.0});
+    CHECK(run.last().settings.mode == "shared");
+}
+
+TEST_CASE("what the wearer chose that loses nothing is not replaced by what does") {
+    for (const char* mode : {"shared", "two-pass", "mono"}) {
+        const GovernedSettings wish{mode, 0.22, 1.2};
+        const Run run = govern(
+            Quality::kFast, 20.0,
+            [](double, const GovernedSettings& s) {
+                return cost(20.0, 1.0, {"shared", 0, s.resolution_scale});
+            },
+            {}, wish);
+        for (const Run::Frame& frame : run.frames) { CHECK(frame.settings.mode == mode); }
+        CHECK(run.last().settings.resolution_scale < 1.0);
+    }
+}
+
+TEST_CASE("another period is another budget") {
+    const auto period = [](double t) { return t < 8.0 ? 1000.0 / 72.0 : t < 20.0 ? 1000.0 / 120.0 : 1000.0 / 72.0; };
+    const Run run = govern(
+        Quality::kFast, 60.0, [](double, const GovernedSettings& s) { return cost(11.0, 0.8, s); }, period);
+    checkCalm(run, {8.0});
+    CHECK(run.longestOver() <= 10);
+    CHECK(run.frames[500].settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+}
+
+TEST_CASE("where not even the least settings fit, it says so and stays with them") {
+    const Run run = govern(Quality::kSharp, 20.0, [](double, const GovernedSettings& s) { return cost(60.0, 0.8, s); });
+    checkCalm(run, {0.0});
+    CHECK(run.last().beaten);
+    CHECK(run.last().settings.resolution_scale == doctest::Approx(0.8));
+    CHECK(run.last().sentence.find("not even that fits") != std::string::npos);
+    CHECK(changesAfter(run, 5.0) <= 2);
+}
+
+TEST_CASE("a single slow frame, or every tenth, changes nothing") {
+    std::size_t frame = 0;
+    const Run run =
+        govern(Quality::kBalanced, 20.0, [&](double, const GovernedSettings& s) { return ++frame % 10 == 0 ? 25.0 : cost(7.0, 0.8, s); });
+    CHECK(run.changes().empty());
+}
+
+TEST_CASE("a load that swings about the limit does not make it swing") {
+    const Run run =
+        govern(Quality::kFast, 120.0, [](double t, const GovernedSettings& s) { return cost(10.5 + 1.0 * std::sin(2.0 * t), 0.8, s); });
+    CHECK(run.longestOver() <= 10);
+    checkCalm(run, {0.0});
+    CHECK(changesAfter(run, 60.0) <= 8);
+}
+
+TEST_CASE("without times nothing is chosen, and that is said") {
+    const Run run = govern(Quality::kFast, 2.0, [](double, const GovernedSettings&) { return 0.0; });
+    CHECK(run.changes().empty());
+    CHECK(run.last().sentence.find("does not say") != std::string::npos);
+}
