@@ -16,7 +16,7 @@ vk::Format chooseEyeFormat(const xr::Session& session) {
 }
 
 EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px)
-    : presenter_(presenter), size_px_(size_px) {
+    : presenter_(presenter), size_px_(size_px), part_px_(size_px) {
     const std::array depth_formats{vk::Format::eD32Sfloat};
     const bool depth = session.instance().takesDepth() && xr::chooseFormat(session, depth_formats) == vk::Format::eD32Sfloat;
     const auto nameOf = [](std::size_t e) -> std::string { return e == kLeft ? "the left eye" : "the right eye"; };
@@ -45,7 +45,7 @@ void EyeImages::acquire(int eye, bool with_depth) {
 
 void EyeImages::present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near) {
     const auto e = static_cast<std::size_t>(eye);
-    presenter_.record(commands, {&image, size_px_, tinted_by, colour_now_[e], depth_now_[e]}, near);
+    presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e]}, near);
 }
 
 void EyeImages::clear(Commands& commands, int eye, const glm::vec3& colour) {
@@ -61,7 +61,7 @@ void EyeImages::release() {
 
 xr::LayerEye EyeImages::layerEye(int eye, const xr::EyeView& view, double near_m) const {
     const auto e = static_cast<std::size_t>(eye);
-    return {view, &colour_[e], shows_depth_[e] ? &depth_[e] : nullptr, near_m};
+    return {view, &colour_[e], shows_depth_[e] ? &depth_[e] : nullptr, near_m, part_px_};
 }
 
 }  // namespace binosplat

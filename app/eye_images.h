@@ -17,6 +17,9 @@ public:
     EyeImages(const xr::Session& session, Presenter& presenter, vk::Format format, glm::uvec2 size_px);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    // Frames may be smaller than the images: from now on they are of this size, at most sizePx().
+    void draw(glm::uvec2 part_px) { part_px_ = glm::min(part_px, size_px_); }
+    [[nodiscard]] glm::uvec2 partPx() const { return part_px_; }
     // The runtime refuses depth after all: from now on there is none.
     void dropDepth();
     [[nodiscard]] bool takesDepth() const { return depth_[0].handle() != XR_NULL_HANDLE; }
@@ -34,7 +37,7 @@ public:
 
 private:
     Presenter& presenter_;
-    glm::uvec2 size_px_;
+    glm::uvec2 size_px_, part_px_;
     std::array<xr::Swapchain, 2> colour_, depth_;
     std::array<vk::Image, 2> colour_now_{}, depth_now_{};  // of this frame; null: not taken
     std::array<bool, 2> shows_depth_{};

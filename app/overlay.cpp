@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <string_view>
 #include <vector>
 
 namespace binosplat {
@@ -69,6 +71,13 @@ void drawResolution(ViewSettings& settings) {
     // As many digits as are shown.
     if (ImGui::IsItemDeactivatedAfterEdit()) { settings.resolution_scale = std::round(100.0 * std::clamp(scale, kLeast, kMost)) / 100.0; }
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
+}
+
+void drawQuality(ViewSettings& settings, const OverlayStatus& status) {
+    std::string chosen = kQualityNames[static_cast<std::size_t>(settings.quality)];
+    chooseFrom("Hold the frame rate", std::array{"off", "sharp", "balanced", "fast"}, chosen, 4);
+    settings.quality = static_cast<Quality>(std::ranges::find(kQualityNames, chosen) - std::begin(kQualityNames));
+    if (!status.governor.empty()) { ImGui::TextWrapped("%s", status.governor.c_str()); }
 }
 
 void drawTimes(const OverlayStatus& status) {
@@ -133,6 +142,7 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         actions.recentre = ImGui::Button("Recentre");
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
+        drawQuality(settings, status);
         drawTimes(status);
     }
     ImGui::PopItemWidth();

@@ -20,6 +20,7 @@ struct OverlayStatus {
     std::optional<double> loading;       // share done, while a scene is on its way
     const FrameResult* frame = nullptr;  // the last one; null before the first
     std::vector<float> frame_ms;         // from frame to frame by the clock on the wall, oldest first
+    std::string governor;                // what it does about the frame rate, and why
     std::string message;                 // what came of the last button
 };
 

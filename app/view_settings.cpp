@@ -5,6 +5,9 @@
 #include "engine/error.h"
 #include "engine/setup/values.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace binosplat {
@@ -43,7 +46,8 @@ std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& s
     return {{"resolution-scale", fmt::format("{}", settings.resolution_scale)},
             {"tint", settings.tint ? "true" : "false"},
             {"panel", settings.panel ? "true" : "false"},
-            {"visibility-mask", settings.visibility_mask ? "true" : "false"}};
+            {"visibility-mask", settings.visibility_mask ? "true" : "false"},
+            {"quality", fmt::format("\"{}\"", kQualityNames[static_cast<std::size_t>(settings.quality)])}};
 }
 
 }  // namespace
@@ -59,6 +63,10 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 settings.tint = readFlag(setting);
             } else if (key == "panel") {
                 settings.panel = readFlag(setting);
+            } else if (key == "quality") {
+                const auto* const found = std::ranges::find(kQualityNames, setting.text());
+                check(found != std::end(kQualityNames), "{} is {}, must be off, sharp, balanced or fast", setting.origin, setting.text());
+                settings.quality = static_cast<Quality>(found - std::begin(kQualityNames));
             } else if (key == "visibility-mask") {
                 settings.visibility_mask = readFlag(setting);
             } else if (key == "scene-position") {

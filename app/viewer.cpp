@@ -136,7 +136,7 @@ void Viewer::drawFrame() {
     const double step_seconds = stay_->session.stepSeconds();
     controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_.panel, scene_from_room_);
     obeyWindow(room_from_head_, step_seconds);
-    fitResolution();
+    govern();
 
     status_.state.clear();
     if (settings_.panel || window_) { layOutPanel(settings_.panel); }
@@ -232,6 +232,19 @@ void Viewer::fitResolution() {
     if (!takes_depth_) { images->dropDepth(); }
 }
 
+void Viewer::govern() {
+    governor_.wish(settings_.quality, {settings_.stereo.mode, settings_.stereo.budget, settings_.resolution_scale});
+    fitResolution();
+    stay_->images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
+}
+
+StereoOptions Viewer::governedStereo() const {
+    StereoOptions stereo = settings_.stereo;
+    stereo.mode = governor_.settings().mode;
+    stereo.budget = governor_.settings().budget;
+    return stereo;
+}
+
 void Viewer::renderWaiting() {
     for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
     commands_.begin();
@@ -245,9 +258,9 @@ void Viewer::renderWaiting() {
 void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes) {
     std::array<Eye, 2> eyes;
     for (std::size_t e = 0; e < 2; ++e) {
-        eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, stay_->images->sizePx());
+        eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, stay_->images->partPx());
     }
-    FrameSettings frame = frameSettings(options_.run.camera, settings_.stereo);
+    FrameSettings frame = frameSettings(options_.run.camera, governedStereo());
     frame.near = options_.run.camera.near * scene_from_room_.scale;  // of the wearer, however large the scene is
     frame.dominant = settings_.stereo.dominant;
     frame.keep_depth = frame.keep_both_depths = stay_->images->takesDepth();
@@ -255,7 +268,7 @@ void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::arr
     frame.keep_classes = settings_.tint;
     // One eye's picture for both is seen through either lens.
     if (!showsOneEye() && settings_.visibility_mask) {
-        frame.hidden_tiles = stay_->lens_mask.update(stay_->session, views, stay_->images->sizePx());
+        frame.hidden_tiles = stay_->lens_mask.update(stay_->session, views, stay_->images->partPx());
     }
     for (const int e : {kLeft, kRight}) {
         if (!showsOneEye() || e == frame.dominant) { stay_->images->acquire(e, true); }
@@ -265,6 +278,9 @@ void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::arr
                                      recordEyes(commands, frame);
                                      recordPanel(commands);
                                  });
+    const GovernedSettings before = governor_.settings();
+    governor_.measure({last_.gpu_total_ms, stay_->session.periodMs()});
+    if (governor_.settings() != before) { fmt::print("frame {}: {}\n", frames_, governor_.sentence()); }
     sayHidden();
 }
 
@@ -277,7 +293,7 @@ void Viewer::recordEyes(Commands& commands, const FrameSettings& frame) {
         stay_->images->present(commands, e, image, tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = frame.mode == Mode::kMono || dominant != settings_.tint;
-        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), stay_->images->sizePx(), format_); }
+        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), stay_->images->partPx(), format_); }
     }
 }
 
@@ -303,6 +319,7 @@ void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views
 void Viewer::layOutPanel(bool hung) {
     status_.loading = loader_ ? std::optional(loader_->progress()) : std::nullopt;
     status_.has_scene = scene_ != nullptr;
+    status_.governor = governor_.sentence();
     status_.frame = last_.counters.empty() ? nullptr : &last_;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
     canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());

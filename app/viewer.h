@@ -36,6 +36,8 @@ private:
     void takeScene();
     // The headset does not need it: where it does not open, a line says why.
     void openWindow();
+    // What the governor makes of the wearer's settings, and images as large as that.
+    void govern();
     void fitResolution();
     // The room begins where the head is, once that is known or when it is asked for.
     void settle();
@@ -56,6 +58,7 @@ private:
     void say(const std::string& message);
     void leave();
     void waitForQueue() const;
+    [[nodiscard]] StereoOptions governedStereo() const;
     [[nodiscard]] bool showsOneEye() const { return settings_.stereo.mode == "mono"; }
 
     ViewOptions options_;
@@ -69,6 +72,7 @@ private:
     WindowInput window_input_;
     vk::Image panel_now_;                          // of this frame, where the panel is shown
     std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
+    Governor governor_;
     OverlayPanel panel_;
     WearerControls controls_;
     Commands commands_;

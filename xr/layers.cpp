@@ -9,12 +9,13 @@ namespace binosplat::xr {
 
 void Layers::addEyes(const std::array<LayerEye, 2>& eyes) {
     for (std::size_t e = 0; e < 2; ++e) {
-        eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov, eyes[e].colour->subImage()};
+        eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov,
+                    eyes[e].colour->subImage(eyes[e].part_px)};
         if (eyes[e].depth == nullptr) { continue; }
         // Reversed and without an end: 0 is infinitely far, 1 is the near plane.
         depths_[e] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
                       nullptr,
-                      eyes[e].depth->subImage(),
+                      eyes[e].depth->subImage(eyes[e].part_px),
                       0.0f,
                       1.0f,
                       std::numeric_limits<float>::infinity(),
@@ -32,7 +33,7 @@ void Layers::addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, con
              XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT,
              session_.space(),
              XR_EYE_VISIBILITY_BOTH,
-             swapchain.subImage(),
+             swapchain.subImage(swapchain.sizePx()),
              toXr(room_from_panel),
              {static_cast<float>(size_m.x), static_cast<float>(size_m.y)}};
     list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&panel));

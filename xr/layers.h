@@ -17,6 +17,7 @@ struct LayerEye {
     const Swapchain* colour = nullptr;
     const Swapchain* depth = nullptr;  // near_m / depth, 0 where nothing is
     double near_m = 0.0;
+    glm::uvec2 part_px{0, 0};  // of the images, from their top left corner
 };
 
 class Layers {

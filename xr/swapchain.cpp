@@ -93,8 +93,8 @@ void Swapchain::release() {
     BINOSPLAT_XR(xrReleaseSwapchainImage(swapchain_, nullptr));
 }
 
-XrSwapchainSubImage Swapchain::subImage() const {
-    return {swapchain_, {{0, 0}, {static_cast<std::int32_t>(size_px_.x), static_cast<std::int32_t>(size_px_.y)}}, 0};
+XrSwapchainSubImage Swapchain::subImage(glm::uvec2 part_px) const {
+    return {swapchain_, {{0, 0}, {static_cast<std::int32_t>(part_px.x), static_cast<std::int32_t>(part_px.y)}}, 0};
 }
 
 }  // namespace binosplat::xr

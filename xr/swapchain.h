@@ -39,8 +39,8 @@ public:
     [[nodiscard]] XrSwapchain handle() const { return swapchain_; }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] vk::Format format() const { return format_; }
-    // The whole image, for a layer.
-    [[nodiscard]] XrSwapchainSubImage subImage() const;
+    // The image from its top left corner on, for a layer.
+    [[nodiscard]] XrSwapchainSubImage subImage(glm::uvec2 part_px) const;
 
 private:
     void destroy();

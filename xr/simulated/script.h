@@ -70,11 +70,12 @@ struct State {
 struct ScriptEvent {
     enum class Kind {
         kSlowImages,    // the next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED
-        kRecentre,      // LOCAL's origin is where the head is
+        kRecentre,      // kNoticeSeconds later LOCAL's origin is where the head is then
         kLoseSession,   // LOSS_PENDING, then XR_ERROR_SESSION_LOST from every call
         kLoseInstance,  // XrEventDataInstanceLossPending, then XR_ERROR_INSTANCE_LOST
         kExit,          // STOPPING, then EXITING, as if the wearer left the program
     };
+    static constexpr double kNoticeSeconds = 0.05;
     double time_s = 0.0;
     Kind kind = Kind::kExit;
     std::uint32_t count = 1;

@@ -242,7 +242,7 @@ private:
     }
 
     void parseAt(Words& words) {
-        const double time_s = words.time();
+        double time_s = words.time();
         if (last_at_s_ && time_s < *last_at_s_) {
             words.fail("the time is {}, must not be before the `at` before, at {}", time_s, *last_at_s_);
         }
@@ -283,7 +283,11 @@ private:
             }
             case 11:
                 script_.recentres_s.push_back(time_s);
-                return addEvent(ScriptEvent::Kind::kRecentre);
+                // The program is told before.
+                time_s -= ScriptEvent::kNoticeSeconds;
+                script_.events.insert(std::ranges::upper_bound(script_.events, time_s, {}, &ScriptEvent::time_s),
+                                      {time_s, ScriptEvent::Kind::kRecentre, 1});
+                return;
             default:
                 return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
         }

@@ -110,13 +110,14 @@ void Session::meetEvents(XrTime display_time) {
                 wants_exit = true;
                 break;
             case ScriptEvent::Kind::kRecentre:
-                instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
-                                                                            nullptr,
-                                                                            handleOf(*this),
-                                                                            XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                                                            display_time,
-                                                                            XR_FALSE,
-                                                                            {{0, 0, 0, 1}, {0, 0, 0}}});
+                instance.events.push(
+                    XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+                                                           nullptr,
+                                                           handleOf(*this),
+                                                           XR_REFERENCE_SPACE_TYPE_LOCAL,
+                                                           simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds),
+                                                           XR_FALSE,
+                                                           {{0, 0, 0, 1}, {0, 0, 0}}});
                 break;
             case ScriptEvent::Kind::kLoseSession:
                 loss_announced = display_time;

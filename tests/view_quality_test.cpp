@@ -1,0 +1,56 @@
+// Facts about holding the frame rate in the headset: periods so short that nothing fits, and so long that everything does.
+#include "engine/geometry.h"
+#include "tests/view_runs.h"
+
+#include <doctest/doctest.h>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+ViewRun runQuality(const Workplace& work, const std::string& name, int rate_hz, int frames, const std::string& view) {
+    std::ofstream(work.path / (name + ".toml")) << "[view]\n" << view;
+    const ViewRun run = runView(work, name, fmt::format("rate {}\nsize 200 200\nframes none\nvisibility-mask on\n", rate_hz),
+                                fmt::format("builtin:fence --load-first --hide-panel --frames {} --config {}.toml", frames, name));
+    checkClean(run);
+    return run;
+}
+
+// Of the left eye's picture.
+int widthAt(const ViewRun& run, std::size_t frame) {
+    return run.layers(frame, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>()[2];
+}
+
+}  // namespace
+
+TEST_CASE("where nothing fits, the least settings of the quality are reached within 60 frames, and that is said") {
+    const Workplace work;
+    // A period of a millisecond.
+    for (const auto& [quality, least] : {std::pair("sharp", 160), std::pair("fast", 80)}) {
+        const ViewRun run = runQuality(work, quality, 1000, 70, fmt::format("quality = \"{}\"\n", quality));
+        CHECK(widthAt(run, 60) == least);
+        CHECK(run.outcome.output.find("ms; shared at 100 % took") != std::string::npos);
+    }
+}
+
+TEST_CASE("what the wearer set is the most there is, and it is kept where everything fits or quality is off") {
+    const Workplace work;
+    const ViewRun smaller = runQuality(work, "smaller", 1000, 70, "quality = \"fast\"\nresolution-scale = 0.8\n");
+    CHECK(widthAt(smaller, 3) == 160);
+    CHECK(widthAt(smaller, 60) == 64);
+    // A period of a tenth of a second.
+    CHECK(widthAt(runQuality(work, "slow", 10, 40, "quality = \"fast\"\n"), 38) == 200);
+    const ViewRun off = runQuality(work, "off", 1000, 40, "quality = \"off\"\n");
+    CHECK(widthAt(off, 38) == 200);
+    CHECK(off.outcome.output.find(" took ") == std::string::npos);
+}
+
+TEST_CASE("a quality that is none is refused") {
+    const Workplace work;
+    std::ofstream(work.path / "bad.toml") << "[view]\nquality = \"best\"\n";
+    const Outcome outcome = work.run("view builtin:fence --simulate --frames 3 --config bad.toml");
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.errors.find("bad.toml:2") != std::string::npos);
+    CHECK(outcome.errors.find("must be off, sharp, balanced or fast") != std::string::npos);
+}
