@@ -128,8 +128,10 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         actions.reset_scene = ImGui::Button("Scene back to its place");
         ImGui::SameLine();
         actions.quit = ImGui::Button("Quit");
-        ImGui::SameLine();
-        actions.reload_shaders = ImGui::Button("Shaders");
+        if (status.can_reload_shaders) {
+            ImGui::SameLine();
+            actions.reload_shaders = ImGui::Button("Shaders");
+        }
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
         drawTimes(status);

@@ -19,6 +19,7 @@ struct OverlayStatus {
     const FrameResult* frame = nullptr;  // the last one; null before the first
     std::vector<float> frame_ms;         // from frame to frame by the clock on the wall, oldest first
     std::string message;                 // what came of the last button
+    bool can_reload_shaders = false;     // whether there is a button for it
 };
 
 // Buttons that were pressed.

@@ -56,6 +56,7 @@ Viewer::Viewer(const ViewOptions& options, xr::Session& session, bool mirrored)
       settings_(startSettings(options)),
       loader_(context_, options.scene, options.run) {
     status_.scene = options.scene;
+    status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (mirrored) { openWindow(); }
     fitResolution();
     fillRay();
@@ -269,7 +270,7 @@ void Viewer::obey(const OverlayActions& actions) {
 }
 
 void Viewer::reloadShaders() {
-    if (!scene_) { return; }  // kernels are being made elsewhere
+    if (!scene_ || !status_.can_reload_shaders) { return; }  // without a scene kernels are being made elsewhere
     status_.message = binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scene_->frame.rebuildKernels();
         presenter_.rebuildKernels();
