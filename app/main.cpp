@@ -3,6 +3,7 @@
 #include "app/interrupt.h"
 #include "app/options.h"
 #include "engine/gpu/device_error.h"
+#include "engine/platform.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -48,7 +49,7 @@ int report(ExitCode code, std::string message) {
 
 int main(int argument_count, char** arguments) {
     using namespace binosplat;
-    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes fails like one to a full disk
+    letLongWritesFail();
     const Interrupt interrupt;
     try {
         run(argument_count, arguments);

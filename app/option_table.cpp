@@ -158,7 +158,8 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
         {{"load-first", "", kView, "", "load the scene before the session starts, not meanwhile"}, field::flag<&ViewOptions::load_first>()},
         {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},
-        {{"shaders", "", kView, "DIR", "folder that the panel's Shaders button reloads from"}, field::text<&ViewOptions::shaders>()},
+        {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
+         field::text<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
          field::textIfAny<&ViewOptions::script>()},
     };

@@ -98,7 +98,7 @@ struct ViewOptions {
     std::uint64_t frames = 0;       // stop after so many; 0: never
     bool load_first = false;        // before the session starts, so that runs repeat
     bool hide_panel = false;        // at the start
-    std::filesystem::path shaders;  // folder to reload them from; empty: see shaderFolder
+    std::filesystem::path shaders;  // folder to reload them from; see shaderFolder
 };
 
 struct InfoOptions {

@@ -137,9 +137,11 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         ImGui::SameLine();
         actions.quit = ImGui::Button("Quit");
         ImGui::SameLine();
-        actions.reload_shaders = ImGui::Button("Shaders");
-        ImGui::SameLine();
         actions.recentre = ImGui::Button("Recentre");
+        if (status.can_reload_shaders) {
+            ImGui::SameLine();
+            actions.reload_shaders = ImGui::Button("Shaders");
+        }
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
         drawQuality(settings, status);

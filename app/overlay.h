@@ -22,6 +22,7 @@ struct OverlayStatus {
     std::vector<float> frame_ms;         // from frame to frame by the clock on the wall, oldest first
     std::string governor;                // what it does about the frame rate, and why
     std::string message;                 // what came of the last button
+    bool can_reload_shaders = false;     // whether there is a button for it
 };
 
 // Buttons that were pressed.

@@ -2,10 +2,9 @@
 #include "app/progress.h"
 
 #include "app/interrupt.h"
+#include "engine/platform.h"
 
 #include <fmt/format.h>
-
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,7 @@
 
 namespace binosplat {
 
-ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), terminal_(isTerminal(stderr)) {}
 
 ProgressLine::~ProgressLine() {
     if (shown_) { fmt::print(stderr, "\r\033[K"); }

@@ -2,21 +2,15 @@
 #include "app/shader_reload.h"
 
 #include "engine/error.h"
+#include "engine/platform.h"
 #include "shaders/embedded_shaders.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
+#include <cerrno>
 #include <chrono>
-#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <future>
 #include <sstream>
-
-extern char** environ;
 
 namespace binosplat {
 
@@ -26,10 +20,8 @@ namespace fs = std::filesystem;
 
 // A folder of its own, gone with this.
 struct Workshop {
-    Workshop() {
-        std::string name = (fs::temp_directory_path() / "binosplat-shaders-XXXXXX").string();
-        check(mkdtemp(name.data()) != nullptr, "{} cannot be made", name);
-        path = name;
+    Workshop() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
+        check(!path.empty(), "{}: cannot be written ({})", fs::temp_directory_path().string(), std::strerror(errno));
     }
     Workshop(const Workshop&) = delete;
     Workshop& operator=(const Workshop&) = delete;
@@ -51,24 +43,6 @@ std::vector<T> readAll(const fs::path& file) {
     return values;
 }
 
-// Runs a program with what it prints going to `log`; whether it did and returned 0.
-bool runProgram(std::vector<std::string> words, const fs::path& log) {
-    std::vector<char*> arguments;
-    for (std::string& word : words) { arguments.push_back(word.data()); }
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    pid_t child = 0;
-    const int failed = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    check(failed == 0, "{} does not run; it comes with the package glslang-tools", words[0]);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 // The first complaint in what glslang printed, "ERROR: FILE:LINE: REASON".
 std::string firstError(const fs::path& log, const fs::path& source) {
     const std::vector<char> text = readAll<char>(log);
@@ -82,9 +56,11 @@ std::string firstError(const fs::path& log, const fs::path& source) {
 
 std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& name, const fs::path& workshop) {
     const fs::path source = folder / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
-    check(fs::exists(source), "{} is not there", source.string());
-    // As shaders/CMakeLists.txt has it.
-    const bool ok = runProgram({BINOSPLAT_GLSLANG, "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
+    std::error_code ignored;
+    check(fs::exists(source, ignored), "{} is not there", source.string());
+    check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
+    // As shaders/CMakeLists.txt has it. The compiler comes with the package glslang-tools.
+    const bool ok = runProgram({"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
                                 "-I" + folder.string(), "-o", words.string(), source.string()},
                                log);
     check(ok, "{}", firstError(log, source));
@@ -93,11 +69,7 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
 
 }  // namespace
 
-fs::path shaderFolder(const fs::path& folder) {
-    if (!folder.empty()) { return folder; }
-    const char* chosen = std::getenv("BINOSPLAT_SHADERS");
-    return chosen != nullptr && *chosen != '\0' ? chosen : BINOSPLAT_SHADER_SOURCES;
-}
+fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder; }
 
 ShaderWords compileShaders(const fs::path& folder) {
     const Workshop workshop;

@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment, else those this program was built from.
+// Where the sources are: `folder` if it is not empty, else BINOSPLAT_SHADERS of the environment. Empty: nobody asked for reloading.
 std::filesystem::path shaderFolder(const std::filesystem::path& folder);
 
 // Every shader of `folder` by glslang. Throws Error with file, line and reason of the first that does not compile.

@@ -2,9 +2,9 @@
 #include "app/simulate.h"
 
 #include "engine/error.h"
-#include "engine/setup/data_folders.h"
+#include "engine/platform.h"
+#include "engine/setup/text_file.h"
 
-#include <cstdlib>
 #include <filesystem>
 
 namespace binosplat {
@@ -16,12 +16,7 @@ namespace fs = std::filesystem;
 // A headset that rests has been seen after a second.
 constexpr std::uint64_t kFramesAtRest = 90;
 
-bool isSet(const char* name) {
-    const char* value = std::getenv(name);
-    return value != nullptr && *value != '\0';
-}
-
-bool hasDisplay() { return isSet("DISPLAY") || isSet("WAYLAND_DISPLAY"); }
+bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
 
 }  // namespace
 
@@ -30,12 +25,15 @@ void simulateHeadset(ViewOptions& options) {
     if (!fs::exists(manifest)) {
         throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {}, which the build makes", manifest.string()));
     }
-    setenv("XR_RUNTIME_JSON", manifest.c_str(), 1);
+    setEnvironment("XR_RUNTIME_JSON", manifest.string());
     if (!options.script.empty()) {
         std::error_code ignored;
         check(fs::is_regular_file(options.script, ignored), "--simulate: {} is not a file, must be a script (see docs/simulated_script.md)",
               options.script);
-        setenv("BINOSPLAT_SIMULATED_SCRIPT", fs::absolute(options.script).c_str(), 1);
+        const std::uintmax_t bytes = fs::file_size(options.script, ignored);
+        check(bytes <= kMostTextBytes, "--simulate: {} is longer than {} MiB, must be a script (see docs/simulated_script.md)",
+              options.script, kMostTextBytes >> 20);
+        setEnvironment("BINOSPLAT_SIMULATED_SCRIPT", fs::absolute(options.script).string());
     }
     if (!hasDisplay()) {
         if (options.out.empty()) { options.out = "out/view"; }
@@ -45,9 +43,9 @@ void simulateHeadset(ViewOptions& options) {
         std::error_code error;
         fs::create_directories(options.out, error);
         check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
-        setenv("BINOSPLAT_SIMULATED_OUT", fs::absolute(options.out).c_str(), 1);
-    } else {
-        setenv("BINOSPLAT_SIMULATED_CLOCK", "real", 0);  // somebody watches
+        setEnvironment("BINOSPLAT_SIMULATED_OUT", fs::absolute(options.out).string());
+    } else if (environment("BINOSPLAT_SIMULATED_CLOCK").empty()) {
+        setEnvironment("BINOSPLAT_SIMULATED_CLOCK", "real");  // somebody watches
     }
 }
 

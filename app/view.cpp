@@ -23,8 +23,7 @@ ViewSettings startSettings(const ViewOptions& options) {
     settings.stereo = options.run.stereo;
     settings = readViewSettings(options.tables, settings);
     if (options.hide_panel) { settings.panel = false; }
-    const char* const mask = std::getenv("BINOSPLAT_VISIBILITY_MASK");
-    if (mask != nullptr && std::strcmp(mask, "0") == 0) { settings.visibility_mask = false; }
+    if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
     return settings;
 }
 

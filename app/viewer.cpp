@@ -47,6 +47,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       settings_(settings),
       loader_(std::make_unique<SceneLoader>(context_, options.scene, options.run)) {
     status_.scene = options.scene;
+    status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (mirrored) { openWindow(); }
     fitResolution();
     if (options.load_first) { takeScene(); }
@@ -376,7 +377,7 @@ void Viewer::obey(const OverlayActions& actions) {
 }
 
 void Viewer::reloadShaders() {
-    if (!scene_) { return; }  // kernels are being made elsewhere
+    if (!scene_ || !status_.can_reload_shaders) { return; }  // without a scene kernels are being made elsewhere
     status_.message = binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scene_->frame.rebuildKernels();
         presenter_.rebuildKernels();

@@ -173,6 +173,26 @@ TEST_CASE("configErrorsNameFileAndLine") {
     CHECK(!fs::exists(work.path / "out"));
 }
 
+TEST_CASE("pipesFoldersAndEndlessFilesAreRefusedAtOnce") {
+    const Workplace work;
+    REQUIRE(work.runCommand("mkfifo pipe.toml && mkdir folder.toml && truncate -s 100M long.toml").exit_code == 0);
+    std::vector<std::string> commands{"render builtin:one-splat --out out --config ", "render builtin:one-splat --out out --cameras ",
+                                      "render builtin:one-splat --out out --headset ./", "bench builtin:one-splat --out out --config ",
+                                      "bench builtin:one-splat --out out --motion "};
+#ifdef BINOSPLAT_OPENXR
+    commands.insert(commands.end(), {"view builtin:one-splat --config ", "view builtin:one-splat --frames 1 --out out --simulate "});
+#endif
+    for (const std::string& command : commands) {
+        for (const char* file : {"pipe.toml", "folder.toml", "long.toml"}) {
+            INFO(command << file);
+            const Outcome outcome = work.runCommand("timeout 60 '" BINOSPLAT_PROGRAM "' " + command + file);
+            checkRefused(outcome, 1, std::string(file) == "long.toml" ? "longer than 16 MiB" : file);
+        }
+    }
+    checkRefused(work.runCommand("mv pipe.toml p.ppm && timeout 60 '" BINOSPLAT_PROGRAM "' compare p.ppm p.ppm"), 1, "not a regular file");
+    CHECK(!fs::exists(work.path / "out"));
+}
+
 TEST_CASE("badCameraFilesNameCameraAndKey") {
     const Workplace work;
     const auto refuse = [&](const std::string& text, const std::string& part) {

@@ -54,6 +54,13 @@ TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
     CHECK(chosen.exit_code == 0);
 }
 
+TEST_CASE("the program knows nothing of the folder whose sources it was built from") {
+    std::ifstream file(BINOSPLAT_PROGRAM, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    REQUIRE(bytes.size() > 1'000'000);
+    CHECK(bytes.find(BINOSPLAT_SOURCE_DIR "/shaders") == std::string::npos);
+}
+
 TEST_CASE("docs/options.md is what the program says of its options") {
     const Workplace work;
     const Outcome made = work.run("document markdown");

@@ -4,6 +4,7 @@
 #include "engine/passes/passes.h"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -93,7 +94,7 @@ TEST_CASE("the environment says where it is kept") {
     CHECK(pipelineCacheFolder().empty());
 }
 
-TEST_CASE("a folder that cannot be written and a file of rubbish trouble nobody") {
+TEST_CASE("a folder that cannot be written, a file of rubbish and a pipe trouble nobody") {
     std::string name = (fs::temp_directory_path() / "binosplat-cache-XXXXXX").string();
     const fs::path folder = mkdtemp(name.data());
     {
@@ -101,7 +102,14 @@ TEST_CASE("a folder that cannot be written and a file of rubbish trouble nobody"
         const Context context({.device = {}, .validation = true});
         std::ofstream(pipelineCacheFile(context.physicalDevice())) << std::string(5000, 'x');
     }
-    for (const fs::path& place : {fs::path("/proc/nowhere"), folder}) {
+    const fs::path pipe_folder = folder / "pipes";
+    {
+        const Environment chosen("BINOSPLAT_PIPELINE_CACHE", pipe_folder.string());
+        fs::create_directory(pipe_folder);
+        const Context context({.device = {}, .validation = true});
+        REQUIRE(::mkfifo(pipelineCacheFile(context.physicalDevice()).c_str(), 0600) == 0);
+    }
+    for (const fs::path& place : {fs::path("/proc/nowhere"), folder, pipe_folder}) {
         const Environment chosen("BINOSPLAT_PIPELINE_CACHE", place.string());
         for (int run = 0; run < 2; ++run) {
             const Context context({.device = {}, .validation = true});
@@ -110,6 +118,8 @@ TEST_CASE("a folder that cannot be written and a file of rubbish trouble nobody"
             CHECK(context.validationMessages().empty());
         }
     }
+    for (const auto& entry : fs::directory_iterator(pipe_folder)) { CHECK(entry.is_fifo()); }
+    fs::remove_all(pipe_folder);
     for (const auto& entry : fs::directory_iterator(folder)) { CHECK(entry.path().extension() == ".pipelines"); }
     fs::remove_all(folder);
 }

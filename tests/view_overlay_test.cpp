@@ -322,6 +322,20 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     CHECK(says(black, " shaders reloaded in "));
     CHECK_FALSE(sameAfterwards(black));
     CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/1_cull.comp is not there"));
+    // A pipe would keep the compiler, and the wearer, waiting.
+    REQUIRE(work.runCommand("rm broken/10_present.comp && mkfifo broken/10_present.comp").exit_code == 0);
+    CHECK(says(click("pipe", "broken"), "shaders stay as they were: broken/10_present.comp is not a file"));
+}
+
+TEST_CASE("nobody reloads shaders who was not told where they are") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const std::string script = kSmall + clickOn(panel, {kShaders, {0.9, 0.95}});
+    const ViewRun run = runView(work, "none", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
+    checkClean(run);
+    CHECK_FALSE(says(run, "shaders"));
+    const ViewRun told = runView(work, "told", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=nowhere");
+    CHECK(says(told, "shaders stay as they were: nowhere/1_cull.comp is not there"));
 }
 
 TEST_CASE("the menu button hides the panel and brings it before the eyes") {

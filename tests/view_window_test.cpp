@@ -241,7 +241,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     if (!haveScreen()) { return; }
     const Workplace work;
     std::ofstream(work.path / "rest.script") << "rate 90\nsize 192 192\nframes all\n";
-    Viewer viewer(work, "--simulate rest.script --out seen");
+    Viewer viewer(work, "--simulate rest.script --out seen --shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
     Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and the same again.

@@ -1,10 +1,10 @@
 // Finding the runtime and the headset.
 #include "xr/instance.h"
 
+#include "engine/platform.h"
 #include "xr/platform.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
 namespace binosplat::xr {
@@ -20,8 +20,8 @@ constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosp
 
 // The runtime is the loader's choice: XR_RUNTIME_JSON, or active_runtime.json of the user or the system.
 std::string whereLookedFor() {
-    const char* chosen = std::getenv("XR_RUNTIME_JSON");
-    return chosen != nullptr ? fmt::format("XR_RUNTIME_JSON={}", chosen) : "openxr/1/active_runtime.json";
+    const std::string chosen = environment("XR_RUNTIME_JSON");
+    return !chosen.empty() ? fmt::format("XR_RUNTIME_JSON={}", chosen) : "openxr/1/active_runtime.json";
 }
 
 std::vector<XrExtensionProperties> listExtensions() {
@@ -38,7 +38,7 @@ std::vector<XrExtensionProperties> listExtensions() {
 
 Instance::Instance(const InstanceOptions& options) {
     // The loader speaks on stderr where it finds nothing; one line of ours says it better.
-    setenv("XR_LOADER_DEBUG", "none", 0);
+    if (environment("XR_LOADER_DEBUG").empty()) { setEnvironment("XR_LOADER_DEBUG", "none"); }
     create(options);
     try {
         findSystem(options);

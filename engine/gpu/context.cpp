@@ -2,10 +2,10 @@
 #include "engine/gpu/context.h"
 
 #include "engine/error.h"
+#include "engine/platform.h"
 #include "shaders/embedded_shaders.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 
@@ -73,7 +73,6 @@ int preferenceOf(vk::PhysicalDeviceType type) {
 }  // namespace
 
 Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.memory_limit_bytes) {
-    const char* environment = std::getenv("BINOSPLAT_VALIDATION");
     try {
         loader_.emplace();
     } catch (const std::exception& error) {
@@ -81,7 +80,7 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
                     fmt::format("no Vulkan loader (libvulkan.so.1): {}; install libvulkan1 and a driver", error.what()));
     }
     try {
-        createInstance(options, options.validation || (environment != nullptr && std::strcmp(environment, "1") == 0));
+        createInstance(options, options.validation || environment("BINOSPLAT_VALIDATION") == "1");
         if (options.maker.choose_device) {
             takePhysicalDevice(options.maker);
         } else {

@@ -1,6 +1,7 @@
 // Reading and writing the file. Drivers need not survive wrong bytes, so that they are checked first.
 #include "engine/gpu/pipeline_cache.h"
 
+#include "engine/platform.h"
 #include "engine/scene/part_file.h"
 
 #include <fmt/format.h>
@@ -8,10 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -25,20 +24,27 @@ std::uint64_t checksumOf(std::span<const std::uint8_t> bytes) {
     return sum;
 }
 
+// Nothing if there is no such file, or one so long that no driver made it.
+std::vector<std::uint8_t> readWhole(const std::filesystem::path& path) {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+    std::string reason;
+    const File file = openRegularFile(path, reason);
+    const std::optional<FileStamp> stamp = file ? stampOf(file.get()) : std::nullopt;
+    if (!stamp || stamp->size_bytes > kMostBytes) { return {}; }
+    std::vector<std::uint8_t> bytes(stamp->size_bytes);
+    bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+    return bytes;
+}
+
 using Sum = std::array<std::uint8_t, sizeof(std::uint64_t)>;
 
 }  // namespace
 
 std::filesystem::path pipelineCacheFolder() {
-    const auto textOf = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::string(value != nullptr ? value : "");
-    };
-    const std::string chosen = textOf("BINOSPLAT_PIPELINE_CACHE");
+    const std::string chosen = environment("BINOSPLAT_PIPELINE_CACHE");
     if (!chosen.empty()) { return chosen == "0" ? std::filesystem::path() : std::filesystem::path(chosen); }
-    const std::filesystem::path cache = textOf("XDG_CACHE_HOME"), home = textOf("HOME");
-    if (cache.is_absolute()) { return cache / "binosplat"; }
-    return home.is_absolute() ? home / ".cache" / "binosplat" : std::filesystem::path();
+    const std::filesystem::path cache = userCacheFolder();
+    return cache.empty() ? cache : cache / "binosplat";
 }
 
 std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device) {
@@ -73,10 +79,7 @@ std::vector<std::uint8_t> unsealPipelineCache(const std::vector<std::uint8_t>& f
 
 PipelineCache::PipelineCache(const vk::raii::PhysicalDevice& physical_device, const vk::raii::Device& device) {
     file_ = pipelineCacheFile(physical_device);
-    if (!file_.empty()) {
-        std::ifstream stream(file_, std::ios::binary);
-        loaded_ = unsealPipelineCache({std::istreambuf_iterator<char>(stream), {}}, physical_device.getProperties());
-    }
+    if (!file_.empty()) { loaded_ = unsealPipelineCache(readWhole(file_), physical_device.getProperties()); }
     cache_ = vk::raii::PipelineCache(device, vk::PipelineCacheCreateInfo({}, loaded_.size(), loaded_.data()));
 }
 

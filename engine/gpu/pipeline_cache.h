@@ -25,7 +25,7 @@ private:
     vk::raii::PipelineCache cache_{nullptr};
 };
 
-// The folder that BINOSPLAT_PIPELINE_CACHE names, none if that is 0; without it binosplat/ in $XDG_CACHE_HOME or ~/.cache.
+// The folder that BINOSPLAT_PIPELINE_CACHE names, none if that is 0; without it binosplat/ in the user's folder of caches.
 std::filesystem::path pipelineCacheFolder();
 // The file in it; empty if there is no folder.
 std::filesystem::path pipelineCacheFile(const vk::raii::PhysicalDevice& device);

@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/picture/netpbm.h"
+#include "engine/platform.h"
 
 #ifdef BINOSPLAT_OPENIMAGEIO
 #pragma GCC diagnostic push
@@ -117,6 +118,8 @@ std::vector<fs::path> writePicture(const fs::path& stem, PictureKind kind, const
 }
 
 Image readPicture(const fs::path& path) {
+    std::string reason;
+    check(openRegularFile(path, reason) != nullptr, "{}: cannot be read ({}), must be an image file", path.string(), reason);
     if (path.extension() == ".pfm") { return readPfm(path); }
     if (path.extension() == ".ppm" || path.extension() == ".pgm") { return readPnm(path); }
 #ifdef BINOSPLAT_OPENIMAGEIO

@@ -10,9 +10,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 namespace binosplat {
 
 namespace {
@@ -27,18 +24,19 @@ InputFile::InputFile(const std::string& path) : name_(path) {
     check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", path);
     check(status.type() == std::filesystem::file_type::regular, "{}: is not a regular file (a pipe or a device), expected a file on disk",
           path);
-    file_.reset(std::fopen(path.c_str(), "rb"));
-    check(file_ != nullptr, "{}: cannot be opened: {}", path, std::strerror(errno));
+    std::string reason;
+    file_ = openRegularFile(path, reason);
+    check(file_ != nullptr, "{}: cannot be opened: {}", path, reason);
     opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
     // One more than a small file has: its last line is not too long only because it fills the buffer.
     buffer_.resize(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
 }
 
-InputFile::Stamp InputFile::stamp() const {
-    struct stat status {};
-    check(::fstat(::fileno(file_.get()), &status) == 0, "{}: cannot be read: {}", name_, std::strerror(errno));
-    return {static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+FileStamp InputFile::stamp() const {
+    const std::optional<FileStamp> stamp = stampOf(file_.get());
+    check(stamp.has_value(), "{}: cannot be read: {}", name_, std::strerror(errno));
+    return *stamp;
 }
 
 void InputFile::requireUnchanged() const {
@@ -94,9 +92,9 @@ std::span<const std::byte> InputFile::readBlock(std::size_t count) {
 }
 
 std::size_t InputFile::readAt(std::uint64_t offset, std::span<std::byte> target) const {
-    const ssize_t got = ::pread(::fileno(file_.get()), target.data(), target.size(), static_cast<off_t>(offset));
-    check(got >= 0, "{}: reading failed at byte {}: {}", name_, offset, std::strerror(errno));
-    return static_cast<std::size_t>(got);
+    const std::optional<std::size_t> got = binosplat::readAt(file_.get(), offset, target);
+    check(got.has_value(), "{}: reading failed at byte {}: {}", name_, offset, std::strerror(errno));
+    return *got;
 }
 
 void InputFile::skip(std::uint64_t count) {

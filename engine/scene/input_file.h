@@ -1,10 +1,10 @@
 // A file read once from front to back through one buffer, by lines or by blocks; its name is part of every message.
 #pragma once
 
+#include "engine/platform.h"
+
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,20 +44,12 @@ public:
     void skip(std::uint64_t count);
 
 private:
-    struct Closer {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    struct Stamp {
-        std::uint64_t size_bytes;
-        std::int64_t changed_s, changed_ns;
-        bool operator==(const Stamp&) const = default;
-    };
-    [[nodiscard]] Stamp stamp() const;
+    [[nodiscard]] FileStamp stamp() const;
     void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
 
     std::string name_;
-    std::unique_ptr<std::FILE, Closer> file_;
-    Stamp opened_{};
+    File file_;
+    FileStamp opened_;
     std::uint64_t position_bytes_ = 0;
     std::vector<char> buffer_;
     std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer

@@ -7,35 +7,44 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <utility>
-
-#include <unistd.h>
 
 namespace binosplat {
 
-PartFile::PartFile(const std::string& target) : target_(target), path_(fmt::format("{}.part{}", target, ::getpid())) {
+namespace {
+constexpr int kMostNames = 1000;
+}
+
+PartFile::PartFile(const std::string& target) : target_(target) {
     std::error_code unreadable;  // opening says why
     check(!std::filesystem::is_directory(target, unreadable), "{}: is a directory, expected a file name to write to", target);
     // Renaming over a device would replace it.
     const bool plain = !std::filesystem::exists(target, unreadable) || std::filesystem::is_regular_file(target, unreadable);
     check(plain, "{}: is not a regular file, expected a file name to write to", target);
-    file_ = std::fopen(path_.c_str(), "wb");
+    // Names that are taken, by a link into somebody's files perhaps, are left alone.
+    for (int attempt = 0; attempt < kMostNames && file_ == nullptr; ++attempt) {
+        path_ = fmt::format("{}.part{}-{}", target, processId(), attempt);
+        file_ = createFile(path_);
+        if (file_ == nullptr && errno != EEXIST) { break; }
+    }
     check(file_ != nullptr, "{}: cannot be written: {}", target, std::strerror(errno));
 }
 
 PartFile::~PartFile() {
-    if (file_ != nullptr) { std::fclose(file_); }
-    if (!renamed_) { std::remove(path_.c_str()); }
+    file_.reset();
+    std::error_code ignored;
+    if (!renamed_) { std::filesystem::remove(path_, ignored); }
 }
 
 void PartFile::write(const void* data, std::size_t bytes) {
-    check(std::fwrite(data, 1, bytes, file_) == bytes, "{}: writing failed: {}", target_, std::strerror(errno));
+    check(std::fwrite(data, 1, bytes, file_.get()) == bytes, "{}: writing failed: {}", target_, std::strerror(errno));
 }
 
 void PartFile::commit() {
-    const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+    const bool closed = std::fclose(file_.release()) == 0;
     check(closed, "{}: writing failed: {}", target_, std::strerror(errno));
-    check(std::rename(path_.c_str(), target_.c_str()) == 0, "{}: cannot be put in place: {}", target_, std::strerror(errno));
+    std::error_code error;
+    std::filesystem::rename(path_, target_, error);
+    check(!error, "{}: cannot be put in place: {}", target_, error.message());
     renamed_ = true;
 }
 

@@ -1,8 +1,9 @@
 // A file being written beside its target: it takes the target's place in one step when it is whole, and is gone otherwise.
 #pragma once
 
+#include "engine/platform.h"
+
 #include <cstddef>
-#include <cstdio>
 #include <string>
 
 namespace binosplat {
@@ -20,7 +21,7 @@ public:
 
 private:
     std::string target_, path_;
-    std::FILE* file_ = nullptr;
+    File file_;
     bool renamed_ = false;
 };
 

@@ -2,12 +2,11 @@
 #include "engine/scene/scene_builder.h"
 
 #include "engine/error.h"
+#include "engine/platform.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-
-#include <sys/mman.h>
 
 namespace binosplat {
 
@@ -17,12 +16,7 @@ namespace {
 template <typename T>
 void reserveLarge(std::vector<T>& values, std::size_t count) {
     values.reserve(count);
-#ifdef MADV_HUGEPAGE
-    constexpr std::uintptr_t kPage = std::uintptr_t{1} << 21;
-    const auto begin = reinterpret_cast<std::uintptr_t>(values.data()), end = begin + count * sizeof(T);
-    const std::uintptr_t first = (begin + kPage - 1) / kPage * kPage, last = end / kPage * kPage;
-    if (first < last) { ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); }  // advice: failing is fine
-#endif
+    preferLargePages(values.data(), count * sizeof(T));
 }
 
 }  // namespace

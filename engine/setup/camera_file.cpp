@@ -2,14 +2,12 @@
 #include "engine/setup/camera_file.h"
 
 #include "engine/error.h"
+#include "engine/setup/text_file.h"
 #include "engine/setup/values.h"
 
 #include <nlohmann/json.hpp>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 
 namespace binosplat {
 
@@ -91,13 +89,11 @@ FileCamera readCamera(const Place& place, const Json& camera) {
 
 std::vector<FileCamera> readCameraFile(const std::filesystem::path& path) {
     const std::string file = path.string();
-    std::ifstream stream(path, std::ios::binary);
-    check(stream.good() && !std::filesystem::is_directory(path), "{}: cannot be read ({}), must be a cameras.json", file,
-          std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
+    const std::string text = readTextFile(path, "a cameras.json");
     Json root;
     try {
         // Cameras are four levels deep; what is much deeper cannot even be quoted in a message.
-        root = Json::parse(stream, [&](int depth, Json::parse_event_t, const Json&) {
+        root = Json::parse(text, [&](int depth, Json::parse_event_t, const Json&) {
             check(depth < 64, "{}: nested {} levels deep, must be an array of cameras", file, depth);
             return true;
         });

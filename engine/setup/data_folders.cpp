@@ -1,20 +1,13 @@
 // Where the files lie that come with the program.
 #include "engine/setup/data_folders.h"
 
-#include <cstdlib>
-
 namespace binosplat {
 
 namespace fs = std::filesystem;
 
-fs::path programFile() {
-    std::error_code not_told;
-    return fs::read_symlink("/proc/self/exe", not_told);
-}
-
 std::vector<fs::path> dataFolders() {
     std::vector<fs::path> folders;
-    if (const char* chosen = std::getenv("BINOSPLAT_DATA"); chosen != nullptr && *chosen != '\0') { folders.emplace_back(chosen); }
+    if (const std::string chosen = environment("BINOSPLAT_DATA"); !chosen.empty()) { folders.emplace_back(chosen); }
     std::error_code gone;
     if (const fs::path here = fs::current_path(gone); !gone) { folders.push_back(here); }
     const fs::path program = programFile();

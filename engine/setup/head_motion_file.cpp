@@ -2,17 +2,15 @@
 #include "engine/setup/head_motion.h"
 
 #include "engine/error.h"
+#include "engine/setup/text_file.h"
 #include "engine/setup/values.h"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
+#include <utility>
 
 namespace binosplat {
 
@@ -136,11 +134,7 @@ HeadMotion parseHeadMotion(std::string_view text, const std::string& file, Motio
 }
 
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes) {
-    std::ifstream stream(path, std::ios::binary);
-    check(stream.good() && !std::filesystem::is_directory(path), "{}: cannot be read ({}), must be a CSV file of head motion",
-          path.string(), std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    return parseHeadMotion(text, path.string(), axes);
+    return parseHeadMotion(readTextFile(path, "a CSV file of head motion"), path.string(), axes);
 }
 
 }  // namespace binosplat

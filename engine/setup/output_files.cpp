@@ -2,9 +2,9 @@
 #include "engine/setup/output_files.h"
 
 #include "engine/error.h"
+#include "engine/platform.h"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -40,13 +40,12 @@ const fs::path& OutputFiles::staging() {
 }
 
 void OutputFiles::makeStaging() {
-    std::string name = (folder_ / ".binosplat-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
+    staging_ = createFolder(folder_, ".binosplat-");
+    if (staging_.empty()) {
         const std::string reason = std::strerror(errno);
         removeUnpublished();
         fail("{}: cannot be written ({}), must be a writable directory", folder_.string(), reason);
     }
-    staging_ = name;
 }
 
 OutputFiles::~OutputFiles() { removeUnpublished(); }
@@ -61,11 +60,13 @@ void OutputFiles::removeUnpublished() noexcept {
 
 void OutputFiles::publish() {
     if (staging_.empty()) { return; }
-    // A folder in a file's place is known before the first file moves.
+    // A folder in a file's place, or a pipe or a device, which moving would replace, is known before the first file moves.
     for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
         const fs::path target = folder_ / entry.path().filename();
         std::error_code none;
-        check(!fs::is_directory(target, none), "{}: cannot be written (is a directory), must be a file or not there", target.string());
+        const fs::file_status there = fs::status(target, none);
+        check(!fs::exists(there) || fs::is_regular_file(there), "{}: cannot be written ({}), must be a file or not there", target.string(),
+              fs::is_directory(there) ? "is a directory" : "not a regular file");
     }
     for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) {
         const fs::path target = folder_ / entry.path().filename();

@@ -2,14 +2,11 @@
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
+#include "engine/setup/text_file.h"
 #include "third_party/toml_guard.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 // The library's own warnings are not ours.
@@ -86,16 +83,12 @@ std::string Setting::text() const {
 
 std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
     const std::string file = path.string();
-    std::ifstream stream(path, std::ios::binary);
-    check(stream.good() && !std::filesystem::is_directory(path), "{}: cannot be read ({}), must be a TOML file", file,
-          std::filesystem::is_directory(path) ? "is a directory" : std::strerror(errno));
-    std::stringstream content;
-    content << stream.rdbuf();
-    if (const auto found = third_party::findUnreadableToml(content.str())) { fail("{}:{}: {}", file, found->line, found->problem); }
+    const std::string text = readTextFile(path, "a TOML file");
+    if (const auto found = third_party::findUnreadableToml(text)) { fail("{}:{}: {}", file, found->line, found->problem); }
 
     toml::table root;
     try {
-        root = toml::parse(content.str(), file);
+        root = toml::parse(text, file);
     } catch (const toml::parse_error& error) {
         fail("{}:{}: {}, must be valid TOML", file, error.source().begin.line, std::string(error.description()));
     }

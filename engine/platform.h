@@ -1,0 +1,70 @@
+// What only the operating system can say or do: platform_posix.cpp asks POSIX, platform_windows.cpp asks Windows. Nothing else includes a
+// header of a system.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct FileCloser {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, FileCloser>;
+
+// The running program's file; empty where the system does not tell.
+std::filesystem::path programFile();
+
+// A variable of the environment; empty if it is not set. Values are UTF-8.
+std::string environment(const char* name);
+void setEnvironment(const char* name, const std::string& value);
+
+// Where programs keep what they can make again; empty if the user has no such place.
+std::filesystem::path userCacheFolder();
+
+bool isTerminal(std::FILE* stream);
+
+std::uint64_t processId();
+
+// From here on a write beyond the limit of file sizes fails like one to a full disk, and does not end the program.
+void letLongWritesFail();
+
+// Runs a program that is found as a shell finds it, with all it prints going to the new file `log`; whether it returned 0. Throws Error
+// if it cannot be started.
+bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
+
+// Opens a file on a disk for reading, and never waits for one: of anything else (a pipe, a device, a folder) null and the reason in a
+// few words.
+File openRegularFile(const std::filesystem::path& path, std::string& reason);
+
+// Makes a file that was not there, for writing. Null, with the reason in errno (EEXIST), if anything has that name, also a link to nowhere.
+File createFile(const std::filesystem::path& path);
+
+// Makes a folder in `parent` that was not there and that others cannot enter, named `prefix` and something random. Empty, with the reason
+// in errno, if that cannot be done.
+std::filesystem::path createFolder(const std::filesystem::path& parent, const std::string& prefix);
+
+// What tells whether a file was written to.
+struct FileStamp {
+    std::uint64_t size_bytes = 0;
+    std::int64_t changed_s = 0, changed_ns = 0;
+    bool operator==(const FileStamp&) const = default;
+};
+// None, with the reason in errno, if the system does not tell.
+std::optional<FileStamp> stampOf(std::FILE* file);
+
+// Bytes from anywhere in a file, wherever it is being read; fewer at its end. None, with the reason in errno, if reading fails. May be
+// called by several threads.
+std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target);
+
+// Advice that fresh memory will be used as a whole: large pages, where there are any, save a third of the time of filling it.
+void preferLargePages(void* begin, std::size_t bytes);
+
+}  // namespace binosplat

@@ -1,0 +1,126 @@
+// POSIX, and Linux where POSIX says nothing.
+#include "engine/platform.h"
+
+#include "engine/error.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+
+extern char** environ;
+
+namespace binosplat {
+
+namespace fs = std::filesystem;
+
+fs::path programFile() {
+    std::error_code not_told;
+    return fs::read_symlink("/proc/self/exe", not_told);
+}
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr ? value : "";
+}
+
+void setEnvironment(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
+
+// By the XDG base directory specification, where relative paths are nobody's.
+fs::path userCacheFolder() {
+    const fs::path cache = environment("XDG_CACHE_HOME"), home = environment("HOME");
+    if (cache.is_absolute()) { return cache; }
+    return home.is_absolute() ? home / ".cache" : fs::path();
+}
+
+bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
+
+std::uint64_t processId() { return static_cast<std::uint64_t>(::getpid()); }
+
+void letLongWritesFail() { std::signal(SIGXFSZ, SIG_IGN); }
+
+bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
+    std::vector<std::string> copies = words;  // posix_spawn takes what could be changed
+    std::vector<char*> arguments;
+    for (std::string& word : copies) { arguments.push_back(word.data()); }
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
+    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+    pid_t child = 0;
+    const int failed = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    check(failed == 0, "{} cannot be run ({})", words[0], std::strerror(failed));
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+File openRegularFile(const fs::path& path, std::string& reason) {
+    // Asked before it is opened, since opening a device may do something, and after, since it may be another by then. O_NONBLOCK: a pipe
+    // that nobody writes to would keep us waiting.
+    const auto isRegular = [&](int answer, const struct stat& status) {
+        if (answer != 0) {
+            reason = std::strerror(errno);
+        } else if (S_ISDIR(status.st_mode)) {
+            reason = "is a directory";
+        } else if (!S_ISREG(status.st_mode)) {
+            reason = "not a regular file";
+        }
+        return answer == 0 && S_ISREG(status.st_mode);
+    };
+    struct stat status {};
+    if (!isRegular(::stat(path.c_str(), &status), status)) { return nullptr; }
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor < 0) {
+        reason = std::strerror(errno);
+        return nullptr;
+    }
+    std::FILE* file = isRegular(::fstat(descriptor, &status), status) ? ::fdopen(descriptor, "rb") : nullptr;
+    if (file == nullptr) { ::close(descriptor); }
+    return File(file);
+}
+
+File createFile(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor < 0) { return nullptr; }
+    std::FILE* file = ::fdopen(descriptor, "wb");
+    if (file == nullptr) { ::close(descriptor); }
+    return File(file);
+}
+
+fs::path createFolder(const fs::path& parent, const std::string& prefix) {
+    std::string name = (parent / (prefix + "XXXXXX")).string();
+    return ::mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path();
+}
+
+std::optional<FileStamp> stampOf(std::FILE* file) {
+    struct stat status {};
+    if (::fstat(::fileno(file), &status) != 0) { return std::nullopt; }
+    return FileStamp{static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
+
+std::optional<std::size_t> readAt(std::FILE* file, std::uint64_t offset, std::span<std::byte> target) {
+    const ssize_t got = ::pread(::fileno(file), target.data(), target.size(), static_cast<off_t>(offset));
+    return got >= 0 ? std::optional(static_cast<std::size_t>(got)) : std::nullopt;
+}
+
+void preferLargePages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+    constexpr std::uintptr_t kPage = std::uintptr_t{1} << 21;
+    const auto first_byte = reinterpret_cast<std::uintptr_t>(begin), end = first_byte + bytes;
+    const std::uintptr_t first = (first_byte + kPage - 1) / kPage * kPage, last = end / kPage * kPage;
+    if (first < last) { ::madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE); }  // advice: failing is fine
+#endif
+}
+
+}  // namespace binosplat

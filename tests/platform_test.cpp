@@ -1,0 +1,264 @@
+// Facts about what the operating system is asked for, and about files that somebody else has prepared: links, pipes, devices and much too
+// long ones.
+#include "engine/platform.h"
+
+#include "engine/error.h"
+#include "engine/picture/image_io.h"
+#include "engine/scene/part_file.h"
+#include "engine/setup/camera_file.h"
+#include "engine/setup/data_folders.h"
+#include "engine/setup/head_motion.h"
+#include "engine/setup/headset.h"
+#include "engine/setup/output_files.h"
+#include "engine/setup/settings.h"
+#include "engine/setup/text_file.h"
+#include "tests/hostile.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <functional>
+#include <regex>
+#include <utility>
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string textOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void makePipe(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
+
+std::string errorOf(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) { return error.what(); }
+    return "";
+}
+
+// A pipe that nobody writes to would be waited for without end: the test then ends by SIGALRM.
+struct Patience {
+    Patience() { ::alarm(60); }
+    ~Patience() { ::alarm(0); }
+    Patience(const Patience&) = delete;
+    Patience& operator=(const Patience&) = delete;
+};
+
+}  // namespace
+
+TEST_CASE("a file is made only where nothing is, and no link is followed") {
+    const Workplace work;
+    const fs::path victim = work.path / "victim", file = work.path / "file";
+    write(victim, "keep me");
+    fs::create_symlink(victim, work.path / "link");
+    fs::create_symlink(work.path / "nowhere", work.path / "dangling");
+    makePipe(work.path / "pipe");
+    for (const char* taken : {"victim", "link", "dangling", "pipe"}) {
+        errno = 0;
+        CHECK_MESSAGE(createFile(work.path / taken) == nullptr, taken);
+        CHECK(errno == EEXIST);
+    }
+    CHECK(textOf(victim) == "keep me");
+    CHECK_FALSE(fs::exists(work.path / "nowhere"));
+    REQUIRE(createFile(file) != nullptr);
+    CHECK(fs::is_regular_file(file));
+    errno = 0;
+    CHECK(createFile(work.path / "no" / "folder") == nullptr);
+    CHECK(errno == ENOENT);
+}
+
+TEST_CASE("a folder that is made is a new one, and nobody else may enter it") {
+    const Workplace work;
+    const fs::path one = createFolder(work.path, "mine-"), other = createFolder(work.path, "mine-");
+    CHECK(one != other);
+    for (const fs::path& folder : {one, other}) {
+        CHECK(folder.parent_path() == work.path);
+        CHECK(folder.filename().string().starts_with("mine-"));
+        CHECK(fs::is_directory(folder));
+        CHECK((fs::status(folder).permissions() & fs::perms::all) == fs::perms::owner_all);
+    }
+    CHECK(createFolder(work.path / "nowhere", "mine-").empty());
+}
+
+TEST_CASE("only a file on a disk is opened, and nothing else is waited for") {
+    const Patience patience;
+    const Workplace work;
+    write(work.path / "file", "abc");
+    fs::create_symlink(work.path / "file", work.path / "link");
+    makePipe(work.path / "pipe");
+    const auto reasonFor = [](const fs::path& path) {
+        std::string reason;
+        return openRegularFile(path, reason) != nullptr ? "opened" : reason;
+    };
+    CHECK(reasonFor(work.path / "file") == "opened");
+    CHECK(reasonFor(work.path / "link") == "opened");
+    CHECK(reasonFor(work.path / "pipe") == "not a regular file");
+    CHECK(reasonFor("/dev/zero") == "not a regular file");
+    CHECK(reasonFor(work.path) == "is a directory");
+    CHECK(reasonFor(work.path / "none") == "No such file or directory");
+    CHECK(reasonFor(work.path / "file" / "below") == "Not a directory");
+}
+
+TEST_CASE("a file is read from anywhere, and its stamp tells when it was written to") {
+    const Workplace work;
+    write(work.path / "file", "0123456789");
+    std::string reason;
+    const File file = openRegularFile(work.path / "file", reason);
+    REQUIRE(file != nullptr);
+    const auto stamp = stampOf(file.get());
+    REQUIRE(stamp.has_value());
+    CHECK(stamp->size_bytes == 10);
+    CHECK(stampOf(file.get()) == stamp);
+    std::array<char, 4> read{};
+    CHECK(readAt(file.get(), 3, std::as_writable_bytes(std::span(read))) == 4u);
+    CHECK(std::string(read.data(), 4) == "3456");
+    CHECK(std::fgetc(file.get()) == '0');
+    CHECK(readAt(file.get(), 8, std::as_writable_bytes(std::span(read))) == 2u);
+    CHECK(readAt(file.get(), 10, std::as_writable_bytes(std::span(read))) == 0u);
+    std::ofstream(work.path / "file", std::ios::app) << "more";
+    CHECK(stampOf(file.get()) != stamp);
+}
+
+TEST_CASE("a scene that is written does not go through a link that waits where its unfinished file will be") {
+    const Workplace work;
+    const fs::path victim = work.path / "victim", target = work.path / "scene.ply";
+    write(victim, "keep me");
+    const auto planted = [&](int attempt) { return target.string() + fmt::format(".part{}-{}", processId(), attempt); };
+    const std::string old_name = target.string() + fmt::format(".part{}", processId());
+    fs::create_symlink(victim, old_name);
+    fs::create_symlink(victim, planted(0));
+    write(planted(1), "somebody's");
+    {
+        PartFile file(target.string());
+        file.write("new", 3);
+        file.commit();
+    }
+    CHECK(textOf(target) == "new");
+    CHECK(textOf(victim) == "keep me");
+    {
+        PartFile given_up(target.string());
+        given_up.write("half", 4);
+    }
+    CHECK(textOf(target) == "new");
+    CHECK(textOf(victim) == "keep me");
+    CHECK(textOf(planted(1)) == "somebody's");
+    CHECK(std::distance(fs::directory_iterator(work.path), {}) == 5);
+}
+
+TEST_CASE("files that appear together do not replace a pipe, a device or a folder") {
+    const Workplace work;
+    makePipe(work.path / "report");
+    OutputFiles files(work.path);
+    writeText(files.staging() / "another", "1");
+    writeText(files.staging() / "report", "1");
+    CHECK(errorOf([&] { files.publish(); }).find("report: cannot be written (not a regular file), must be a file or not there") !=
+          std::string::npos);
+    CHECK(fs::is_fifo(work.path / "report"));
+    CHECK_FALSE(fs::exists(work.path / "another"));
+    fs::remove(work.path / "report");
+    // A link makes way; what it leads to stays.
+    write(work.path / "victim", "keep me");
+    fs::create_symlink(work.path / "victim", work.path / "report");
+    files.publish();
+    CHECK_FALSE(fs::is_symlink(work.path / "report"));
+    CHECK(textOf(work.path / "victim") == "keep me");
+}
+
+TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a size that people write, or refused at once") {
+    const Patience patience;
+    const Workplace work;
+    makePipe(work.path / "pipe");
+    fs::create_directory(work.path / "folder");
+    write(work.path / "long", "");
+    fs::resize_file(work.path / "long", std::uintmax_t{100} << 20);
+    const std::array<std::function<void(const fs::path&)>, 4> readers{
+        [](const fs::path& path) { (void)readSettingsFile(path); }, [](const fs::path& path) { (void)readHeadset(path); },
+        [](const fs::path& path) { (void)readCameraFile(path); },
+        [](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }};
+    for (const auto& read : readers) {
+        for (const auto& [name, reason] : {std::pair("pipe", "not a regular file"), std::pair("folder", "is a directory"),
+                                           std::pair("long", "longer than 16 MiB"), std::pair("none", "No such file or directory")}) {
+            const fs::path path = work.path / name;
+            const std::string error = errorOf([&] { read(path); });
+            CHECK(error.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
+            CHECK(error.find('\n') == std::string::npos);
+        }
+    }
+    CHECK(peakMebibytes() < 256);
+    for (const char* extension : {"png", "pfm", "ppm"}) {
+        const fs::path path = work.path / (std::string("pipe.") + extension);
+        makePipe(path);
+        CHECK(errorOf([&] { (void)readPicture(path); }) == path.string() + ": cannot be read (not a regular file), must be an image file");
+    }
+}
+
+TEST_CASE("a text file of the most bytes is read, one more is too many") {
+    const Workplace work;
+    const fs::path path = work.path / "text";
+    write(path, std::string(kMostTextBytes, 'a'));
+    CHECK(readTextFile(path, "a text").size() == kMostTextBytes);
+    std::ofstream(path, std::ios::app) << 'b';
+    CHECK(errorOf([&] { (void)readTextFile(path, "a text"); }) == path.string() + ": cannot be read (longer than 16 MiB), must be a text");
+    write(path, "");
+    CHECK(readTextFile(path, "a text").empty());
+}
+
+TEST_CASE("a program runs with what it prints in a new file") {
+    const Workplace work;
+    CHECK(runProgram({"sh", "-c", "echo out; echo error >&2; cat"}, work.path / "log"));
+    CHECK(textOf(work.path / "log") == "out\nerror\n");
+    CHECK_FALSE(runProgram({"sh", "-c", "exit 3"}, work.path / "other"));
+    write(work.path / "victim", "keep me");
+    fs::create_symlink(work.path / "victim", work.path / "link");
+    CHECK(errorOf([&] { (void)runProgram({"sh", "-c", "echo no"}, work.path / "link"); }).starts_with("sh cannot be run ("));
+    CHECK(textOf(work.path / "victim") == "keep me");
+    CHECK(errorOf([&] { (void)runProgram({"no-such-program-anywhere"}, work.path / "third"); }) ==
+          "no-such-program-anywhere cannot be run (No such file or directory)");
+}
+
+TEST_CASE("the environment is set and read; nothing and an empty text are one") {
+    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT").empty());
+    setEnvironment("BINOSPLAT_TEST_OF_ENVIRONMENT", "\u00e4 b");
+    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT") == "\u00e4 b");
+    setEnvironment("BINOSPLAT_TEST_OF_ENVIRONMENT", "");
+    CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT").empty());
+}
+
+TEST_CASE("the program knows its own file, and that a file is no terminal") {
+    CHECK(fs::equivalent(programFile(), "/proc/self/exe"));
+    const Workplace work;
+    const File file = createFile(work.path / "file");
+    CHECK_FALSE(isTerminal(file.get()));
+}
+
+TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
+    const std::regex system_header(
+        R"(\s*#\s*include\s*<((sys|linux|netinet|arpa)/.*|unistd\.h|fcntl\.h|signal\.h|poll\.h|spawn\.h|dirent\.h|dlfcn\.h|)"
+        R"(pthread\.h|pwd\.h|termios\.h|sched\.h|pty\.h|io\.h|process\.h|direct\.h|[Ww]indows\.h)>.*)");
+    std::size_t files = 0;
+    for (const char* room : {"engine", "app", "xr"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / room)) {
+            const fs::path& path = entry.path();
+            const bool source = path.extension() == ".h" || path.extension() == ".cpp";
+            // The simulated runtime shares nothing with the program.
+            const bool apart =
+                path.string().find("xr/simulated/") != std::string::npos || path.filename().string().starts_with("platform_");
+            if (!source || apart) { continue; }
+            ++files;
+            std::ifstream lines(path);
+            for (std::string line; std::getline(lines, line);) {
+                CHECK_MESSAGE(!std::regex_match(line, system_header), path.string() << ": " << line);
+            }
+        }
+    }
+    CHECK(files > 100);
+}
