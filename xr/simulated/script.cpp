@@ -95,6 +95,7 @@ State Script::at(double time_s) const {
         state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])), fovs[side].at(time_s)};
         state.controllers[side] = controllerAt(hands[side], time_s);
     }
+    for (ControllerState& other : state.others) { other.tracked = false; }
     state.should_render = should_render.at(time_s);
     state.visible = visible.at(time_s);
     state.focused = focused.at(time_s);

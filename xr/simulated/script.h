@@ -47,6 +47,10 @@ struct ControllerState {
     [[nodiscard]] double input(std::string_view identifier_and_component) const;
 };
 
+// Whatever has buttons; the hands by Side.
+enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3 };
+inline constexpr std::size_t kDevices = 4;
+
 struct EyeState {
     Pose stage_from_eye;
     Fov fov;
@@ -58,6 +62,11 @@ struct State {
     Pose stage_from_head;
     std::array<EyeState, 2> eyes;                // by Side
     std::array<ControllerState, 2> controllers;  // by Side
+    // What the head's and a gamepad's buttons say: nothing, unless a program's own test moves them (XR_EXT_conformance_automation).
+    std::array<ControllerState, 2> others;
+    // By InputDevice.
+    [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
+    [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
     bool should_render = true;
     bool visible = true;  // else the session is at most SYNCHRONIZED
     bool focused = true;  // else the session is at most VISIBLE
@@ -114,6 +123,7 @@ public:
     std::array<double, 2> cant_rad{0.0, 0.0};
     std::string system_name = "Simulated headset";  // or the headset file's name
     bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
+    bool plugged = true;                            // else there is a runtime, but no headset
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;
