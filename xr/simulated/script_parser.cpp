@@ -58,6 +58,7 @@ private:
                                                                            {"head-motion", &Parser::parseHeadMotionLine},
                                                                            {"headset", &Parser::parseHeadsetLine},
                                                                            {"ipd", &Parser::parseIpd},
+                                                                           {"plugged", &Parser::parsePlugged},
                                                                            {"press", &Parser::parsePress},
                                                                            {"profile", &Parser::parseProfile},
                                                                            {"rate", &Parser::parseRate},
@@ -292,6 +293,11 @@ private:
             words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), handProfiles());
         }
         script_.profile = name;
+    }
+
+    void parsePlugged(Words& words) {
+        requireFirst(words, "plugged");
+        script_.plugged = words.onOff("whether the headset is plugged in");
     }
 
     void parseMask(Words& words) {

@@ -32,10 +32,12 @@ void checkViewConfiguration(const Instance& instance, XrViewConfigurationType ty
 
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
     return answer(__func__, [&] {
-        getInstance(instance);
+        const Instance& owner = getInstance(instance);
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        require(owner.simulation->script.plugged, XR_ERROR_FORM_FACTOR_UNAVAILABLE,
+                "no headset: the script says that it is not plugged in");
         output = kSystemId;
         return XR_SUCCESS;
     });
