@@ -94,7 +94,7 @@ TEST_CASE("a broken script is a failure of the runtime") {
 TEST_CASE_FIXTURE(InstanceFixture, "an instance says what it runs on, and ends once") {
     XrInstanceProperties properties{XR_TYPE_INSTANCE_PROPERTIES};
     CHECK(xrGetInstanceProperties(instance, &properties) == XR_SUCCESS);
-    CHECK(std::string(properties.runtimeName) == "binosplat simulated runtime");
+    CHECK(std::string(properties.runtimeName) == "Simulated OpenXR runtime");
     CHECK(properties.runtimeVersion > 0);
     properties.type = XR_TYPE_SYSTEM_PROPERTIES;
     CHECK(xrGetInstanceProperties(instance, &properties) == XR_ERROR_VALIDATION_FAILURE);

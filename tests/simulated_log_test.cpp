@@ -1,12 +1,15 @@
 // Facts about the simulated runtime's log of frames.
 #include "xr/simulated/frame_log.h"
+#include "xr/simulated/old_output.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 using namespace simulated;
@@ -91,4 +94,40 @@ TEST_CASE("linesAreThereBeforeTheLogIsClosed") {
     CHECK(std::filesystem::file_size(path) == 2 * (frameLine(someRecord()).size() + 1));
     std::filesystem::remove(path);
     CHECK_THROWS_AS(FrameLog(path / "none" / "a.jsonl"), std::runtime_error);
+}
+
+TEST_CASE("aFolderIsEmptiedOfAnEarlierRunsPicturesAndOfNothingElse") {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("binosplat_old_output_" + std::to_string(::getpid()));
+    const auto fill = [&](const std::string& log) {
+        fs::remove_all(folder);
+        fs::create_directories(folder / "frame_000009.png");
+        for (const char* name : {"frame_000000.png", "frame_1234567.png", ".frame_000001.unfinished.png", "frame_12.png",
+                                 "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png", "notes.txt"}) {
+            std::ofstream(folder / name) << "x";
+        }
+        std::ofstream(folder / "elsewhere") << "x";
+        fs::create_symlink("elsewhere", folder / "frame_000002.png");
+        std::ofstream(folder / "frames.jsonl") << log;
+        removeOldOutput(folder);
+        std::set<std::string> left;
+        for (const auto& entry : fs::directory_iterator(folder)) { left.insert(entry.path().filename().string()); }
+        return left;
+    };
+    FrameRecord first = someRecord();
+    first.frame = 0;
+    const std::set<std::string> all = fill("somebody else's log\n");
+    CHECK(all.size() == 12);
+    std::set<std::string> kept = all;
+    for (const char* ours : {"frame_000000.png", "frame_1234567.png", ".frame_000001.unfinished.png"}) { kept.erase(ours); }
+    CHECK(fill(frameLine(first) + "\n") == kept);
+    // A log that goes elsewhere is not this folder's.
+    fs::remove(folder / "frames.jsonl");
+    std::ofstream(folder / "log") << frameLine(first) << "\n";
+    fs::create_symlink("log", folder / "frames.jsonl");
+    std::ofstream(folder / "frame_000000.png") << "x";
+    removeOldOutput(folder);
+    CHECK(fs::exists(folder / "frame_000000.png"));
+    removeOldOutput(folder / "nowhere");
+    fs::remove_all(folder);
 }

@@ -129,6 +129,34 @@ TEST_CASE("what the loader asks for after a refused instance is not explained, w
     CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: no instance creation flags are known\n");
 }
 
+TEST_CASE("the environment's names say what the runtime is, and those of before go on") {
+    const Headset headset("plugged off\n");
+    const auto systemOf = [&](const Direct& runtime) {
+        const XrInstanceCreateInfo info = instanceInfo({});
+        XrInstance instance = XR_NULL_HANDLE;
+        REQUIRE(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_SUCCESS);
+        const XrSystemGetInfo get{XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
+        XrSystemId system = XR_NULL_SYSTEM_ID;
+        const XrResult result = runtime.function<PFN_xrGetSystem>(instance, "xrGetSystem")(instance, &get, &system);
+        CHECK(runtime.function<PFN_xrDestroyInstance>(instance, "xrDestroyInstance")(instance) == XR_SUCCESS);
+        return result;
+    };
+    const Direct runtime;
+    CHECK_MESSAGE(systemOf(runtime) == XR_ERROR_FORM_FACTOR_UNAVAILABLE, "no headset");
+    std::ofstream(headset.folder / "other.script") << "plugged on\n";
+    setenv("SIMULATED_OPENXR_SCRIPT", (headset.folder / "other.script").c_str(), 1);
+    CHECK(systemOf(runtime) == XR_SUCCESS);
+    setenv("SIMULATED_OPENXR_CLOCK", "sundial", 1);
+    setenv("BINOSPLAT_SIMULATED_CLOCK", "lockstep", 1);
+    const std::string explained = explainedBy([&] {
+        const XrInstanceCreateInfo info = instanceInfo({});
+        XrInstance instance = XR_NULL_HANDLE;
+        CHECK(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_ERROR_RUNTIME_FAILURE);
+    });
+    CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
+    for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK", "BINOSPLAT_SIMULATED_CLOCK"}) unsetenv(name);
+}
+
 TEST_CASE("openxr_runtime_list finds it") {
     if (!isInstalled("openxr_runtime_list")) {
         MESSAGE("skipped: openxr_runtime_list is not installed (libopenxr-utils)");

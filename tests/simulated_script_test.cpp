@@ -407,5 +407,5 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 22);
+    CHECK(commands == 23);
 }

@@ -7,9 +7,9 @@ packages=(
     libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
     glslang-tools spirv-tools
     libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-    libopenimageio-dev libzip-dev zlib1g-dev libzstd-dev
+    libopenimageio-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev
     libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libglfw3-dev
-    doctest-dev xvfb xdotool
+    doctest-dev python3 xvfb xdotool
 )
 
 if ! command -v dpkg-query >/dev/null; then

@@ -1,10 +1,10 @@
 #include "xr/simulated/answer.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
+#include "xr/simulated/environment.h"
 #include "xr/simulated/messages.h"
 #include "xr/simulated/names.h"
 
@@ -20,7 +20,7 @@ void explain(const char* function, const Refusal& refusal) {
     // that it has heard of, also without an instance after one was refused; that is no mistake of the application's.
     const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
     if (!is_loaders) queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason);
-    const bool is_wanted = std::getenv("BINOSPLAT_SIMULATED_EXPLAIN") != nullptr && !is_loaders;
+    const bool is_wanted = settingOf("EXPLAIN").value != nullptr && !is_loaders;
     if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) return;
     std::fprintf(stderr, "simulated runtime: %s: %s: %s\n", function, nameOf(refusal.result), refusal.reason.c_str());
 }

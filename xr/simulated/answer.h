@@ -18,11 +18,14 @@ struct Refusal {
 inline void require(bool holds, XrResult otherwise, const char* reason) {
     if (!holds) throw Refusal{otherwise, reason};
 }
+inline void require(bool holds, XrResult otherwise, const std::string& reason) {
+    if (!holds) throw Refusal{otherwise, reason};
+}
 
 // One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
 std::mutex& runtimeLock();
 
-// With BINOSPLAT_SIMULATED_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
+// With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
 void explain(const char* function, const Refusal& refusal);
 void explainFailure(const char* function, const char* what);
 

@@ -42,6 +42,11 @@
     _(xrLocateSpacesKHR, XR_KHR_LOCATE_SPACES_EXTENSION_NAME)                                                                          \
     _(xrConvertTimespecTimeToTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
     _(xrConvertTimeToTimespecTimeKHR, XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME)                                                      \
+    _(xrSetInputDeviceActiveEXT, XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME)                                                          \
+    _(xrSetInputDeviceStateBoolEXT, XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME)                                                       \
+    _(xrSetInputDeviceStateFloatEXT, XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME)                                                      \
+    _(xrSetInputDeviceStateVector2fEXT, XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME)                                                   \
+    _(xrSetInputDeviceLocationEXT, XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME)                                                        \
     _(xrCreateDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                \
     _(xrDestroyDebugUtilsMessengerEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                               \
     _(xrSubmitDebugUtilsMessageEXT, XR_EXT_DEBUG_UTILS_EXTENSION_NAME)                                                                  \

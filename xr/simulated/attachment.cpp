@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "xr/simulated/actions.h"
+#include "xr/simulated/automation.h"
 #include "xr/simulated/profiles.h"
 #include "xr/simulated/script_profile.h"
 #include "xr/simulated/session.h"
@@ -51,14 +52,14 @@ std::optional<std::string> resolve(const Profile& profile, std::string_view user
 std::optional<BoundSource> bind(const Instance& instance, const Profile& profile, XrPath path, XrActionType type) {
     const std::string& text = instance.paths.textOf(path);
     const std::string_view user_path = userPathOf(text);
-    if (!user_path.starts_with("/user/hand/")) return std::nullopt;  // the simulated wearer has no gamepad
+    const std::optional<std::size_t> device = deviceOf(user_path);
+    if (!device) return std::nullopt;
     const std::optional<std::string> component =
         resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type, instance.vocabulary());
     if (!component) return std::nullopt;
-    const Side side = user_path == "/user/hand/left" ? kLeft : kRight;
     const std::size_t start = component->find('/', 1) + 1;
     const std::size_t end = component->find('/', start);
-    return BoundSource{path, instance.paths.findPath(user_path), side, component->substr(start, end - start), component->substr(start)};
+    return BoundSource{path, instance.paths.findPath(user_path), *device, component->substr(start, end - start), component->substr(start)};
 }
 
 glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source, XrActionType type) {
@@ -75,7 +76,7 @@ Pose poseOf(const ControllerState& controller, const BoundSource& source) {
     if (source.source == "aim") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
     Pose grip_from_palm;
-    grip_from_palm.position.x = source.side == kLeft ? -kPalm_m : kPalm_m;
+    grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
     return compose(controller.stage_from_grip, grip_from_palm);
 }
 
@@ -87,7 +88,7 @@ bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& act
     return std::any_of(active.begin(), active.end(), [&](const ActiveSet& set) { return isActivatedBy(set, action, source); });
 }
 
-using Priorities = std::map<std::pair<Side, std::string>, std::uint32_t>;
+using Priorities = std::map<std::pair<std::size_t, std::string>, std::uint32_t>;
 
 // The highest priority that any active action has on each source; lower ones are as if they were not bound.
 Priorities highestPriorities(const std::vector<AttachedAction>& actions, const std::vector<ActiveSet>& active) {
@@ -95,7 +96,7 @@ Priorities highestPriorities(const std::vector<AttachedAction>& actions, const s
     for (const AttachedAction& action : actions) {
         for (const BoundSource& source : action.sources) {
             if (!isActivated(active, action, source)) continue;
-            auto& priority = highest[{source.side, source.source}];
+            auto& priority = highest[{source.device, source.source}];
             priority = std::max(priority, action.priority);
         }
     }
@@ -107,8 +108,8 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
     ActionReading reading;
     for (const BoundSource& source : action.sources) {
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-        if (!isActivated(active, action, source) || action.priority < highest.at({source.side, source.source})) continue;
-        const ControllerState& controller = state.controllers[source.side];
+        if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) continue;
+        const ControllerState& controller = state.device(source.device);
         if (!controller.tracked) continue;
         reading.is_active = true;
         if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
@@ -126,26 +127,45 @@ AttachedAction* Attachment::find(std::uint64_t action) {
     return found == actions.end() ? nullptr : &*found;
 }
 
-bool Attachment::chooseProfile(Instance& instance) {
-    if (profile != nullptr) return false;
-    std::vector<Profile> candidates(allProfiles().begin(), allProfiles().end());
-    std::stable_partition(candidates.begin(), candidates.end(),
-                          [&](const Profile& one) { return one.path == instance.simulation->favourite_profile; });
-    for (const Profile& candidate : candidates) {
-        if (!candidate.user_paths.front().starts_with("/user/hand/")) continue;
-        const XrPath path = instance.paths.findPath(candidate.path);
-        const auto suggested = std::find_if(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
-        if (suggested == suggestions.end()) continue;
-        checkInputs(instance.simulation->script, candidate);
-        profile = findProfile(candidate.path);
-        for (const SuggestedBinding& binding : suggested->bindings) {
+bool Attachment::isSuggested(const Instance& instance, const Profile& profile) const {
+    const XrPath path = instance.paths.findPath(profile.path);
+    return std::any_of(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
+}
+
+bool Attachment::chooseProfiles(Instance& instance, const Automation& automation) {
+    if (hands == nullptr) {
+        std::vector<Profile> candidates(allProfiles().begin(), allProfiles().end());
+        std::stable_partition(candidates.begin(), candidates.end(),
+                              [&](const Profile& one) { return one.path == instance.simulation->favourite_profile; });
+        for (const Profile& candidate : candidates) {
+            if (!candidate.user_paths.front().starts_with("/user/hand/") || !isSuggested(instance, candidate)) continue;
+            checkInputs(instance.simulation->script, candidate);
+            hands = findProfile(candidate.path);
+            break;
+        }
+    }
+    std::array<const Profile*, kDevices> chosen{hands, hands, nullptr, nullptr};
+    for (std::size_t device = 0; device < kDevices; ++device) {
+        const Profile* const wanted = automation.devices[device].profile;
+        if (wanted != nullptr) chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr;
+    }
+    if (chosen == profiles) return false;
+    profiles = chosen;
+    bindSources(instance);
+    return true;
+}
+
+void Attachment::bindSources(const Instance& instance) {
+    for (AttachedAction& action : actions) action.sources.clear();
+    for (const SuggestedProfile& suggested : suggestions) {
+        const Profile* const profile = findProfile(instance.paths.textOf(suggested.profile));
+        for (const SuggestedBinding& binding : suggested.bindings) {
             AttachedAction* const action = find(binding.action);
             if (action == nullptr) continue;
-            if (auto source = bind(instance, candidate, binding.path, action->type)) action->sources.push_back(std::move(*source));
+            auto source = bind(instance, *profile, binding.path, action->type);
+            if (source && profiles[source->device] == profile) action->sources.push_back(std::move(*source));
         }
-        return true;
     }
-    return false;
 }
 
 void Attachment::read(const State& state, const std::vector<ActiveSet>& active, XrTime time) {
@@ -177,7 +197,7 @@ std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action
         if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
         for (const BoundSource& source : attached.sources) {
             if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-            const ControllerState& controller = state.controllers[source.side];
+            const ControllerState& controller = state.device(source.device);
             if (!controller.tracked) return std::nullopt;
             return poseOf(controller, source);
         }

@@ -16,12 +16,13 @@ namespace simulated {
 struct Instance;
 struct Session;
 struct Profile;
+struct Automation;
 
 // A binding of the profile in use, resolved for its action's type.
 struct BoundSource {
     XrPath path;
     XrPath user_path;
-    Side side = kLeft;
+    std::size_t device = kLeftHand;
     std::string source;     // "trigger": what priorities compare
     std::string component;  // "trigger/value"; "thumbstick" for both axes; "grip/pose"; "haptic"
 };
@@ -53,12 +54,16 @@ struct Attachment {
     std::vector<std::uint64_t> sets;
     std::vector<SuggestedProfile> suggestions;
     std::vector<AttachedAction> actions;
-    // The profile that the hands play; none before the first xrSyncActions in focus.
-    const Profile* profile = nullptr;
+    // The profile that each device plays; none before the first xrSyncActions in focus.
+    std::array<const Profile*, kDevices> profiles{};
+    // What the hands play as long as nobody says otherwise.
+    const Profile* hands = nullptr;
 
     [[nodiscard]] AttachedAction* find(std::uint64_t action);
-    // False if there is none that it could change to. Throws ScriptError if the script moves what the controllers lack.
-    bool chooseProfile(Instance& instance);
+    // Whether any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
+    bool chooseProfiles(Instance& instance, const Automation& automation);
+    [[nodiscard]] bool isSuggested(const Instance& instance, const Profile& profile) const;
+    void bindSources(const Instance& instance);
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };
 

@@ -21,6 +21,7 @@ inline constexpr Extension kExtensions[] = {
     {"XR_KHR_composition_layer_cube", 8},
     {"XR_KHR_visibility_mask", 2},
     {"XR_KHR_convert_timespec_time", 1},
+    {"XR_EXT_conformance_automation", 3},
     {"XR_EXT_debug_utils", 4},
     {"XR_EXT_hand_tracking", 4},
     {"XR_EXT_user_presence", 1},

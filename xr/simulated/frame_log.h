@@ -32,15 +32,15 @@ struct LoggedView {
 };
 
 struct LoggedLayer {
-    std::string type;                                     // "projection", "quad", "cylinder", "equirect2", "cube"
-    std::vector<std::string> flags;                       // "blend_texture_source_alpha" ...
-    std::string space;                                    // "LOCAL", "STAGE", "VIEW", "action"
-    Pose stage_from_space;                                // at the display time
-    std::vector<LoggedView> views;                        // two of a projection layer, one of others
-    std::optional<Pose> pose;                             // quads: in the layer's space
-    std::optional<glm::dvec2> size_m;                     // quads
-    std::string eye_visibility;                           // quads and all that surrounds: "both", "left", "right"
-    std::vector<std::pair<std::string, double>> numbers;  // of cylinders and spheres: "radius", "central_angle" ...
+    std::string type;                                          // "projection", "quad", "cylinder", "equirect2", "cube"
+    std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
+    std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
+    Pose stage_from_space;                                     // at the display time
+    std::vector<LoggedView> views;                             // two of a projection layer, one of others
+    std::optional<Pose> pose;                                  // quads: in the layer's space
+    std::optional<glm::dvec2> size_m;                          // quads
+    std::string eye_visibility;                                // quads and all that surrounds: "both", "left", "right"
+    std::vector<std::pair<std::string, double>> numbers = {};  // of cylinders and spheres: "radius", "central_angle" ...
 };
 
 struct LoggedEye {

@@ -130,7 +130,7 @@ XrResult xrGetInstanceProperties(XrInstance instance, XrInstanceProperties* inst
         getInstance(instance);
         XrInstanceProperties& properties = checked(instanceProperties, XR_TYPE_INSTANCE_PROPERTIES);
         properties.runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
-        copyText(properties.runtimeName, "binosplat simulated runtime");
+        copyText(properties.runtimeName, "Simulated OpenXR runtime");
         return XR_SUCCESS;
     });
 }

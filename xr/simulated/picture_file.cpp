@@ -1,28 +1,16 @@
-// PNG files through OpenImageIO; the only place here that knows it.
+// PNG files through libpng's simplified interface; the only place here that knows it.
 #include "xr/simulated/picture_file.h"
 
 #include <fmt/format.h>
+#include <png.h>
 
 #include <memory>
 #include <stdexcept>
 #include <string>
 
-#ifdef BINOSPLAT_OPENIMAGEIO
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wold-style-cast"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#include <OpenImageIO/imageio.h>
-#pragma GCC diagnostic pop
-#endif
-
 namespace simulated {
 
 namespace fs = std::filesystem;
-
-#ifdef BINOSPLAT_OPENIMAGEIO
 
 namespace {
 
@@ -33,49 +21,46 @@ namespace {
     throw std::runtime_error(path.string() + ": cannot be " + what + " (" + reason + ")");
 }
 
+// What libpng holds for a picture ends with it.
+struct PngImage : png_image {
+    PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
+    ~PngImage() { png_image_free(this); }
+    PngImage(const PngImage&) = delete;
+    PngImage& operator=(const PngImage&) = delete;
+};
+
 }  // namespace
 
 void writePng(const fs::path& path, const RgbPicture& picture) {
-    OIIO::ImageSpec spec(static_cast<int>(picture.size_px.x), static_cast<int>(picture.size_px.y), 3, OIIO::TypeDesc::UINT8);
-    // Fast to pack: a run writes many.
-    spec.attribute("png:compressionLevel", 3);
-    // A name that ends in .png, or the library would not know the format.
     const fs::path unfinished = path.parent_path() / fmt::format(".{}.unfinished.png", path.stem().string());
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(unfinished.string());
-    if (!output) { refuse(path, "written", OIIO::geterror()); }
-    const bool opened = output->open(unfinished.string(), spec);
-    const bool written = opened && output->write_image(OIIO::TypeDesc::UINT8, picture.bytes.data());
-    std::string reason = written ? "" : output->geterror();
-    // Closing flushes: a full disk may show there only.
-    const bool closed = output->close();
+    PngImage image;
+    image.width = picture.size_px.x;
+    image.height = picture.size_px.y;
+    image.format = PNG_FORMAT_RGB;
+    // Fast to pack: a run writes many.
+    image.flags = PNG_IMAGE_FLAG_FAST;
     std::error_code error;
-    if (written && closed) {
+    std::string reason;
+    if (png_image_write_to_file(&image, unfinished.c_str(), 0, picture.bytes.data(), 0, nullptr) != 0) {
         fs::rename(unfinished, path, error);
         if (!error) { return; }
         reason = error.message();
+    } else {
+        reason = image.message;
     }
     fs::remove(unfinished, error);
-    refuse(path, "written", reason.empty() ? output->geterror() : reason);
+    refuse(path, "written", reason);
 }
 
 RgbPicture readPng(const fs::path& path) {
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
-    if (!input) { refuse(path, "read", OIIO::geterror()); }
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.nchannels < 3) { refuse(path, "read", "not a colour picture"); }
-    RgbPicture picture{{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)}, {}};
-    picture.bytes.resize(std::size_t{3} * picture.size_px.x * picture.size_px.y);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.bytes.data())) { refuse(path, "read", input->geterror()); }
+    PngImage image;
+    if (png_image_begin_read_from_file(&image, path.c_str()) == 0) { refuse(path, "read", image.message); }
+    if ((image.format & PNG_FORMAT_FLAG_COLOR) == 0) { refuse(path, "read", "not a colour picture"); }
+    image.format = PNG_FORMAT_RGB;
+    RgbPicture picture{{image.width, image.height}, std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};
+    const png_color black{0, 0, 0};
+    if (png_image_finish_read(&image, &black, picture.bytes.data(), 0, nullptr) == 0) { refuse(path, "read", image.message); }
     return picture;
 }
-
-#else
-
-void writePng(const fs::path& path, const RgbPicture&) {
-    throw std::runtime_error(path.string() + ": cannot be written in a build without OpenImageIO");
-}
-RgbPicture readPng(const fs::path& path) { throw std::runtime_error(path.string() + ": cannot be read in a build without OpenImageIO"); }
-
-#endif
 
 }  // namespace simulated

@@ -65,6 +65,14 @@ bool allowsBinding(const Profile& profile, std::string_view binding, const Vocab
            (component.starts_with("/input/") && hasComponent(profile, user_path, std::string(component) + "/pose", words));
 }
 
+std::optional<std::size_t> deviceOf(std::string_view user_path) {
+    // The first four, in this order.
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (kUserPaths[i] == user_path) return i;
+    }
+    return std::nullopt;
+}
+
 bool isUserPath(std::string_view path) { return holds(kUserPaths, path); }
 
 std::string_view userPathOf(std::string_view binding) {

@@ -1,6 +1,7 @@
 // Section 6.4 of the specification: which input and output paths each interaction profile of the core, 1.0 and 1.1, has.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,8 @@ bool hasComponent(const Profile& profile, std::string_view user_path, std::strin
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill.
 bool isUserPath(std::string_view path);
+// "/user/hand/left" is 0, right 1, head 2, gamepad 3 (script.h's InputDevice); none for others.
+std::optional<std::size_t> deviceOf(std::string_view user_path);
 // The user path that a binding starts with; empty if none.
 std::string_view userPathOf(std::string_view binding);
 

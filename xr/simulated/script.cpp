@@ -99,6 +99,7 @@ State Script::at(double time_s) const {
     }
     state.head_turn_known = head_turn_known.at(time_s);
     state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
+    for (ControllerState& other : state.others) { other.tracked = false; }
     state.should_render = should_render.at(time_s);
     state.worn = worn.at(time_s);
     state.visible = visible.at(time_s);

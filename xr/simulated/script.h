@@ -47,6 +47,10 @@ struct ControllerState {
     [[nodiscard]] double input(std::string_view identifier_and_component) const;
 };
 
+// Whatever has buttons; the hands by Side.
+enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3 };
+inline constexpr std::size_t kDevices = 4;
+
 struct EyeState {
     Pose stage_from_eye;
     Fov fov;
@@ -59,6 +63,11 @@ struct State {
     std::array<EyeState, 2> eyes;                          // by Side
     std::array<ControllerState, 2> controllers;            // by Side
     bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
+    // What the head's and a gamepad's buttons say: nothing, unless a program's own test moves them (XR_EXT_conformance_automation).
+    std::array<ControllerState, 2> others;
+    // By InputDevice.
+    [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
+    [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
     bool should_render = true;
     bool worn = true;     // else the session stops, and is IDLE until the headset is put on again
     bool visible = true;  // else the session is at most SYNCHRONIZED
@@ -126,6 +135,7 @@ public:
     std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
+    bool plugged = true;  // else there is a runtime, but no headset
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;

@@ -1,8 +1,8 @@
 // Script files from disk, and headset files; the only place here that knows toml++.
 #include "xr/simulated/script_files.h"
 
-#include "third_party/toml_guard.h"
 #include "xr/simulated/script_words.h"
+#include "xr/simulated/toml_guard.h"
 
 #include <glm/trigonometric.hpp>
 

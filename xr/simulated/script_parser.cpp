@@ -60,6 +60,7 @@ private:
                                                                            {"ipd", &Parser::parseIpd},
                                                                            {"local", &Parser::parseLocal},
                                                                            {"no-headset-for", &Parser::parseNoHeadset},
+                                                                           {"plugged", &Parser::parsePlugged},
                                                                            {"press", &Parser::parsePress},
                                                                            {"profile", &Parser::parseProfile},
                                                                            {"rate", &Parser::parseRate},
@@ -311,6 +312,11 @@ private:
             words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), handProfiles());
         }
         script_.profile = name;
+    }
+
+    void parsePlugged(Words& words) {
+        requireFirst(words, "plugged");
+        script_.plugged = words.onOff("whether the headset is plugged in");
     }
 
     void parseMask(Words& words) {

@@ -55,7 +55,11 @@ Session::~Session() {
     instance.events.forget(handleOf(*this));
 }
 
-State Session::at(XrTime time) const { return instance.simulation->at(time); }
+State Session::at(XrTime time) const {
+    State scripted = instance.simulation->at(time);
+    automation.applyTo(scripted);
+    return scripted;
+}
 
 void Session::enter(XrSessionState next) {
     state = next;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "xr/simulated/attachment.h"
+#include "xr/simulated/automation.h"
 #include "xr/simulated/device.h"
 #include "xr/simulated/handles.h"
 #include "xr/simulated/instance.h"
@@ -38,6 +39,7 @@ struct Session : Object {
     // The eyes' angles as of the frame before: a mask changes with them.
     std::optional<std::array<Fov, kEyes>> masked;
     std::vector<std::string> log_events;
+    Automation automation;
     Labels labels;
     // What the application was told last of the wearer (XR_EXT_user_presence).
     std::optional<bool> announced_presence;
@@ -45,7 +47,7 @@ struct Session : Object {
     Session(Instance& owner, std::unique_ptr<Device> graphics);
     ~Session() override;
 
-    // The script's state at a time.
+    // The script's state at a time, with what the program's own test says of the controllers.
     [[nodiscard]] State at(XrTime time) const;
     void enter(XrSessionState next);
     // After an xrEndFrame whose frame shows the headset in this state.

@@ -1,4 +1,4 @@
-// What the wearer sees of a frame: composed, written and logged, if BINOSPLAT_SIMULATED_OUT names a folder.
+// What the wearer sees of a frame: composed, written and logged, if SIMULATED_OPENXR_OUT names a folder.
 #pragma once
 
 #include "xr/simulated/session.h"

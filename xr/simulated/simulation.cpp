@@ -1,44 +1,44 @@
 #include "xr/simulated/simulation.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 
+#include "xr/simulated/environment.h"
+#include "xr/simulated/old_output.h"
 #include "xr/simulated/profiles.h"
 #include "xr/simulated/script_profile.h"
 
 namespace simulated {
 namespace {
 
-const char* environment(const char* name) {
-    const char* const value = std::getenv(name);
-    return value == nullptr || *value == '\0' ? nullptr : value;
-}
-
 bool wantsRealClock() {
-    const char* const name = environment("BINOSPLAT_SIMULATED_CLOCK");
-    const std::string_view clock = name == nullptr ? "lockstep" : name;
+    const Setting setting = settingOf("CLOCK");
+    const std::string_view clock = setting.isSet() ? setting.value : "lockstep";
     if (clock != "lockstep" && clock != "real") {
-        throw std::runtime_error("BINOSPLAT_SIMULATED_CLOCK is '" + std::string(clock) + "', must be lockstep or real");
+        throw std::runtime_error(setting.variable + " is '" + std::string(clock) + "', must be lockstep or real");
     }
     return clock == "real";
 }
 
 std::optional<Output> makeOutput() {
-    const char* const folder = environment("BINOSPLAT_SIMULATED_OUT");
-    if (folder == nullptr) return std::nullopt;
-    std::filesystem::create_directories(folder);
-    return Output{folder, FrameLog(std::filesystem::path(folder) / "frames.jsonl")};
+    const Setting setting = settingOf("OUT");
+    if (!setting.isSet()) return std::nullopt;
+    const std::filesystem::path folder(setting.value);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")");
+    removeOldOutput(folder);
+    return Output{folder, FrameLog(folder / kLogName)};
 }
 
 // The environment's word counts before the script's.
 std::string favouriteProfile(const Script& script) {
-    const char* const wanted = environment("BINOSPLAT_SIMULATED_PROFILE");
-    const std::string name = wanted == nullptr ? script.profile : wanted;
+    const Setting setting = settingOf("PROFILE");
+    const std::string name = setting.isSet() ? setting.value : script.profile;
     if (name.empty()) return {};
     const Profile* const profile = findHandProfile(name);
-    if (profile == nullptr) throw std::runtime_error("BINOSPLAT_SIMULATED_PROFILE is '" + name + "', must be one of: " + handProfiles());
+    if (profile == nullptr) throw std::runtime_error(setting.variable + " is '" + name + "', must be one of: " + handProfiles());
     checkInputs(script, *profile);
     return std::string(profile->path);
 }
@@ -51,10 +51,9 @@ std::unique_ptr<Simulation>& survivor() {
 
 std::string originOfEnvironment() {
     std::string origin;
-    for (const char* name :
-         {"BINOSPLAT_SIMULATED_SCRIPT", "BINOSPLAT_SIMULATED_CLOCK", "BINOSPLAT_SIMULATED_OUT", "BINOSPLAT_SIMULATED_PROFILE"}) {
-        const char* const value = environment(name);
-        origin.append(value == nullptr ? "" : value).append("\n");
+    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) {
+        const Setting setting = settingOf(name);
+        origin.append(setting.isSet() ? setting.value : "").append("\n");
     }
     return origin;
 }
@@ -62,8 +61,8 @@ std::string originOfEnvironment() {
 }  // namespace
 
 Script scriptOfEnvironment() {
-    const char* const file = environment("BINOSPLAT_SIMULATED_SCRIPT");
-    return file == nullptr ? Script() : Script::load(file);
+    const Setting setting = settingOf("SCRIPT");
+    return setting.isSet() ? Script::load(setting.value) : Script();
 }
 
 std::unique_ptr<Simulation> Simulation::begin() {

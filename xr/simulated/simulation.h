@@ -18,7 +18,7 @@ struct Output {
     FrameLog log;
 };
 
-// BINOSPLAT_SIMULATED_SCRIPT, or the resting headset. Throws ScriptError.
+// SIMULATED_OPENXR_SCRIPT, or the resting headset. Throws ScriptError.
 Script scriptOfEnvironment();
 
 struct Simulation {
@@ -38,7 +38,7 @@ struct Simulation {
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
     bool survives = false;
 
-    // By BINOSPLAT_SIMULATED_SCRIPT, _CLOCK, _OUT and _PROFILE. Throws ScriptError, std::runtime_error.
+    // By SIMULATED_OPENXR_SCRIPT, _CLOCK, _OUT and _PROFILE. Throws ScriptError, std::runtime_error.
     static std::unique_ptr<Simulation> begin();
     static void end(std::unique_ptr<Simulation> simulation);
 

@@ -38,12 +38,18 @@ const AttachedAction& checkedHaptic(Session& session, const XrHapticActionInfo* 
     return action;
 }
 
+const Profile* profileOf(const Session& session, std::string_view user_path) {
+    const std::optional<std::size_t> device = deviceOf(user_path);
+    return device ? session.attachment->profiles[*device] : nullptr;
+}
+
 // A line in the log for each controller that would be felt.
 void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_path, const std::string& what) {
     if (session.state != XR_SESSION_STATE_FOCUSED) return;
     for (const BoundSource& source : action.sources) {
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-        session.log_events.push_back("haptic " + std::string(source.side == kLeft ? "left " : "right ") + what);
+        constexpr const char* kNames[kDevices] = {"left ", "right ", "head ", "gamepad "};
+        session.log_events.push_back(std::string("haptic ") + kNames[source.device] + what);
     }
 }
 
@@ -59,9 +65,8 @@ XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPa
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
         require(isUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, "not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
-        const Profile* const profile = owner.attachment->profile;
-        const bool is_hand = user_path.starts_with("/user/hand/");
-        output.interactionProfile = profile != nullptr && is_hand ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
+        const Profile* const profile = profileOf(owner, user_path);
+        output.interactionProfile = profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
         return successOf(owner);
     });
 }
@@ -98,7 +103,7 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
             if ((info.whichComponents & part) != 0 && !title.empty()) name += (name.empty() ? "" : " ") + title;
         };
         append(XR_INPUT_SOURCE_LOCALIZED_NAME_USER_PATH_BIT, titleOfUserPath(user_path));
-        if (const Profile* profile = owner.attachment->profile) {
+        if (const Profile* profile = profileOf(owner, user_path)) {
             append(XR_INPUT_SOURCE_LOCALIZED_NAME_INTERACTION_PROFILE_BIT, std::string(profile->title));
         }
         append(XR_INPUT_SOURCE_LOCALIZED_NAME_COMPONENT_BIT, titleOfComponent(component));

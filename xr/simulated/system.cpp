@@ -36,6 +36,8 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        require(owner.simulation->script.plugged, XR_ERROR_FORM_FACTOR_UNAVAILABLE,
+                "no headset: the script says that it is not plugged in");
         std::uint32_t& calls = owner.simulation->calls_without_headset;
         if (calls < owner.simulation->script.calls_without_headset) {
             ++calls;

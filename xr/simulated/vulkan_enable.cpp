@@ -1,12 +1,12 @@
 // XR_KHR_vulkan_enable2 and its elder: the application's Vulkan instance and device are made through the runtime, which needs nothing
 // of them beyond what the application asks for.
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
 #include "xr/simulated/api.h"
 #include "xr/simulated/device.h"
+#include "xr/simulated/environment.h"
 #include "xr/simulated/instance.h"
 #include "xr/simulated/structures.h"
 
@@ -38,13 +38,14 @@ bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDe
     return false;
 }
 
-// BINOSPLAT_SIMULATED_GPU counts the devices that can draw, from 0.
+// SIMULATED_OPENXR_GPU counts the devices that can draw, from 0.
 std::size_t wantedDevice() {
-    const char* const text = std::getenv("BINOSPLAT_SIMULATED_GPU");
-    if (text == nullptr || *text == '\0') return 0;
+    const Setting setting = settingOf("GPU");
+    if (!setting.isSet()) return 0;
+    const char* const text = setting.value;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(text, text + std::strlen(text), index);
-    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, "BINOSPLAT_SIMULATED_GPU must be a whole number from 0 on");
+    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, setting.variable + " must be a whole number from 0 on");
     return index;
 }
 
@@ -57,7 +58,8 @@ VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance insta
     std::erase_if(devices, [&](VkPhysicalDevice device) { return !canDraw(loader, instance, device); });
     const std::size_t index = wantedDevice();
     require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE,
-            devices.empty() ? "no Vulkan device can draw" : "BINOSPLAT_SIMULATED_GPU is more than there are devices that can draw");
+            devices.empty() ? std::string("no GPU: Vulkan has no device that can draw, not even a software one (Mesa's lavapipe)")
+                            : settingOf("GPU").variable + " is more than there are devices that can draw");
     return devices[index];
 }
 

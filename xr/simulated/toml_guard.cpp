@@ -2,7 +2,7 @@
 // "unreachable" branch at letters such as U+00A1 to U+0499 or U+FAE6 to U+FEFE wherever it asks whether a word goes on. That must not
 // happen within quotes, so quotes are only allowed where toml++ takes them for a text, and not for more letters of a word that is already
 // wrong.
-#include "third_party/toml_guard.h"
+#include "xr/simulated/toml_guard.h"
 
 #include <vector>
 

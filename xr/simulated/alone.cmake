@@ -1,0 +1,42 @@
+# This folder as a project of its own. Debian packages: g++ cmake pkg-config libvulkan-dev libopenxr-dev libglm-dev libfmt-dev
+# nlohmann-json3-dev libtomlplusplus-dev libpng-dev.
+set(SIMULATED_ALONE ON)
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+find_package(Vulkan REQUIRED)
+find_package(OpenXR REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(PNG REQUIRED)
+
+# Files are included as "xr/simulated/NAME.h", wherever this folder lies.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/include/xr)
+file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/include/xr/simulated SYMBOLIC)
+add_library(binosplat_flags INTERFACE)
+target_include_directories(binosplat_flags INTERFACE ${CMAKE_BINARY_DIR}/include)
+
+foreach(name vulkan openxr_headers glm fmt json png)
+    add_library(third_party_${name} INTERFACE)
+endforeach()
+target_link_libraries(third_party_vulkan INTERFACE Vulkan::Headers)
+target_link_libraries(third_party_openxr_headers INTERFACE OpenXR::headers)
+target_link_libraries(third_party_glm INTERFACE glm::glm)
+target_compile_definitions(third_party_glm INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
+# The library is loaded into other people's programs: it brings its own fmt.
+target_link_libraries(third_party_fmt INTERFACE fmt::fmt-header-only)
+target_link_libraries(third_party_json INTERFACE nlohmann_json::nlohmann_json)
+target_link_libraries(third_party_png INTERFACE PNG::PNG)
+add_library(third_party_toml STATIC toml_guard.cpp)
+set_target_properties(third_party_toml PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_link_libraries(third_party_toml PRIVATE binosplat_flags)
+target_compile_definitions(third_party_toml INTERFACE TOML_ASSERT=static_cast<void>)
+target_include_directories(third_party_toml SYSTEM INTERFACE $<TARGET_PROPERTY:tomlplusplus::tomlplusplus,INTERFACE_INCLUDE_DIRECTORIES>)

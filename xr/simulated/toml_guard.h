@@ -1,0 +1,19 @@
+// What TOML allows and the library that reads it, toml++ 3.1, does not survive. Everybody who parses with it looks here first.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace third_party {
+
+struct UnreadableToml {
+    int line;             // from 1
+    std::string problem;  // what is wrong and what is expected
+};
+
+// The first of: a key of more than 64 parts; a letter outside of ASCII that is neither in quotes nor in a comment; quotes where no key and
+// no value begins; a text over several lines. None of them: nullopt, and toml++ may have the text, be it TOML or not.
+std::optional<UnreadableToml> findUnreadableToml(std::string_view text);
+
+}  // namespace third_party
