@@ -7,8 +7,7 @@ namespace binosplat {
 
 namespace {
 
-// Analogue triggers click here; below, they may shiver.
-constexpr double kPressed = 0.5;
+constexpr double kScrolls = 0.5;  // of the stick
 constexpr double kRayWidthMetres = 0.004;
 // In front of the eyes: 35 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
@@ -43,9 +42,11 @@ std::optional<OverlayPanel::Hit> OverlayPanel::meet(const Pose& room_from_aim) c
 void OverlayPanel::update(const std::array<xr::Hand, 2>& hands) {
     pointer_ = {};
     pointing_.reset();
+    pulse_.reset();
+    std::optional<int> hits;
     if (carrier_) {
         const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
-        if (hand.squeeze > kPressed && hand.aim) {
+        if (hand.grabs && hand.aim) {
             room_from_panel_ = compose(*hand.aim, hand_from_panel_);
         } else {
             carrier_.reset();
@@ -53,7 +54,7 @@ void OverlayPanel::update(const std::array<xr::Hand, 2>& hands) {
     }
     for (const int h : {kRight, kLeft}) {
         const xr::Hand& hand = hands[static_cast<std::size_t>(h)];
-        const bool squeezes = hand.squeeze > kPressed, begins = squeezes && !squeezed_[static_cast<std::size_t>(h)];
+        const bool squeezes = hand.grabs, begins = squeezes && !squeezed_[static_cast<std::size_t>(h)];
         squeezed_[static_cast<std::size_t>(h)] = squeezes;
         if (!hand.aim || pointing_) { continue; }
         const std::optional<Hit> hit = meet(*hand.aim);
@@ -64,8 +65,12 @@ void OverlayPanel::update(const std::array<xr::Hand, 2>& hands) {
         }
         pointing_ = hand.aim;
         distance_m_ = hit->distance_m;
-        pointer_ = {hit->place_px, hand.trigger > kPressed, std::abs(hand.stick.y) > kPressed ? 0.2 * hand.stick.y : 0.0};
+        pointer_ = {hit->place_px, hand.clicks, std::abs(hand.stick.y) > kScrolls ? 0.2 * hand.stick.y : 0.0};
+        hits = h;
+        if (hit_by_ != h || (hand.clicks && !clicked_)) { pulse_ = h; }
     }
+    hit_by_ = hits;
+    clicked_ = pointer_.pressed;
 }
 
 std::optional<OverlayPanel::Ray> OverlayPanel::ray(const Pose& room_from_head) const {

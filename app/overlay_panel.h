@@ -22,6 +22,8 @@ public:
     [[nodiscard]] const Pose& roomFromPanel() const { return room_from_panel_; }
     [[nodiscard]] glm::dvec2 sizeMetres() const { return size_m_; }
     [[nodiscard]] const CanvasPointer& pointer() const { return pointer_; }
+    // The hand that has just met the panel or clicked on it.
+    [[nodiscard]] std::optional<int> pulse() const { return pulse_; }
     // Whether the squeeze of this hand is the panel's business.
     [[nodiscard]] bool isCarriedBy(int hand) const { return carrier_ == hand; }
 
@@ -46,6 +48,8 @@ private:
     std::optional<Pose> pointing_;  // the aim that hits
     double distance_m_ = 0.0;
     std::array<bool, 2> squeezed_{};
+    std::optional<int> hit_by_, pulse_;
+    bool clicked_ = false;
     std::optional<int> carrier_;
     Pose hand_from_panel_;
 };

@@ -5,6 +5,9 @@
 #include "engine/platform.h"
 #include "engine/setup/text_file.h"
 
+#include <algorithm>
+#include <array>
+
 #include <filesystem>
 
 namespace binosplat {
@@ -18,13 +21,24 @@ constexpr std::uint64_t kFramesAtRest = 90;
 
 bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
 
+// Beside the program, as it is built, or where it and its package are installed.
+fs::path findManifest() {
+    const fs::path folder = programFile().parent_path();
+    const fs::path installed = fs::path("share") / "openxr" / "1" / "binosplat_simulated_runtime.json";
+    const std::array candidates{folder / "simulated_runtime.json", folder.parent_path() / installed, "/usr" / installed};
+    const auto* found = std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
+    if (found == candidates.end()) {
+        throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {} and {}, which the build and the package "
+                                                     "binosplat-simulated-runtime have",
+                                                     candidates[0].string(), candidates[1].string()));
+    }
+    return *found;
+}
+
 }  // namespace
 
 void simulateHeadset(ViewOptions& options) {
-    const fs::path manifest = programFile().parent_path() / "simulated_runtime.json";
-    if (!fs::exists(manifest)) {
-        throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {}, which the build makes", manifest.string()));
-    }
+    const fs::path manifest = findManifest();
     setEnvironment("XR_RUNTIME_JSON", manifest.string());
     if (!options.script.empty()) {
         std::error_code ignored;

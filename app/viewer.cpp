@@ -136,6 +136,7 @@ void Viewer::drawFrame() {
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
     controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_.panel, scene_from_room_);
+    if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
     obeyWindow(room_from_head_, step_seconds);
     govern();
 

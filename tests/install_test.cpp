@@ -11,8 +11,9 @@ using binosplat::test::Workplace;
 
 namespace {
 
-Outcome install(const Workplace& work, const fs::path& prefix) {
-    return work.runCommand("'" BINOSPLAT_CMAKE "' --install '" BINOSPLAT_BUILD "' --component viewer --prefix '" + prefix.string() + "'");
+Outcome install(const Workplace& work, const fs::path& prefix, const std::string& component = "viewer") {
+    return work.runCommand("'" BINOSPLAT_CMAKE "' --install '" BINOSPLAT_BUILD "' --component " + component + " --prefix '" +
+                           prefix.string() + "'");
 }
 
 const std::string kRender = "render builtin:one-splat --size 16x16 --headset ";
@@ -42,6 +43,23 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     CHECK(unknown.errors.find("quest2") != std::string::npos);
     CHECK_FALSE(fs::exists(work.path / "other"));
 }
+
+#ifdef BINOSPLAT_WITH_VIEWER
+TEST_CASE("an installed viewer runs on the installed simulated runtime") {
+    const Workplace work;
+    const fs::path prefix = work.base / "prefix";
+    REQUIRE(install(work, prefix).exit_code == 0);
+    const std::string view = "DISPLAY= WAYLAND_DISPLAY= '" + (prefix / "bin" / "binosplat").string() +
+                             "' view builtin:one-splat --load-first --simulate --frames 30 --out seen";
+    const Outcome without = work.runCommand(view);
+    CHECK(without.exit_code == (fs::exists("/usr/share/openxr/1/binosplat_simulated_runtime.json") ? 0 : 3));
+    REQUIRE(install(work, prefix, "runtime").exit_code == 0);
+    const Outcome shown = work.runCommand(view);
+    INFO(shown.errors);
+    CHECK(shown.exit_code == 0);
+    CHECK(fs::exists(work.path / "seen" / "frames.jsonl"));
+}
+#endif
 
 TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
     const Workplace work;

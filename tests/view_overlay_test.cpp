@@ -206,9 +206,10 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
     std::ofstream motion(work.path / "walk.csv");
     motion << "time_s,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 230; ++i) {
-        const double t = i / 90.0, turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
-        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", t, 0.15 * std::sin(t), 1.6 + 0.02 * std::sin(9.0 * t),
-                              -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
+        // It rests until the wearer has been placed.
+        const double time_s = i / 90.0, t = std::max(0.0, time_s - 0.1), turn = 0.2 * std::sin(2.0 * t), nod = 0.1 * std::sin(3.0 * t);
+        motion << fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},0,{:.6f}\n", time_s, 0.15 * std::sin(t),
+                              1.6 + 0.02 * std::sin(9.0 * t), -0.1 * t, nod, turn, std::sqrt(1.0 - nod * nod - turn * turn));
     }
     motion.close();
     std::string script = kSmall + "head-motion walk.csv\n";

@@ -1,6 +1,7 @@
 // Actions, and what they are bound to.
 #include "xr/input.h"
 
+#include "xr/bindings.h"
 #include "xr/convert.h"
 
 #include <cstring>
@@ -8,26 +9,8 @@
 namespace binosplat::xr {
 namespace {
 
-struct Profile {
-    const char* path;
-    const char* trigger;
-    const char* squeeze;              // or null
-    const char* stick;                // or null
-    std::array<const char*, 2> menu;  // left, right; or null
-};
-
-// Under /interaction_profiles and /user/hand/left, /user/hand/right.
-constexpr Profile kProfiles[] = {
-    {"khr/simple_controller", "input/select/click", nullptr, nullptr, {"input/menu/click", "input/menu/click"}},
-    {"oculus/touch_controller", "input/trigger/value", "input/squeeze/value", "input/thumbstick", {"input/y/click", "input/b/click"}},
-    {"valve/index_controller", "input/trigger/value", "input/squeeze/value", "input/thumbstick", {"input/b/click", "input/b/click"}},
-    {"microsoft/motion_controller",
-     "input/trigger/value",
-     "input/squeeze/click",
-     "input/thumbstick",
-     {"input/menu/click", "input/menu/click"}},
-    {"htc/vive_controller", "input/trigger/value", "input/squeeze/click", "input/trackpad", {"input/menu/click", "input/menu/click"}},
-};
+constexpr XrDuration kPulseNs = 15'000'000;
+constexpr float kPulseStrength = 0.4f;
 constexpr const char* kHandPaths[] = {"/user/hand/left", "/user/hand/right"};
 
 }  // namespace
@@ -44,7 +27,9 @@ Input::Input(const Session& session) : session_(session) {
     trigger_ = makeAction("trigger", "Click", XR_ACTION_TYPE_FLOAT_INPUT);
     squeeze_ = makeAction("squeeze", "Grab", XR_ACTION_TYPE_FLOAT_INPUT);
     stick_ = makeAction("stick", "Move and turn", XR_ACTION_TYPE_VECTOR2F_INPUT);
+    stick_click_ = makeAction("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT);
     menu_ = makeAction("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT);
+    haptic_ = makeAction("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT);
     suggestBindings();
     auto attach = structure<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
     attach.countActionSets = 1;
@@ -83,7 +68,8 @@ XrAction Input::makeAction(const char* name, const char* description, XrActionTy
 
 void Input::suggestBindings() const {
     const Instance& instance = session_.instance();
-    for (const Profile& profile : kProfiles) {
+    for (const ProfileBindings& profile : allProfileBindings()) {
+        if (profile.extension != nullptr && !instance.hasExtension(profile.extension)) { continue; }
         std::vector<XrActionSuggestedBinding> bindings;
         for (std::size_t h = 0; h < 2; ++h) {
             const auto bind = [&](XrAction action, const char* where) {
@@ -94,7 +80,9 @@ void Input::suggestBindings() const {
             bind(trigger_, profile.trigger);
             bind(squeeze_, profile.squeeze);
             bind(stick_, profile.stick);
+            bind(stick_click_, profile.stick_click);
             bind(menu_, profile.menu[h]);
+            bind(haptic_, profile.haptic);
         }
         auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
         suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile.path).c_str());
@@ -106,7 +94,7 @@ void Input::suggestBindings() const {
     }
 }
 
-std::array<Hand, 2> Input::read() const {
+std::array<Hand, 2> Input::read() {
     std::array<Hand, 2> hands;
     const XrActiveActionSet active{set_, XR_NULL_PATH};
     auto sync = structure<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
@@ -116,20 +104,43 @@ std::array<Hand, 2> Input::read() const {
     for (std::size_t h = 0; h < 2; ++h) {
         hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h]);
         hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h]);
-        hands[h].trigger = readNumber(trigger_, hands_[h]);
-        hands[h].squeeze = readNumber(squeeze_, hands_[h]);
-        auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
-        get.subactionPath = hands_[h];
-        get.action = stick_;
-        auto stick = structure<XrActionStateVector2f>(XR_TYPE_ACTION_STATE_VECTOR2F);
-        BINOSPLAT_XR(xrGetActionStateVector2f(session_.handle(), &get, &stick));
-        if (stick.isActive == XR_TRUE) { hands[h].stick = glm::dvec2(glm::vec2(stick.currentState.x, stick.currentState.y)); }
-        get.action = menu_;
-        auto menu = structure<XrActionStateBoolean>(XR_TYPE_ACTION_STATE_BOOLEAN);
-        BINOSPLAT_XR(xrGetActionStateBoolean(session_.handle(), &get, &menu));
-        hands[h].menu = menu.isActive == XR_TRUE && menu.currentState == XR_TRUE;
+        hands[h].clicks = clicks_[h].update(readNumber(trigger_, hands_[h]));
+        hands[h].grabs = grabs_[h].update(readNumber(squeeze_, hands_[h]));
+        // A pad that only feels the thumb is at rest.
+        if (readButton(stick_click_, hands_[h]).value_or(true)) { hands[h].stick = readStick(hands_[h]); }
+        hands[h].menu = readButton(menu_, hands_[h]).value_or(false);
     }
     return hands;
+}
+
+void Input::pulse(int hand) const {
+    auto info = structure<XrHapticActionInfo>(XR_TYPE_HAPTIC_ACTION_INFO);
+    info.action = haptic_;
+    info.subactionPath = hands_[static_cast<std::size_t>(hand)];
+    auto vibration = structure<XrHapticVibration>(XR_TYPE_HAPTIC_VIBRATION);
+    vibration.duration = kPulseNs;
+    vibration.frequency = XR_FREQUENCY_UNSPECIFIED;
+    vibration.amplitude = kPulseStrength;
+    BINOSPLAT_XR(xrApplyHapticFeedback(session_.handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)));
+}
+
+std::optional<bool> Input::readButton(XrAction action, XrPath hand) const {
+    auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
+    get.action = action;
+    get.subactionPath = hand;
+    auto state = structure<XrActionStateBoolean>(XR_TYPE_ACTION_STATE_BOOLEAN);
+    BINOSPLAT_XR(xrGetActionStateBoolean(session_.handle(), &get, &state));
+    if (state.isActive != XR_TRUE) { return std::nullopt; }
+    return state.currentState == XR_TRUE;
+}
+
+glm::dvec2 Input::readStick(XrPath hand) const {
+    auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
+    get.action = stick_;
+    get.subactionPath = hand;
+    auto state = structure<XrActionStateVector2f>(XR_TYPE_ACTION_STATE_VECTOR2F);
+    BINOSPLAT_XR(xrGetActionStateVector2f(session_.handle(), &get, &state));
+    return state.isActive == XR_TRUE ? glm::dvec2(glm::vec2(state.currentState.x, state.currentState.y)) : glm::dvec2(0.0);
 }
 
 double Input::readNumber(XrAction action, XrPath hand) const {

@@ -2,6 +2,7 @@
 #include "xr/instance.h"
 
 #include "engine/platform.h"
+#include "xr/bindings.h"
 #include "xr/platform.h"
 
 #include <algorithm>
@@ -65,6 +66,10 @@ void Instance::create(const InstanceOptions& options) {
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
+    for (const ProfileBindings& profile : allProfileBindings()) {
+        if (profile.extension == nullptr || !has(profile.extension)) { continue; }
+        if (controller_extensions_.insert(profile.extension).second) { extensions.push_back(profile.extension); }
+    }
     if (has_visibility_mask_) { extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
 
     auto info = structure<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);

@@ -1,0 +1,114 @@
+// Facts about controllers of several makers: what their buttons do, and what hands feel.
+#include "engine/geometry.h"
+#include "engine/picture/metrics.h"
+#include "tests/view_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+const std::string kSmall = "rate 100\nsize 96 96\nframes every 5\n";
+const std::string kScene = "builtin:fence --load-first --mode mono";
+
+std::string withProfile(const std::string& profile) { return kValidated + " BINOSPLAT_SIMULATED_PROFILE=" + profile; }
+
+ViewRun runWith(const Workplace& work, const std::string& profile, const std::string& lines, const std::string& options = "") {
+    std::string name = profile.substr(profile.find('/') + 1);
+    static int count = 0;
+    const ViewRun run =
+        runView(work, name + std::to_string(count++), kSmall + lines + "at 0.6 exit\n", kScene + options, withProfile(profile));
+    CAPTURE(profile);
+    checkClean(run);
+    return run;
+}
+
+// Where the panel's middle is, in STAGE.
+glm::dvec3 panelPlace(const ViewRun& run, std::size_t frame) {
+    const auto p = run.layers(frame, "quad").at(0).at("pose").at("position").get<std::array<double, 3>>();
+    return {p[0], p[1] + 1.6, p[2]};
+}
+
+// Lines that put the right hand 0.3 m before the panel's middle, moved by `aside`, pointing at it.
+std::string pointAtPanel(const ViewRun& seen, double time_s, const glm::dvec3& aside = glm::dvec3(0.0)) {
+    const auto q = seen.layers(10, "quad").at(0).at("pose").at("orientation").get<std::array<double, 4>>();
+    const glm::dquat turn(q[3], q[0], q[1], q[2]);
+    const glm::dvec3 at = panelPlace(seen, 10) + turn * glm::dvec3(0.0, 0.0, 0.3) + aside;
+    return fmt::format("controller right {:.6f} position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}\n", time_s, at.x, at.y,
+                       at.z, q[0], q[1], q[2], q[3]);
+}
+
+std::size_t pulses(const ViewRun& run) {
+    std::size_t count = 0;
+    for (const auto& frame : run.frames) {
+        for (const auto& event : frame.at("events")) { count += event.get<std::string>().starts_with("haptic right") ? 1 : 0; }
+    }
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("every controller brings the panel and sends it away, clicks on it, and is felt once for each") {
+    const Workplace work;
+    const ViewRun look = runWith(work, "oculus/touch_controller", "");
+    const glm::dvec3 below(0.0, -0.1, 0.0);  // a ray that ends between the eyes is a point
+    for (const auto& [profile, trigger, menu] :
+         {std::tuple("oculus/touch_controller", "trigger", "b"), std::tuple("valve/index_controller", "trigger", "b"),
+          std::tuple("microsoft/motion_controller", "trigger", "menu"), std::tuple("htc/vive_controller", "trigger", "menu"),
+          std::tuple("khr/simple_controller", "select", "menu")}) {
+        CAPTURE(profile);
+        const std::string lines = "controller right 0 position 0.4 1.2 0.5\n" + pointAtPanel(look, 0.2, below) +
+                                  pointAtPanel(look, 0.4, below) +
+                                  fmt::format("press right {} 0.3 0.33\npress right {} 0.45 0.47\n", trigger, menu);
+        const ViewRun run = runWith(work, profile, lines);
+        CHECK(pulses(run) == 2);
+        CHECK(run.layers(40, "quad").size() == 2);
+        CHECK(run.layers(55, "quad").empty());
+    }
+}
+
+TEST_CASE("a grip that shivers holds on, and one that is only touched does not grab") {
+    const Workplace work;
+    const ViewRun look = runWith(work, "valve/index_controller", "");
+    const glm::dvec3 up(0.0, 0.2, 0.0);
+    const auto lifted = [&](const std::string& squeeze) {
+        const std::string lines =
+            pointAtPanel(look, 0.1) + pointAtPanel(look, 0.2) + pointAtPanel(look, 0.4, up) + pointAtPanel(look, 0.5, up) + squeeze;
+        const ViewRun run = runWith(work, "valve/index_controller", lines);
+        return panelPlace(run, 55).y - panelPlace(look, 55).y;
+    };
+    CHECK(lifted("axis right squeeze 0.1 0\naxis right squeeze 0.15 0.45\n") == doctest::Approx(0.0));
+    CHECK(lifted("axis right squeeze 0.1 0\naxis right squeeze 0.15 0.6\naxis right squeeze 0.25 0.35\naxis right squeeze 0.5 0.35\n"
+                 "axis right squeeze 0.52 0\n") == doctest::Approx(0.2).epsilon(0.02));
+    // Let go half the way up.
+    const double half =
+        lifted("axis right squeeze 0.1 0\naxis right squeeze 0.15 1\naxis right squeeze 0.29 1\naxis right squeeze 0.3 0.2\n");
+    CHECK(half > 0.05);
+    CHECK(half < 0.15);
+}
+
+TEST_CASE("a pad moves the wearer while it is pressed, not while a thumb rests on it") {
+    const Workplace work;
+    const std::string hidden = " --hide-panel", pad = "axis left trackpad 0.1 0 0\naxis left trackpad 0.12 0 1\n";
+    const Image still = runWith(work, "htc/vive_controller", "", hidden).eye(55, kLeft);
+    CHECK(compare(runWith(work, "htc/vive_controller", pad, hidden).eye(55, kLeft), still).psnrDb() > 60.0);
+    CHECK(compare(runWith(work, "htc/vive_controller", pad + "press left trackpad 0.2 0.4\n", hidden).eye(55, kLeft), still).psnrDb() <
+          30.0);
+}
+
+TEST_CASE("a stick pushed mostly aside turns and does not lift") {
+    const Workplace work;
+    const auto pushed = [&](double y) {
+        return runWith(work, "oculus/touch_controller",
+                       fmt::format("axis right thumbstick 0.1 0 0\naxis right thumbstick 0.12 0.9 {0}\naxis right thumbstick 0.3 0.9 {0}\n"
+                                   "axis right thumbstick 0.32 0 0\n",
+                                   y),
+                       " --hide-panel")
+            .eye(55, kLeft);
+    };
+    CHECK(compare(pushed(0.7), pushed(0.0)).psnrDb() > 60.0);
+}
