@@ -145,6 +145,9 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
         drawQuality(settings, status);
+        ImGui::Checkbox("Two hands may tilt the scene", &settings.tilt);
+        ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.75f);
+        actions.level_scene = ImGui::Button("Level");
         drawTimes(status);
     }
     ImGui::PopItemWidth();

@@ -27,7 +27,7 @@ struct OverlayStatus {
 
 // Buttons that were pressed.
 struct OverlayActions {
-    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false;
+    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false;
 };
 
 // Says the widgets of a whole canvas of `size_px`, between Canvas::begin and record. Changes `settings` as the wearer does.

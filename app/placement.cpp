@@ -16,6 +16,16 @@ constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 // About the vertical; x turns towards z.
 glm::dquat turnAboutDown(double angle_rad) { return glm::angleAxis(angle_rad, kDown); }
 
+// The shortest one that brings `from` to the direction of `to`.
+glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
+    const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to);
+    const double cosine = glm::dot(a, b);
+    if (cosine > -0.999999) { return glm::normalize(glm::dquat(1.0 + cosine, glm::cross(a, b))); }
+    // Half a turn, about any axis across.
+    const glm::dvec3 across = glm::cross(a, std::abs(a.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0));
+    return glm::angleAxis(3.14159265358979323846, glm::normalize(across));
+}
+
 // Of a level direction: 0 ahead, positive to the right.
 double headingOf(const glm::dvec3& direction) { return std::atan2(direction.x, direction.z); }
 
@@ -55,7 +65,8 @@ Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const g
     return compose(scene_from_room, {turn, about - turn * about, 1.0});
 }
 
-Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to) {
+Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
+                  bool tilted) {
     const glm::dvec3 span_from = from[1] - from[0], span_to = to[1] - to[0];
     const auto level = [](const glm::dvec3& v) { return glm::dvec3(v.x, 0.0, v.z); };
     double growth = 1.0, turn = 0.0;
@@ -67,9 +78,18 @@ Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3
     }
     growth = std::clamp(scene_from_room.scale * growth, kLeastScale, kMostScale) / scene_from_room.scale;
     // The room as it was, seen from the room as it is: `to` must lie where `from` lay.
-    const glm::dquat old_from_new = turnAboutDown(turn);
+    const bool is_free = tilted && std::min(glm::length(span_from), glm::length(span_to)) > kLeastSpanMetres;
+    const glm::dquat old_from_new = is_free ? turnBetween(span_to, span_from) : turnAboutDown(turn);
     const glm::dvec3 middle_from = 0.5 * (from[0] + from[1]), middle_to = 0.5 * (to[0] + to[1]);
     return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});
+}
+
+Similarity levelledLike(const Similarity& scene_from_room, const Similarity& upright, const glm::dvec3& about) {
+    const glm::dquat scene_from_tilted = turnBetween(scene_from_room.orientation * kDown, upright.orientation * kDown);
+    const glm::dvec3 fixed = transform(scene_from_room, about);
+    Similarity level{glm::normalize(scene_from_tilted * scene_from_room.orientation), glm::dvec3(0.0), scene_from_room.scale};
+    level.position = fixed - transform(level, about);
+    return level;
 }
 
 glm::dvec3 levelled(const glm::dvec3& forward) {

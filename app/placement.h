@@ -31,8 +31,12 @@ Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m);
 Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about);
 
 // Two points of the scene that are held, at `from` before and at `to` now: the scene moves, turns about the vertical and grows with
-// them. Points that lie above one another do not turn it, and scale changes stay within 1000 in all from `scene_from_room`.
-Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to);
+// them, or turns as they do where it may be `tilted`. Points that lie above one another do not turn it about the vertical, and scale
+// changes stay within 1000 in all from `scene_from_room`.
+Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
+                  bool tilted = false);
+// Stands as upright in the scene as `upright` does, with its heading; `about`, in the room, stays where it is.
+Similarity levelledLike(const Similarity& scene_from_room, const Similarity& upright, const glm::dvec3& about);
 
 // How the wearer looks ahead, level: the horizontal part of `forward`, or straight ahead if there is none.
 glm::dvec3 levelled(const glm::dvec3& forward);

@@ -6,34 +6,75 @@
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 
+#include <cstdlib>
+
 namespace binosplat {
 
-std::filesystem::path viewSettingsFile(const std::string& scene) {
-    const std::size_t prefix = std::string("builtin:").size();
-    std::filesystem::path path = isBuiltin(scene) ? scene.substr(prefix) : scene;
-    if (!path.has_filename()) { path = path.parent_path(); }
-    return path.stem().string() + ".view.toml";
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path configFolder() {
+    const auto folder = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return fs::path(value == nullptr ? "" : value);
+    };
+    const fs::path home = folder("HOME"), chosen = folder("XDG_CONFIG_HOME");
+    check(chosen.is_absolute() || home.is_absolute(), "HOME: no folder for settings, must be set");
+    return (chosen.is_absolute() ? chosen : home / ".config") / "binosplat" / "scenes";
 }
 
-std::string saveViewSettings(const std::filesystem::path& file, const ViewSettings& settings) {
+// FNV-1a: another scene has another one, and the same scene always this.
+std::uint64_t fingerprint(const std::string& text) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3; }
+    return hash;
+}
+
+std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) {
+    std::vector<SettingsTable> view;
+    for (const SettingsTable& table : tables) {
+        if (table.name == "view") { view.push_back(table); }
+    }
+    return view;
+}
+
+}  // namespace
+
+fs::path viewSettingsFile(const std::string& scene) {
+    if (isBuiltin(scene)) { return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml"); }
+    std::error_code ignored;
+    fs::path place = fs::weakly_canonical(scene, ignored);
+    if (!place.has_filename()) { place = place.parent_path(); }
+    const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
+    return configFolder() /
+           fmt::format("{}-{:016x}.view.toml", place.stem().string(), fingerprint(fmt::format("{}:{}", place.string(), bytes)));
+}
+
+std::optional<Similarity> rememberedPlacement(const std::string& scene) {
+    const fs::path file = viewSettingsFile(scene);
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) { return std::nullopt; }
+    return readViewSettings(viewTables(readSettingsFile(file)), {}).scene_from_room;
+}
+
+std::string saveViewSettings(const std::string& scene, const ViewSettings& settings) {
     try {
-        OutputFiles files(std::filesystem::current_path());
-        writeText(files.staging() / file, viewSettingsToml(settings));
+        const fs::path file = viewSettingsFile(scene);
+        OutputFiles files(file.parent_path());
+        writeText(files.staging() / file.filename(), viewSettingsToml(settings));
         files.publish();
         return "saved as " + file.string();
     } catch (const Error& error) { return error.what(); }
 }
 
-std::string loadViewSettings(const std::filesystem::path& file, ViewSettings& settings) {
+std::string loadViewSettings(const std::string& scene, ViewSettings& settings) {
     try {
+        const fs::path file = viewSettingsFile(scene);
         const std::vector<SettingsTable> tables = readSettingsFile(file);
-        std::vector<SettingsTable> view;
-        for (const SettingsTable& table : tables) {
-            if (table.name == "view") { view.push_back(table); }
-        }
         RunOptions run;
         run.stereo = settings.stereo;
-        ViewSettings loaded = readViewSettings(view, settings);
+        ViewSettings loaded = readViewSettings(viewTables(tables), settings);
         loaded.stereo = runOptions(configLayer(file, tables, {"view"}), run).stereo;
         settings = loaded;
         return "loaded " + file.string();

@@ -4,15 +4,22 @@
 #include "app/view_settings.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace binosplat {
 
-// SCENE.view.toml in the working directory, of a file, a folder or builtin:NAME.
+// A file of the user's configuration folder (XDG_CONFIG_HOME, or ~/.config) for this scene alone: of a file by its place and its size, so
+// that another one in its place begins anew; of a folder by its place, of builtin:NAME by its name. Throws Error where there is no such
+// folder.
 std::filesystem::path viewSettingsFile(const std::string& scene);
 
-// Both say in a line how it went; a file that cannot be read or written is no reason to leave the headset.
-std::string saveViewSettings(const std::filesystem::path& file, const ViewSettings& settings);
-std::string loadViewSettings(const std::filesystem::path& file, ViewSettings& settings);
+// Where the wearer stood when the scene's settings were saved; empty where they never were. Throws Error where the file is broken.
+std::optional<Similarity> rememberedPlacement(const std::string& scene);
+
+// Both say in a line how it went; a file that cannot be read or written is no reason to leave the headset. What is written is whole or not
+// there.
+std::string saveViewSettings(const std::string& scene, const ViewSettings& settings);
+std::string loadViewSettings(const std::string& scene, ViewSettings& settings);
 
 }  // namespace binosplat

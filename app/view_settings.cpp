@@ -47,6 +47,7 @@ std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& s
             {"tint", settings.tint ? "true" : "false"},
             {"panel", settings.panel ? "true" : "false"},
             {"visibility-mask", settings.visibility_mask ? "true" : "false"},
+            {"tilt", settings.tilt ? "true" : "false"},
             {"quality", fmt::format("\"{}\"", kQualityNames[static_cast<std::size_t>(settings.quality)])}};
 }
 
@@ -67,6 +68,8 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 const auto* const found = std::ranges::find(kQualityNames, setting.text());
                 check(found != std::end(kQualityNames), "{} is {}, must be off, sharp, balanced or fast", setting.origin, setting.text());
                 settings.quality = static_cast<Quality>(found - std::begin(kQualityNames));
+            } else if (key == "tilt") {
+                settings.tilt = readFlag(setting);
             } else if (key == "visibility-mask") {
                 settings.visibility_mask = readFlag(setting);
             } else if (key == "scene-position") {

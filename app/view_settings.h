@@ -17,12 +17,13 @@ struct ViewSettings {
     bool tint = false;              // show what made the affiliated picture
     bool panel = true;
     bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
+    bool tilt = false;                          // whether two hands may tilt the scene
     Quality quality = Quality::kOff;            // how the frame rate is held
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 };
 
-// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, quality, scene-position, scene-orientation (w,
-// x, y, z), units-per-metre. Throws Error with file and line.
+// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, scene-position,
+// scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
 // A config that --config takes, also of `render`.

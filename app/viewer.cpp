@@ -135,7 +135,7 @@ void Viewer::drawFrame() {
     room_from_head_ = roomFromHead(room_from_eyes);
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
-    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_.panel, scene_from_room_);
+    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scene_from_room_);
     if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
     obeyWindow(room_from_head_, step_seconds);
     govern();
@@ -213,8 +213,23 @@ void Viewer::takeScene() {
     }
     status_.scene = scene_->name;
     last_ = {};
-    scene_from_room_ = settings_.scene_from_room.value_or(scene_->start);
+    place();
     for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
+}
+
+// A place that the options or the config name wins over one that is remembered.
+void Viewer::place() {
+    const CameraOptions& camera = options_.run.camera;
+    const bool is_asked_for = camera.eye || camera.look || camera.up || settings_.scene_from_room;
+    scene_from_room_ = settings_.scene_from_room.value_or(scene_->start);
+    settings_.scene_from_room.reset();  // of the first scene alone
+    if (is_asked_for) { return; }
+    try {
+        const std::optional<Similarity> remembered = rememberedPlacement(scene_->name);
+        if (!remembered) { return; }
+        scene_from_room_ = *remembered;
+        fmt::print("frame {}: the wearer stands where this scene was saved\n", frames_);
+    } catch (const Error& error) { say(error.what()); }
 }
 
 void Viewer::openWindow() {
@@ -360,18 +375,20 @@ void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
 }
 
 void Viewer::obey(const OverlayActions& actions) {
-    const std::filesystem::path file = viewSettingsFile(options_.scene);
     if (actions.save) {
         settings_.scene_from_room = scene_from_room_;
-        status_.message = saveViewSettings(file, settings_);
+        status_.message = saveViewSettings(status_.scene, settings_);
+        settings_.scene_from_room.reset();
     }
     if (actions.load) {
-        status_.message = loadViewSettings(file, settings_);
+        status_.message = loadViewSettings(status_.scene, settings_);
         scene_from_room_ = settings_.scene_from_room.value_or(scene_from_room_);
+        settings_.scene_from_room.reset();
         settings_.panel = true;  // it was just pressed
     }
     if (actions.reload_shaders) { reloadShaders(); }
     if (actions.reset_scene) { scene_from_room_ = scene_->start; }
+    if (actions.level_scene) { scene_from_room_ = levelledLike(scene_from_room_, scene_->start, room_from_head_.position); }
     if (actions.save || actions.load) { fmt::print("frame {}: {}\n", frames_, status_.message); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
     if (actions.quit) { leave(); }

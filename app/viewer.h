@@ -34,6 +34,7 @@ private:
     // The window's own life while no frame is drawn for the headset.
     void drawWindowAlone(const std::string& why);
     void takeScene();
+    void place();
     // The headset does not need it: where it does not open, a line says why.
     void openWindow();
     // What the governor makes of the wearer's settings, and images as large as that.

@@ -21,14 +21,14 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 }  // namespace
 
 void WearerControls::update(const std::array<xr::Hand, 2>& hands, const Pose& room_from_head, double step_seconds, OverlayPanel& panel,
-                            bool& panel_shown, Similarity& scene_from_room) {
+                            ViewSettings& settings, Similarity& scene_from_room) {
     const bool menu = hands[kLeft].menu || hands[kRight].menu;
     if (menu && !menu_) {
-        panel_shown = !panel_shown;
-        if (panel_shown) { panel.hangBefore(room_from_head); }
+        settings.panel = !settings.panel;
+        if (settings.panel) { panel.hangBefore(room_from_head); }
     }
     menu_ = menu;
-    panel.update(panel_shown ? hands : std::array<xr::Hand, 2>{});
+    panel.update(settings.panel ? hands : std::array<xr::Hand, 2>{});
 
     const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
@@ -50,12 +50,18 @@ void WearerControls::update(const std::array<xr::Hand, 2>& hands, const Pose& ro
         const xr::Hand& hand = hands[static_cast<std::size_t>(h)];
         return hand.grabs && hand.grip.has_value() && !panel.isCarriedBy(h);
     };
-    if (!holds(kLeft) || !holds(kRight)) {
-        held_.reset();
-        return;
+    std::array<std::optional<glm::dvec3>, 2> now;
+    for (const int h : {kLeft, kRight}) {
+        if (holds(h)) { now[static_cast<std::size_t>(h)] = hands[static_cast<std::size_t>(h)].grip->position; }
     }
-    const std::array<glm::dvec3, 2> now{hands[kLeft].grip->position, hands[kRight].grip->position};
-    if (held_) { scene_from_room = heldBy(scene_from_room, *held_, now); }
+    // A hand that begins or ends to hold changes who holds, and moves nothing.
+    const bool goes_on = now[kLeft].has_value() == held_[kLeft].has_value() && now[kRight].has_value() == held_[kRight].has_value();
+    if (goes_on && now[kLeft] && now[kRight]) {
+        scene_from_room = heldBy(scene_from_room, {*held_[kLeft], *held_[kRight]}, {*now[kLeft], *now[kRight]}, settings.tilt);
+    } else if (goes_on && (now[kLeft] || now[kRight])) {
+        const std::size_t h = now[kLeft] ? kLeft : kRight;
+        scene_from_room = movedBy(scene_from_room, *held_[h] - *now[h]);
+    }
     held_ = now;
 }
 

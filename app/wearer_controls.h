@@ -3,6 +3,7 @@
 
 #include "app/overlay_panel.h"
 #include "app/placement.h"
+#include "app/view_settings.h"
 #include "xr/input.h"
 
 #include <array>
@@ -11,14 +12,14 @@ namespace binosplat {
 
 class WearerControls {
 public:
-    // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, rise and sink. Both hands squeezed: the scene
-    // follows them. Menu: the panel comes before the eyes, or goes.
+    // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, rise and sink. A hand squeezed: the scene moves
+    // with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes.
     void update(const std::array<xr::Hand, 2>& hands, const Pose& room_from_head, double step_seconds, OverlayPanel& panel,
-                bool& panel_shown, Similarity& scene_from_room);
+                ViewSettings& settings, Similarity& scene_from_room);
 
 private:
     bool turned_ = false, menu_ = false;
-    std::optional<std::array<glm::dvec3, 2>> held_;  // where both hands were
+    std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene
 };
 
 }  // namespace binosplat

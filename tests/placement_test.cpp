@@ -2,6 +2,7 @@
 #include "app/placement.h"
 #include "app/overlay_panel.h"
 #include "app/view_eyes.h"
+#include "app/view_files.h"
 #include "app/view_settings.h"
 #include "engine/error.h"
 #include "xr/convert.h"
@@ -46,6 +47,58 @@ TEST_CASE("OpenXR's axes become ours: up is -y, ahead is z, and back again witho
     const XrPosef there = xr::toXr(left);
     CHECK(there.orientation.y == doctest::Approx(half));
     CHECK(there.orientation.w == doctest::Approx(half));
+}
+
+TEST_CASE("hands that may tilt the scene turn it any way, with what they hold") {
+    const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
+    const std::array<glm::dvec3, 2> to{glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)};
+    const Similarity held = heldBy(kSome, from, to, true);
+    // Each hand still holds what it held, as far as the distance between them allows.
+    const double growth = glm::length(to[1] - to[0]) / glm::length(from[1] - from[0]);
+    CHECK(held.scale == doctest::Approx(kSome.scale / growth));
+    checkNear(transform(held, to[0]), transform(kSome, from[0]), 1e-9);
+    checkNear(transform(held, to[1]), transform(kSome, from[1]), 1e-9);
+    // Half a turn, too.
+    const Similarity turned = heldBy(kSome, from, {from[1], from[0]}, true);
+    checkNear(transform(turned, from[1]), transform(kSome, from[0]), 1e-9);
+    checkNear(transform(turned, from[0]), transform(kSome, from[1]), 1e-9);
+}
+
+TEST_CASE("a levelled scene stands upright about the wearer, as large and turned as it was") {
+    const glm::dvec3 about(0.3, -0.1, 0.5), down(0.0, 1.0, 0.0);
+    const Similarity upright{glm::normalize(glm::dquat(0.6, 0.2, 0.7, -0.1)), {5.0, 4.0, 3.0}, 9.0};
+    const Similarity level = levelledLike(kSome, upright, about);
+    checkNear(level.orientation * down, upright.orientation * down, 1e-9);
+    checkNear(transform(level, about), transform(kSome, about), 1e-9);
+    CHECK(level.scale == kSome.scale);
+    const Similarity again = levelledLike(level, upright, about);
+    checkNear(again.position, level.position, 1e-9);
+    CHECK(std::abs(glm::dot(again.orientation, level.orientation)) == doctest::Approx(1.0));
+}
+
+TEST_CASE("settings of a scene lie in the user's folder, by the file's place and size") {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "binosplat-placement-test";
+    std::filesystem::create_directories(folder / "elsewhere");
+    setenv("XDG_CONFIG_HOME", "/somewhere", 1);
+    const auto fileOf = [&](const std::string& name, const std::string& text) {
+        std::ofstream(folder / name) << text;
+        return viewSettingsFile((folder / name).string());
+    };
+    const std::filesystem::path first = fileOf("a.ply", "one");
+    CHECK(first.parent_path() == "/somewhere/binosplat/scenes");
+    CHECK(first.filename().string().starts_with("a-"));
+    CHECK(fileOf("a.ply", "two") == first);
+    CHECK(fileOf("a.ply", "longer") != first);
+    CHECK(fileOf("elsewhere/a.ply", "one") != first);
+    CHECK(viewSettingsFile((folder / "elsewhere/../a.ply").string()) == fileOf("a.ply", "longer"));
+    CHECK(viewSettingsFile((folder / "elsewhere/").string()) == viewSettingsFile((folder / "elsewhere").string()));
+    CHECK(viewSettingsFile("builtin:fence") == "/somewhere/binosplat/scenes/fence.view.toml");
+    unsetenv("XDG_CONFIG_HOME");
+    setenv("HOME", "/home/of", 1);
+    CHECK(viewSettingsFile("builtin:fence") == "/home/of/.config/binosplat/scenes/fence.view.toml");
+    unsetenv("HOME");
+    CHECK_THROWS_AS(static_cast<void>(viewSettingsFile("builtin:fence")), Error);
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("similarities compose") {

@@ -257,21 +257,44 @@ TEST_CASE("pointing beside the panel clicks nothing and shows no ray") {
     CHECK(on.layers(30, "quad").size() == 2);
 }
 
-TEST_CASE("settings and placement are saved as a config, and come back") {
+TEST_CASE("settings and placement are saved as a config of the scene, and come back") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun saved = runView(work, "save", kSmall + clickOn(panel, {kReproject, kSave, kPredicted, kLoad, {0.9, 0.95}}), kScene);
+    // A step ahead and a method, before they are saved.
+    const std::string walk =
+        "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 1\naxis left thumbstick 0.14 0 1\naxis left thumbstick 0.15 0 0\n";
+    const ViewRun saved =
+        runView(work, "save", kSmall + walk + clickOn(panel, {kReproject, kSave, kPredicted, kLoad, {0.9, 0.95}}), kScene);
     checkClean(saved);
-    CHECK(says(saved, "saved as fence.view.toml"));
-    CHECK(says(saved, "loaded fence.view.toml"));
     const std::string& output = saved.outcome.output;
+    const std::size_t at = output.find("saved as ");
+    REQUIRE(at != std::string::npos);
+    const std::filesystem::path file = output.substr(at + 9, output.find('\n', at) - at - 9);
+    CHECK(std::filesystem::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
+    CHECK(says(saved, "loaded " + file.string()));
     CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
     // The viewer and `render` take the file.
-    const ViewRun again = runView(work, "again", kSmall + "at 0.1 exit\n", kScene + " --config fence.view.toml");
+    const ViewRun again = runView(work, "again", kSmall + "at 0.1 exit\n", kScene + " --config '" + file.string() + "'");
     checkClean(again);
-    CHECK(work.run("render builtin:fence --out rendered --size 32x32 --config fence.view.toml").exit_code == 0);
+    CHECK(work.run("render builtin:fence --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
     CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
+    // The wearer stands there again, unless told where to.
+    const ViewRun there = runView(work, "there", kSmall + "at 0.1 exit\n", kScene + " --mode reproject --hide-panel");
+    checkClean(there);
+    CHECK(says(there, "the wearer stands where this scene was saved"));
+    const ViewRun before =
+        runView(work, "before", kSmall + "at 0.1 exit\n", kScene + " --mode reproject --hide-panel --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+    CHECK_FALSE(says(before, "where this scene was saved"));
+    const ViewRun named = runView(work, "named", kSmall + "at 0.1 exit\n", kScene + " --hide-panel --config '" + file.string() + "'");
+    CHECK(compare(there.eye(8, kLeft), named.eye(8, kLeft)).psnrDb() > 60.0);
+    CHECK(compare(there.eye(8, kLeft), before.eye(8, kLeft)).psnrDb() < 40.0);
+    // Another scene has another place, and one that cannot be read is said and does not keep anybody out.
+    CHECK_FALSE(says(runView(work, "other", kSmall + "at 0.1 exit\n", "builtin:step-edge --load-first"), "where this scene was saved"));
+    std::ofstream(file) << "[view]\nnonsense = 1\n";
+    const ViewRun broken = runView(work, "broken", kSmall + "at 0.1 exit\n", kScene);
+    checkClean(broken);
+    CHECK(says(broken, "fence.view.toml:2"));
 }
 
 TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {

@@ -17,7 +17,8 @@ namespace binosplat::test {
 
 // Vulkan's and OpenXR's validation layers are on, and both must stay silent; no window opens, where a mouse might pass.
 inline const std::string kValidated =
-    "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
+    "XDG_CONFIG_HOME=\"$PWD/../config\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 "
+    "XR_ENABLE_API_LAYERS=XR_APILAYER_LUNARG_core_validation "
     "XR_CORE_VALIDATION_EXPORT_TYPE=text";
 
 struct ViewRun {

@@ -45,6 +45,7 @@ public:
             arguments.push_back(nullptr);
             const bool placed = chdir(folder.c_str()) == 0 && setenv("DISPLAY", display.c_str(), 1) == 0;
             setenv("BINOSPLAT_VALIDATION", "1", 1);
+            setenv("XDG_CONFIG_HOME", (folder.parent_path() / "config").c_str(), 1);
             unsetenv("WAYLAND_DISPLAY");
             if (placed) { execvp(arguments[0], arguments.data()); }
             _exit(127);
@@ -173,8 +174,8 @@ public:
     // Where the wearer's room lies now, as the viewer saves it.
     Pose placement(const Workplace& work) {
         click(kSave);
-        REQUIRE(program_.waitFor("saved as fence.view.toml") != "");
-        std::ifstream file(work.path / "fence.view.toml");
+        REQUIRE(program_.waitFor("fence.view.toml") != "");
+        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
         const std::string text{std::istreambuf_iterator<char>(file), {}};
         const auto numbers = [&](const std::string& key) {
             const std::size_t at = text.find(key + " = [");
