@@ -34,7 +34,7 @@ void simulateHeadset(ViewOptions& options) {
         std::error_code ignored;
         check(fs::is_regular_file(options.script, ignored), "--simulate: {} is not a file, must be a script (see docs/simulated_script.md)",
               options.script);
-        setenv("BINOSPLAT_SIMULATED_SCRIPT", fs::absolute(options.script).c_str(), 1);
+        setenv("SIMULATED_OPENXR_SCRIPT", fs::absolute(options.script).c_str(), 1);
     }
     if (!hasDisplay()) {
         if (options.out.empty()) { options.out = "out/view"; }
@@ -44,9 +44,9 @@ void simulateHeadset(ViewOptions& options) {
         std::error_code error;
         fs::create_directories(options.out, error);
         check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
-        setenv("BINOSPLAT_SIMULATED_OUT", fs::absolute(options.out).c_str(), 1);
-    } else {
-        setenv("BINOSPLAT_SIMULATED_CLOCK", "real", 0);  // somebody watches
+        setenv("SIMULATED_OPENXR_OUT", fs::absolute(options.out).c_str(), 1);
+    } else if (!isSet("BINOSPLAT_SIMULATED_CLOCK")) {
+        setenv("SIMULATED_OPENXR_CLOCK", "real", 0);  // somebody watches
     }
 }
 
