@@ -47,7 +47,7 @@ void simulateHeadset(ViewOptions& options) {
         const std::uintmax_t bytes = fs::file_size(options.script, ignored);
         check(bytes <= kMostTextBytes, "--simulate: {} is longer than {} MiB, must be a script (see docs/simulated_script.md)",
               options.script, kMostTextBytes >> 20);
-        setEnvironment("BINOSPLAT_SIMULATED_SCRIPT", fs::absolute(options.script).string());
+        setEnvironment("SIMULATED_OPENXR_SCRIPT", fs::absolute(options.script).string());
     }
     if (!hasDisplay()) {
         if (options.out.empty()) { options.out = "out/view"; }
@@ -57,9 +57,9 @@ void simulateHeadset(ViewOptions& options) {
         std::error_code error;
         fs::create_directories(options.out, error);
         check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
-        setEnvironment("BINOSPLAT_SIMULATED_OUT", fs::absolute(options.out).string());
-    } else if (environment("BINOSPLAT_SIMULATED_CLOCK").empty()) {
-        setEnvironment("BINOSPLAT_SIMULATED_CLOCK", "real");  // somebody watches
+        setEnvironment("SIMULATED_OPENXR_OUT", fs::absolute(options.out).string());
+    } else if (environment("BINOSPLAT_SIMULATED_CLOCK").empty() && environment("SIMULATED_OPENXR_CLOCK").empty()) {
+        setEnvironment("SIMULATED_OPENXR_CLOCK", "real");  // somebody watches
     }
 }
 

@@ -240,3 +240,29 @@ TEST_CASE_FIXTURE(InstanceFixture, "a path has a form") {
     CHECK(xrStringToPath(instance, nullptr, &made) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrStringToPath(instance, "/a", nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
+
+TEST_CASE("messages of refused calls come through the loader") {
+    struct Listening : InstanceFixture {
+        Listening() : InstanceFixture(kQuietScript, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {}
+    };
+    const Listening fixture;
+    std::vector<std::string> heard;
+    const XrDebugUtilsMessengerCreateInfoEXT info{
+        XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        nullptr,
+        XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        [](XrDebugUtilsMessageSeverityFlagsEXT, XrDebugUtilsMessageTypeFlagsEXT, const XrDebugUtilsMessengerCallbackDataEXT* data,
+           void* list) -> XrBool32 {
+            static_cast<std::vector<std::string>*>(list)->push_back(std::string(data->functionName) + ": " + data->message);
+            return XR_FALSE;
+        },
+        &heard};
+    XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
+    const auto create = fixture.function<PFN_xrCreateDebugUtilsMessengerEXT>("xrCreateDebugUtilsMessengerEXT");
+    REQUIRE(create(fixture.instance, &info, &messenger) == XR_SUCCESS);
+    XrPath path = XR_NULL_PATH;
+    CHECK(xrStringToPath(fixture.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
+    CHECK(heard == std::vector<std::string>{"xrStringToPath: not a well-formed path"});
+    CHECK(fixture.function<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_SUCCESS);
+}

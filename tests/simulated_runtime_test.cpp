@@ -157,6 +157,27 @@ TEST_CASE("the environment's names say what the runtime is, and those of before 
     for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK", "BINOSPLAT_SIMULATED_CLOCK"}) unsetenv(name);
 }
 
+TEST_CASE("an instance empties the folder of an earlier run, one that is refused leaves it alone") {
+    const Headset headset(kQuietScript);
+    std::filesystem::create_directories(headset.written);
+    const std::filesystem::path picture = headset.written / "frame_000003.png";
+    std::ofstream(picture) << "x";
+    std::ofstream(headset.written / "frames.jsonl") << "{\"frame\":0,\"display_time_ns\":1}\n";
+    const Direct runtime;
+    const auto create = runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance");
+    const std::vector<const char*> unknown{"XR_KHR_nothing"};
+    XrInstanceCreateInfo info = instanceInfo(unknown);
+    XrInstance instance = XR_NULL_HANDLE;
+    CHECK(create(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
+    CHECK(std::filesystem::exists(picture));
+    CHECK(std::filesystem::file_size(headset.written / "frames.jsonl") > 0);
+    info = instanceInfo({});
+    REQUIRE(create(&info, &instance) == XR_SUCCESS);
+    CHECK_FALSE(std::filesystem::exists(picture));
+    CHECK(std::filesystem::file_size(headset.written / "frames.jsonl") == 0);
+    CHECK(runtime.function<PFN_xrDestroyInstance>(instance, "xrDestroyInstance")(instance) == XR_SUCCESS);
+}
+
 TEST_CASE("openxr_runtime_list finds it") {
     if (!isInstalled("openxr_runtime_list")) {
         MESSAGE("skipped: openxr_runtime_list is not installed (libopenxr-utils)");

@@ -314,3 +314,18 @@ TEST_CASE_FIXTURE(SessionFixture, "a session's events are forgotten with it") {
     REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);
     CHECK(states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
 }
+
+TEST_CASE("frames go by the display's rate from the next one on, and stay in order") {
+    const SessionFixture fixture("size 64 64\nframes none\nrate 100\n", {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME});
+    const auto request = fixture.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+    fixture.begin();
+    const XrFrameState first = fixture.frame(), second = fixture.frame();
+    CHECK(second.predictedDisplayTime - first.predictedDisplayTime == 10'000'000);
+    REQUIRE(request(fixture.session, 80) == XR_SUCCESS);
+    const XrFrameState third = fixture.frame();
+    CHECK(third.predictedDisplayTime - second.predictedDisplayTime == 12'500'000);
+    CHECK(third.predictedDisplayPeriod == 12'500'000);
+    REQUIRE(request(fixture.session, 0) == XR_SUCCESS);
+    const XrFrameState fourth = fixture.frame();
+    CHECK(fourth.predictedDisplayTime - third.predictedDisplayTime == 10'000'000);
+}

@@ -241,12 +241,59 @@ TEST_CASE("the palm's surface is grip_surface in 1.1 and palm_ext by the extensi
         CHECK(extended.suggest(simple, grip_surface) == XR_ERROR_PATH_UNSUPPORTED);
         CHECK(extended.suggest(simple, palm) == XR_SUCCESS);
     }
+    CHECK(DirectInstance(k1_0, {XR_KHR_MAINTENANCE1_EXTENSION_NAME}).suggest(simple, grip_surface) == XR_SUCCESS);
     const DirectInstance made(k1_1, {});
     CHECK(made.suggest(simple, grip_surface) == XR_SUCCESS);
     CHECK(made.suggest(simple, "/user/hand/left/input/grip_surface") == XR_SUCCESS);
     CHECK(made.suggest(simple, palm) == XR_ERROR_PATH_UNSUPPORTED);
     CHECK(made.suggest("/interaction_profiles/microsoft/xbox_controller", "/user/gamepad/input/grip_surface/pose") ==
           XR_ERROR_PATH_UNSUPPORTED);
+}
+
+TEST_CASE("the palm's surface lies beside the grip, turned towards the index finger") {
+    const HeadlessSession made(k1_1, {}, "controller left 0 position 1 2 3 turn 40 10\n");
+    XrActionSetCreateInfo set_info{XR_TYPE_ACTION_SET_CREATE_INFO, nullptr, "set", "the set", 0};
+    XrActionSet set = XR_NULL_HANDLE;
+    REQUIRE(made.xr<PFN_xrCreateActionSet>("xrCreateActionSet")(made.instance, &set_info, &set) == XR_SUCCESS);
+    const char* const hands[] = {"/user/hand/left", "/user/hand/right"};
+    const XrPath paths[] = {made.path(hands[0]), made.path(hands[1])};
+    std::vector<XrAction> actions;
+    std::vector<XrActionSuggestedBinding> bindings;
+    for (const char* name : {"grip", "grip_surface"}) {
+        XrActionCreateInfo info{XR_TYPE_ACTION_CREATE_INFO};
+        std::strcpy(info.actionName, name);
+        std::strcpy(info.localizedActionName, name);
+        info.actionType = XR_ACTION_TYPE_POSE_INPUT;
+        info.countSubactionPaths = 2;
+        info.subactionPaths = paths;
+        XrAction action = XR_NULL_HANDLE;
+        REQUIRE(made.xr<PFN_xrCreateAction>("xrCreateAction")(set, &info, &action) == XR_SUCCESS);
+        actions.push_back(action);
+        for (const char* hand : hands) bindings.push_back({action, made.path((std::string(hand) + "/input/" + name + "/pose").c_str())});
+    }
+    const XrInteractionProfileSuggestedBinding suggested{XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING, nullptr,
+                                                         made.path("/interaction_profiles/khr/simple_controller"), 4, bindings.data()};
+    REQUIRE(made.xr<PFN_xrSuggestInteractionProfileBindings>("xrSuggestInteractionProfileBindings")(made.instance, &suggested) ==
+            XR_SUCCESS);
+    const XrSessionActionSetsAttachInfo attach{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO, nullptr, 1, &set};
+    REQUIRE(made.xr<PFN_xrAttachSessionActionSets>("xrAttachSessionActionSets")(made.session, &attach) == XR_SUCCESS);
+    made.begin();
+    const XrActiveActionSet active{set, XR_NULL_PATH};
+    const XrActionsSyncInfo sync{XR_TYPE_ACTIONS_SYNC_INFO, nullptr, 1, &active};
+    REQUIRE(made.xr<PFN_xrSyncActions>("xrSyncActions")(made.session, &sync) == XR_SUCCESS);
+    for (int hand = 0; hand < 2; ++hand) {
+        XrSpace spaces[2];
+        for (int i = 0; i < 2; ++i) {
+            const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, actions[i], paths[hand], kIdentity};
+            REQUIRE(made.xr<PFN_xrCreateActionSpace>("xrCreateActionSpace")(made.session, &info, &spaces[i]) == XR_SUCCESS);
+        }
+        XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
+        REQUIRE(made.xr<PFN_xrLocateSpace>("xrLocateSpace")(spaces[1], spaces[0], kStart, &location) == XR_SUCCESS);
+        CHECK(location.locationFlags == 15);
+        CHECK(location.pose.position.x == doctest::Approx(hand == 0 ? -0.02 : 0.02));
+        CHECK(location.pose.orientation.x == doctest::Approx(-std::sin(3.14159265 / 8)));
+        CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
+    }
 }
 
 TEST_CASE("a headless session has no swapchains and no frames, and is in focus at once") {

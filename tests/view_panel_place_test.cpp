@@ -40,3 +40,12 @@ TEST_CASE("the documented line of a script clicks on Quit, on a panel of the doc
     CHECK(std::abs(size[0] - 0.6) < 1e-6);
     CHECK(std::abs(size[1] - 0.7) < 1e-6);
 }
+
+TEST_CASE("what the command line says of the simulated headset counts before the environment") {
+    const Workplace work;
+    const ViewRun run = runView(work, "own", "size 64 64\nframes none\nat 0.1 exit\n", "builtin:fence --load-first",
+                                kValidated + " SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
+    checkClean(run);
+    CHECK(run.frames.size() > 8);
+    CHECK_FALSE(std::filesystem::exists(work.path / "elsewhere"));
+}

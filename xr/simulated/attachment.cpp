@@ -1,6 +1,7 @@
 #include "xr/simulated/attachment.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "xr/simulated/actions.h"
 #include "xr/simulated/automation.h"
@@ -70,12 +71,13 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
     return {value, 0.0};
 }
 
-// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round.
+// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
+// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
     constexpr double kPalm_m = 0.02;
     if (source.source == "aim") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
-    Pose grip_from_palm;
+    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
     grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
     return compose(controller.stage_from_grip, grip_from_palm);
 }

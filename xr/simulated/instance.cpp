@@ -111,8 +111,9 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         auto created = std::make_unique<Instance>();
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
         created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
+        // Last, since it empties the folder that is written to and takes over from an instance that was lost.
+        created->extensions = checkedExtensions(info, scriptOfEnvironment());
         created->simulation = Simulation::begin();
-        created->extensions = checkedExtensions(info, created->simulation->script);
         output = handleOf(adopt(root(), std::move(created)));
         return XR_SUCCESS;
     });

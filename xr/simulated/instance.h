@@ -44,7 +44,9 @@ struct Instance : Object {
     [[nodiscard]] bool has(const Profile& profile) const {
         return profile.since == Since::k1_0 || is_1_1 || extensions.contains(std::string(profile.extension));
     }
-    [[nodiscard]] Vocabulary vocabulary() const { return {is_1_1, extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)}; }
+    [[nodiscard]] Vocabulary vocabulary() const {
+        return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)};
+    }
     // What the core has since 1.1, and what 1.0 has with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
 };

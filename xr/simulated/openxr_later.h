@@ -62,6 +62,10 @@ using PFN_xrLocateSpaces = XrResult (*)(XrSession session, const XrSpacesLocateI
 using PFN_xrLocateSpacesKHR = PFN_xrLocateSpaces;
 #endif
 
+#ifndef XR_KHR_maintenance1
+#define XR_KHR_MAINTENANCE1_EXTENSION_NAME "XR_KHR_maintenance1"
+#endif
+
 #ifndef XR_EXT_local_floor
 #define XR_EXT_LOCAL_FLOOR_EXTENSION_NAME "XR_EXT_local_floor"
 #endif
