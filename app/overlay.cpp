@@ -73,11 +73,10 @@ void drawResolution(ViewSettings& settings) {
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
 }
 
-void drawQuality(ViewSettings& settings, const OverlayStatus& status) {
+void drawQuality(ViewSettings& settings) {
     std::string chosen = kQualityNames[static_cast<std::size_t>(settings.quality)];
     chooseFrom("Hold the frame rate", std::array{"off", "sharp", "balanced", "fast"}, chosen, 4);
     settings.quality = static_cast<Quality>(std::ranges::find(kQualityNames, chosen) - std::begin(kQualityNames));
-    if (!status.governor.empty()) { ImGui::TextWrapped("%s", status.governor.c_str()); }
 }
 
 void drawTimes(const OverlayStatus& status) {
@@ -125,8 +124,12 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
     ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kLabelShare);
     text(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene));
-    if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
-    if (status.has_scene) {
+    const auto drawLoading = [&] {
+        if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
+    };
+    if (!status.has_scene) {
+        drawLoading();
+    } else {
         drawMethod(settings);
         drawResolution(settings);
         actions.save = ImGui::Button("Save");
@@ -142,12 +145,20 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
             ImGui::SameLine();
             actions.reload_shaders = ImGui::Button("Shaders");
         }
-        ImGui::TextWrapped("%s",
-                           status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
-        drawQuality(settings, status);
+        drawQuality(settings);
         ImGui::Checkbox("Two hands may tilt the scene", &settings.tilt);
         ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.75f);
         actions.level_scene = ImGui::Button("Level");
+        if (ImGui::Button("Scene before")) { actions.scene_step = -1; }
+        ImGui::SameLine();
+        if (ImGui::Button("Next scene")) { actions.scene_step = 1; }
+        ImGui::SameLine();
+        actions.take_picture = ImGui::Button("Picture");
+        // What is said may take several lines, and moves nothing that is pointed at.
+        ImGui::TextWrapped("%s",
+                           status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
+        drawLoading();
+        if (!status.governor.empty()) { ImGui::TextWrapped("%s", status.governor.c_str()); }
         drawTimes(status);
     }
     ImGui::PopItemWidth();

@@ -6,7 +6,10 @@
 #include "app/shader_reload.h"
 #include "app/view_eyes.h"
 #include "app/view_files.h"
+#include "app/view_scenes.h"
 #include "engine/error.h"
+#include "engine/picture/image_io.h"
+#include "engine/setup/output_files.h"
 
 #include <thread>
 
@@ -25,6 +28,27 @@ constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
 // So many sessions lost in a row before one has shown a frame are too many.
 constexpr int kMostLosses = 3;
+
+Image besideOneAnother(const Image& left, const Image& right) {
+    Image both{{left.size_px.x + right.size_px.x, left.size_px.y}, left.channels, {}};
+    both.values.reserve(left.values.size() + right.values.size());
+    const std::size_t row = std::size_t{left.size_px.x} * static_cast<std::size_t>(left.channels);
+    for (std::size_t at = 0; at < left.values.size(); at += row) {
+        for (const Image* eye : {&left, &right}) {
+            const auto begin = eye->values.begin() + static_cast<std::ptrdiff_t>(at);
+            both.values.insert(both.values.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+        }
+    }
+    return both;
+}
+
+// Without its extension; pictures are never overwritten.
+std::string freePictureName(const std::filesystem::path& folder) {
+    for (int number = 1;; ++number) {
+        const std::string name = fmt::format("binosplat-{:04}", number);
+        if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)))) { return name; }
+    }
+}
 
 glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
     const glm::dvec2 wanted = glm::round(scale * glm::dvec2(instance.recommendedSizePx()));
@@ -46,7 +70,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       commands_(context_),
       settings_(settings),
       loader_(std::make_unique<SceneLoader>(context_, options.scene, options.run)) {
-    status_.scene = options.scene;
+    status_.scene = asked_scene_ = options.scene;
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (mirrored) { openWindow(); }
     fitResolution();
@@ -212,6 +236,7 @@ void Viewer::takeScene() {
         return;
     }
     status_.scene = scene_->name;
+    fmt::print("frame {}: shows {}\n", frames_, scene_->name);
     last_ = {};
     place();
     for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
@@ -356,7 +381,7 @@ void Viewer::obeyWindow(const Pose& room_from_head, double step_seconds) {
     window_input_ = window_->poll();
     if (window_input_.quit) { leave(); }
     recentre_asked_ = recentre_asked_ || window_input_.recentre;
-    if (!window_input_.dropped.empty()) { loader_ = std::make_unique<SceneLoader>(context_, window_input_.dropped, options_.run); }
+    if (!window_input_.dropped.empty()) { beginScene(window_input_.dropped); }
     if (window_input_.reload_shaders) { reloadShaders(); }
     if (window_input_.toggle_panel) {
         settings_.panel = !settings_.panel;
@@ -391,6 +416,8 @@ void Viewer::obey(const OverlayActions& actions) {
     if (actions.level_scene) { scene_from_room_ = levelledLike(scene_from_room_, scene_->start, room_from_head_.position); }
     if (actions.save || actions.load) { fmt::print("frame {}: {}\n", frames_, status_.message); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
+    if (actions.scene_step != 0) { beginScene(sceneBeside(asked_scene_, actions.scene_step)); }
+    if (actions.take_picture) { takePicture(); }
     if (actions.quit) { leave(); }
 }
 
@@ -401,6 +428,23 @@ void Viewer::reloadShaders() {
         presenter_.rebuildKernels();
     });
     fmt::print("frame {}: {}\n", frames_, status_.message);
+}
+
+void Viewer::beginScene(const std::string& scene) {
+    asked_scene_ = scene;
+    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run);
+}
+
+void Viewer::takePicture() {
+    if (last_.counters.empty()) { return; }
+    try {
+        Image both = scene_->frame.readPicture(0);
+        if (!showsOneEye()) { both = besideOneAnother(both, scene_->frame.readPicture(1)); }
+        const std::filesystem::path folder = std::filesystem::current_path();
+        OutputFiles files(folder);
+        say("picture " + writePicture(files.staging() / freePictureName(folder), PictureKind::kDisplay, both).front().filename().string());
+        files.publish();
+    } catch (const Error& error) { say(error.what()); }
 }
 
 void Viewer::waitForQueue() const {

@@ -56,6 +56,10 @@ private:
     void addPanel(xr::Layers& layers, const Pose& room_from_head) const;
     void obey(const OverlayActions& actions);
     void reloadShaders();
+    // Beside the scene that is shown, which stays until the other one is there.
+    void beginScene(const std::string& scene);
+    // What both eyes see, beside one another, as a file of the working directory.
+    void takePicture();
     void say(const std::string& message);
     void leave();
     void waitForQueue() const;
@@ -82,7 +86,8 @@ private:
     std::unique_ptr<LoadedScene> scene_;
     FrameResult last_;
     OverlayStatus status_;
-    Pose room_from_head_;  // as last known
+    Pose room_from_head_;      // as last known
+    std::string asked_scene_;  // the last one, whether it could be loaded or not
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
     int losses_ = 0;  // since a frame was shown
     std::uint64_t frames_ = 0;

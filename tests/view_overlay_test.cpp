@@ -1,7 +1,7 @@
 // Facts about the viewer's panel and controls: a ray points, the trigger clicks, sticks and grips move, as a script's hands do it.
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
-#include "tests/view_runs.h"
+#include "tests/view_panel.h"
 
 #include <doctest/doctest.h>
 
@@ -21,42 +21,6 @@ const std::string kScene = "builtin:fence --load-first";
 const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
     kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.75, 0.477), kMargin(0.3, 0.355),
     kBudget(0.3, 0.395), kResolution(0.3, 0.436);
-
-// Where the panel hangs, as the runtime was told, in STAGE and OpenXR's axes.
-struct Panel {
-    glm::dvec3 middle;
-    glm::dquat orientation;
-    glm::dvec2 size_m;
-};
-
-Panel panelOf(const ViewRun& run, std::size_t frame) {
-    const nlohmann::json quad = run.layers(frame, "quad").at(0);
-    const auto p = quad.at("pose").at("position").get<std::array<double, 3>>();
-    const auto q = quad.at("pose").at("orientation").get<std::array<double, 4>>();
-    const auto size = quad.at("size").get<std::array<double, 2>>();
-    return {{p[0], p[1] + 1.6, p[2]}, {q[3], q[0], q[1], q[2]}, {size[0], size[1]}};
-}
-
-// A line that puts the right hand 30 cm before a place of the panel, pointing straight at it.
-std::string pointAt(const Panel& panel, const glm::dvec2& share, double time_s) {
-    const glm::dvec3 on_panel((share.x - 0.5) * panel.size_m.x, (0.5 - share.y) * panel.size_m.y, 0.3);
-    const glm::dvec3 at = panel.middle + panel.orientation * on_panel;
-    const glm::dquat& q = panel.orientation;
-    return fmt::format("controller right {:.6f} position {:.6f} {:.6f} {:.6f} rotation {:.6f} {:.6f} {:.6f} {:.6f}\n", time_s, at.x, at.y,
-                       at.z, q.x, q.y, q.z, q.w);
-}
-
-// Points at one place after the other, a fifth of a second each, and clicks there.
-std::string clickOn(const Panel& panel, const std::vector<glm::dvec2>& places) {
-    std::string script;
-    double time_s = 0.2;
-    for (const glm::dvec2& place : places) {
-        script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15);
-        script += fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
-        time_s += 0.2;
-    }
-    return script + fmt::format("at {} exit\n", time_s);
-}
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {

@@ -1,0 +1,131 @@
+// Facts about what is to be seen: the next scene, scenes that cannot be read, pictures, and where the wearer stands in them.
+#include "engine/picture/metrics.h"
+#include "tests/view_panel.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+// The left hand points at the floor.
+const std::string kSmall = "rate 90\nsize 160 160\nframes every 10\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+
+// Widgets by their place on the panel, in shares of its width and height.
+const glm::dvec2 kNextScene(0.355, 0.634), kPicture(0.49, 0.634), kRecentre(0.915, 0.477), kLevel(0.79, 0.572), kSave(0.05, 0.477),
+    kBeside(0.9, 0.95);
+
+bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
+
+const Panel& startPanel(const Workplace& work) {
+    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:fence --load-first"), 8);
+    return panel;
+}
+
+std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s) {
+    return pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15) +
+           fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
+}
+
+}  // namespace
+
+TEST_CASE("the next scene comes while this one stays, and one that cannot be read is said and keeps it") {
+    const Workplace work;
+    REQUIRE(work.run("scene fence --out a.ply").exit_code == 0);
+    std::ofstream(work.path / "b.ply") << "ply\nnonsense\n";
+    REQUIRE(work.run("scene step-edge --out c.ply").exit_code == 0);
+    std::ofstream(work.path / "notes.txt") << "no scene";
+    const Panel panel = startPanel(work);
+    const ViewRun run = runView(work, "next", kSmall + clickAt(panel, kNextScene, 0.2) + clickAt(panel, kNextScene, 1.5) + "at 6 exit\n",
+                                "a.ply --load-first");
+    checkClean(run);
+    const std::string& output = run.outcome.output;
+    const std::size_t first = output.find("shows a.ply"), broken = output.find("b.ply:"), third = output.find("shows c.ply");
+    CHECK(first < broken);
+    CHECK(broken < third);
+    CHECK(third != std::string::npos);
+    // There was always something to see.
+    for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
+}
+
+TEST_CASE("the scene of the command line that cannot be read ends it, with one") {
+    const Workplace work;
+    std::ofstream(work.path / "b.ply") << "ply\nnonsense\n";
+    const ViewRun run = runView(work, "bad", kSmall + "at 3 exit\n", "b.ply", "DISPLAY=");
+    CHECK(run.outcome.exit_code == 1);
+    CHECK(run.outcome.errors.starts_with("binosplat: b.ply:"));
+}
+
+TEST_CASE("a picture of both eyes is a file that is not overwritten") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const ViewRun run =
+        runView(work, "shots", kSmall + clickOn(panel, {kPicture, kPicture, kBeside}), "builtin:fence --load-first --mode shared");
+    checkClean(run);
+    CHECK(says(run, "picture binosplat-0001.png"));
+    CHECK(says(run, "picture binosplat-0002.png"));
+    const Image both = readPicture(work.path / "binosplat-0001.png");
+    REQUIRE(both.size_px == glm::uvec2(320, 160));
+    // As the wearer sees it, at the right, where no panel hangs.
+    for (const int side : {kLeft, kRight}) {
+        const Image seen = run.eye(20, side);
+        std::size_t same = 0, all = 0;
+        for (std::uint32_t y = 0; y < 160; ++y) {
+            for (std::uint32_t x = 120; x < 160; ++x) {
+                const float a = both.values[(std::size_t{y} * 320 + static_cast<std::uint32_t>(side) * 160 + x) *
+                                            static_cast<std::size_t>(both.channels)];
+                const float b = seen.values[(std::size_t{y} * 160 + x) * static_cast<std::size_t>(seen.channels)];
+                same += std::abs(a - b) < 0.01f ? 1 : 0;
+                ++all;
+            }
+        }
+        CHECK(same > all * 99 / 100);
+    }
+}
+
+TEST_CASE("the wearer recentres by the panel's button") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const std::string head = "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.4 1.5 0.3 turn 50 0\n";
+    const ViewRun run = runView(work, "recentre", kSmall + head + clickOn(panel, {kRecentre, kBeside}), "builtin:fence --load-first");
+    checkClean(run);
+    CHECK(says(run, "the wearer's place is the room's, 1.50 m above the floor"));
+    const std::size_t last = run.frames.size() - 5;
+    const auto left = run.layers(last, "projection").at(0).at("views").at(0).at("pose").at("position").get<std::array<double, 3>>();
+    CHECK(glm::length(glm::dvec3(left[0], left[1], left[2]) - glm::dvec3(-0.0315, 0.0, 0.0)) < 1e-5);
+}
+
+TEST_CASE("a scene that two hands tilted is levelled again") {
+    const Workplace work;
+    std::ofstream(work.path / "tilt.toml") << "[view]\ntilt = true\n";
+    const Panel panel = startPanel(work);
+    // Both hands hold the scene and roll it by some 30 degrees; then the right one clicks.
+    const std::string roll =
+        "rate 90\nsize 160 160\nframes every 10\n"
+        "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\ncontroller left 0.1 position -0.2 1.2 -0.35 turn 0 -80\n"
+        "controller left 0.3 position -0.17 1.1 -0.35 turn 0 -80\n"
+        "controller right 0 position 0.2 1.2 -0.35 turn 0 -80\ncontroller right 0.1 position 0.2 1.2 -0.35 turn 0 -80\n"
+        "controller right 0.3 position 0.17 1.3 -0.35 turn 0 -80\ncontroller right 0.35 position 0.17 1.3 -0.35 turn 0 -80\n"
+        "press left squeeze 0.05 0.32\npress right squeeze 0.05 0.32\n";
+    const std::string scene = "builtin:fence --load-first --mode mono --config tilt.toml";
+    // How much of the turn is not about the vertical, as it was saved.
+    const auto tiltAfter = [&](const std::string& name, const std::string& clicks) {
+        const ViewRun run = runView(work, name, roll + clicks + "at 1 exit\n", scene);
+        checkClean(run);
+        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
+        for (std::string line; std::getline(file, line);) {
+            std::array<double, 4> q{};
+            if (std::sscanf(line.c_str(), "scene-orientation = [%lf, %lf, %lf, %lf]", q.data(), &q[1], &q[2], &q[3]) == 4) {
+                return std::hypot(q[1], q[3]);
+            }
+        }
+        FAIL("nothing was saved");
+        return 0.0;
+    };
+    CHECK(tiltAfter("tilted", clickAt(panel, kSave, 0.5)) > 0.2);
+    CHECK(tiltAfter("levelled", clickAt(panel, kLevel, 0.5) + clickAt(panel, kSave, 0.7)) < 1e-6);
+}
