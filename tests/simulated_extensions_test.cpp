@@ -220,6 +220,25 @@ TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
     }
 }
 
+TEST_CASE("with the real clock OpenXR's time and CLOCK_MONOTONIC go alike, also before the first frame") {
+    setenv("SIMULATED_OPENXR_CLOCK", "real", 1);
+    {
+        const HeadlessSession made(k1_0, {XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME});
+        const auto toTime = made.xr<PFN_xrConvertTimespecTimeToTimeKHR>("xrConvertTimespecTimeToTimeKHR");
+        timespec before{}, after{};
+        XrTime begun = 0, later = 0;
+        REQUIRE(clock_gettime(CLOCK_MONOTONIC, &before) == 0);
+        REQUIRE(toTime(made.instance, &before, &begun) == XR_SUCCESS);
+        made.begin();
+        REQUIRE(made.sync() == XR_SUCCESS);
+        REQUIRE(clock_gettime(CLOCK_MONOTONIC, &after) == 0);
+        REQUIRE(toTime(made.instance, &after, &later) == XR_SUCCESS);
+        CHECK(later - begun == nanoseconds(after) - nanoseconds(before));
+        CHECK(later >= kStart);
+    }
+    unsetenv("SIMULATED_OPENXR_CLOCK");
+}
+
 TEST_CASE("the application is told whether somebody wears the headset: when the session begins, and when that changes") {
     const HeadlessSession made(k1_0, {XR_EXT_USER_PRESENCE_EXTENSION_NAME}, "rate 10\nat 0.15 present off\nat 0.35 present on\n");
     XrSystemUserPresencePropertiesEXT presence{XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, nullptr, XR_FALSE};

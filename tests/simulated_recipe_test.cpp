@@ -135,6 +135,34 @@ TEST_CASE("a foreign program runs by the page's script, is seen, and runs the sa
     CHECK(contains(other, "more"));
 }
 
+TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
+    if (!isInstalled("hello_xr") || !isInstalled("python3")) return;
+    REQUIRE(fs::exists(installedManifest()));
+    // A home with the installed runtime, and hello_xr as the program to be tested.
+    fs::remove_all(kWork / "home");
+    fs::create_directories(kWork / "home/project/expected");
+    fs::create_directory_symlink(kWork / "installed", kWork / "home/simulated-openxr");
+    std::ofstream(kWork / "installed/bin/my_program") << "#!/bin/sh\nexec hello_xr -g Vulkan2 0<>" << (kWork / "keys").string() << "\n";
+    fs::permissions(kWork / "installed/bin/my_program", fs::perms::owner_all);
+    const std::string script = blockWith("press right trigger 0.5 0.7");
+    REQUIRE(runHello("expected", script).exit_code == 0);
+    fs::copy(kWork / "expected", kWork / "home/project/expected/walk", fs::copy_options::recursive);
+    std::ofstream(kWork / "home/project/walk.script") << script;
+    std::ofstream(kWork / "home/project/CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\nenable_testing()\n"
+                                                         << blockWith("add_test(NAME walk COMMAND my_program)");
+    std::ofstream(kWork / "home/test_it.py") << blockWith("def test_the_program_renders_when_it_is_in_focus")
+                                             << "\nimport tempfile\nwith tempfile.TemporaryDirectory() as folder:\n"
+                                                "    test_the_program_renders_when_it_is_in_focus(pathlib.Path(folder))\n";
+    const std::string home = (kWork / "home").string();
+    const std::string environment = "export HOME=" + home + " PATH=" + (kWork / "installed/bin").string() +
+                                    ":$PATH; unset BINOSPLAT_SIMULATED_SCRIPT BINOSPLAT_SIMULATED_OUT; cd " + home + "; ";
+    const Run tests = shell(environment + "cmake -S project -B build && ctest --test-dir build --output-on-failure --no-tests=error");
+    CHECK_MESSAGE(tests.exit_code == 0, tests.output);
+    CHECK(contains(tests, "100% tests passed, 0 tests failed out of 2"));
+    const Run python = shell(environment + "python3 test_it.py");
+    CHECK_MESSAGE(python.exit_code == 0, python.output);
+}
+
 TEST_CASE("the tool that compares logs says what differs, within what it was told") {
     if (!isInstalled("python3")) return;
     REQUIRE(fs::exists(installedManifest()));

@@ -233,3 +233,20 @@ TEST_CASE("hello_xr runs on it from start to end, and neither validation layer h
         CHECK(contains(hello.output, "Left hand Index controller Squeeze"));
     }
 }
+
+TEST_CASE("a machine without GPU is told apart from one without headset and from a broken script") {
+    if (!isInstalled("hello_xr")) {
+        MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)");
+        return;
+    }
+    const Headset headset(kLeaving);
+    const Run no_gpu = run(headset, "hello_xr -g Vulkan2", "VK_ICD_FILENAMES=/nowhere.json VK_DRIVER_FILES=/nowhere.json");
+    CHECK(contains(no_gpu.output, "simulated runtime: xrCreateVulkanInstanceKHR: no GPU: Vulkan has no driver"));
+    const Headset absent("plugged off\n");
+    const Run no_headset = run(absent, "hello_xr -g Vulkan2", "BINOSPLAT_SIMULATED_EXPLAIN=1");
+    CHECK(contains(no_headset.output, "simulated runtime: xrGetSystem: XR_ERROR_FORM_FACTOR_UNAVAILABLE: no headset"));
+    const Headset broken("at noon exit\n");
+    const Run no_script = run(broken, "hello_xr -g Vulkan2");
+    CHECK(contains(no_script.output, "test.script:1: "));
+    for (const Run& one : {no_headset, no_script}) CHECK(!contains(one.output, "no GPU"));
+}

@@ -1,5 +1,6 @@
 // Facts about the simulated headset's scripts: what they say at a time.
 #include "tests/shared_data.h"
+#include "xr/simulated/extensions.h"
 #include "xr/simulated/script.h"
 
 #include <doctest/doctest.h>
@@ -408,4 +409,13 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         begin = end + 2;
     }
     CHECK(commands == 23);
+}
+
+TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {
+    std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/openxr_runtime.md");
+    const std::string page{std::istreambuf_iterator<char>(stream), {}};
+    for (const Extension& extension : kExtensions) {
+        INFO(extension.name);
+        CHECK(page.find(std::string("`").append(extension.name).append("`")) != std::string::npos);
+    }
 }

@@ -21,7 +21,8 @@ struct Profile {
     std::string_view extension = {};
 };
 
-// What of all hands' paths an instance has: grip_surface came with 1.1 (and XR_KHR_maintenance1), palm_ext is XR_EXT_palm_pose's name for it.
+// What of all hands' paths an instance has: grip_surface came with 1.1 (and XR_KHR_maintenance1), palm_ext is XR_EXT_palm_pose's name for
+// it.
 struct Vocabulary {
     bool has_grip_surface = false;
     bool has_palm_ext = false;
