@@ -3,10 +3,9 @@
 
 #include "app/option_layers.h"
 #include "engine/error.h"
+#include "engine/platform.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
-
-#include <cstdlib>
 
 namespace binosplat {
 
@@ -15,13 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path configFolder() {
-    const auto folder = [](const char* name) {
-        const char* const value = std::getenv(name);
-        return fs::path(value == nullptr ? "" : value);
-    };
-    const fs::path home = folder("HOME"), chosen = folder("XDG_CONFIG_HOME");
-    check(chosen.is_absolute() || home.is_absolute(), "HOME: no folder for settings, must be set");
-    return (chosen.is_absolute() ? chosen : home / ".config") / "binosplat" / "scenes";
+    const fs::path folder = userConfigFolder();
+    check(!folder.empty(), "HOME: no folder for settings, must be set");
+    return folder / "binosplat" / "scenes";
 }
 
 // FNV-1a: another scene has another one, and the same scene always this.

@@ -26,8 +26,9 @@ std::filesystem::path programFile();
 std::string environment(const char* name);
 void setEnvironment(const char* name, const std::string& value);
 
-// Where programs keep what they can make again; empty if the user has no such place.
+// Where programs keep what they can make again, and what the user has chosen; empty if the user has no such place.
 std::filesystem::path userCacheFolder();
+std::filesystem::path userConfigFolder();
 
 bool isTerminal(std::FILE* stream);
 

@@ -34,11 +34,15 @@ std::string environment(const char* name) {
 void setEnvironment(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
 
 // By the XDG base directory specification, where relative paths are nobody's.
-fs::path userCacheFolder() {
-    const fs::path cache = environment("XDG_CACHE_HOME"), home = environment("HOME");
-    if (cache.is_absolute()) { return cache; }
-    return home.is_absolute() ? home / ".cache" : fs::path();
+static fs::path userFolder(const char* variable, const char* at_home) {
+    const fs::path chosen = environment(variable), home = environment("HOME");
+    if (chosen.is_absolute()) { return chosen; }
+    return home.is_absolute() ? home / at_home : fs::path();
 }
+
+fs::path userCacheFolder() { return userFolder("XDG_CACHE_HOME", ".cache"); }
+
+fs::path userConfigFolder() { return userFolder("XDG_CONFIG_HOME", ".config"); }
 
 bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 

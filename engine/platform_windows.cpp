@@ -72,10 +72,14 @@ std::string environment(const char* name) {
 
 void setEnvironment(const char* name, const std::string& value) { ::_wputenv_s(wide(name).c_str(), wide(value).c_str()); }
 
-fs::path userCacheFolder() {
-    const fs::path local = wide(environment("LOCALAPPDATA"));
-    return local.is_absolute() ? local : fs::path();
+static fs::path userFolder(const char* variable) {
+    const fs::path folder = wide(environment(variable));
+    return folder.is_absolute() ? folder : fs::path();
 }
+
+fs::path userCacheFolder() { return userFolder("LOCALAPPDATA"); }
+
+fs::path userConfigFolder() { return userFolder("APPDATA"); }
 
 // One that understands how a line is cleared; older ones must be asked to.
 bool isTerminal(std::FILE* stream) {

@@ -233,6 +233,25 @@ TEST_CASE("the environment is set and read; nothing and an empty text are one") 
     CHECK(environment("BINOSPLAT_TEST_OF_ENVIRONMENT").empty());
 }
 
+TEST_CASE("the user's folders are where the environment says, and relative ones are nobody's") {
+    const std::string home = environment("HOME"), cache = environment("XDG_CACHE_HOME"), config = environment("XDG_CONFIG_HOME");
+    setEnvironment("HOME", "/home/somebody");
+    setEnvironment("XDG_CACHE_HOME", "");
+    setEnvironment("XDG_CONFIG_HOME", "here");
+    CHECK(userCacheFolder() == "/home/somebody/.cache");
+    CHECK(userConfigFolder() == "/home/somebody/.config");
+    setEnvironment("XDG_CACHE_HOME", "/caches");
+    setEnvironment("XDG_CONFIG_HOME", "/settings");
+    CHECK(userCacheFolder() == "/caches");
+    CHECK(userConfigFolder() == "/settings");
+    setEnvironment("XDG_CONFIG_HOME", "");
+    setEnvironment("HOME", "");
+    CHECK(userConfigFolder().empty());
+    setEnvironment("HOME", home);
+    setEnvironment("XDG_CACHE_HOME", cache);
+    setEnvironment("XDG_CONFIG_HOME", config);
+}
+
 TEST_CASE("the program knows its own file, and that a file is no terminal") {
     CHECK(fs::equivalent(programFile(), "/proc/self/exe"));
     const Workplace work;

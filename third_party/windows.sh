@@ -15,7 +15,7 @@ mkdir -p "$needed/include" "$needed/lib" "$needed/cmake"
 # Libraries that are headers alone are Debian's; /usr/include itself holds those of another C library.
 for name in vulkan vk_video glm fmt CLI toml++ nlohmann; do
     rm -rf "$needed/include/$name"
-    cp -RL "/usr/include/$name" "$needed/include/$name"
+    cp -RLp "/usr/include/$name" "$needed/include/$name"
 done
 interface() { # PACKAGE TARGET
     cat >"$needed/cmake/$1Config.cmake" <<END
