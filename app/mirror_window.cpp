@@ -1,6 +1,8 @@
 // GLFW and a Vulkan swapchain.
 #include "app/mirror_window.h"
 
+#include "app/window_surface.h"
+
 #include "engine/error.h"
 
 #define GLFW_INCLUDE_NONE
@@ -29,10 +31,15 @@ void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
     commands.buffer().pipelineBarrier(stage, stage, {}, {}, {}, barrier);
 }
 
+// Of the window: the eye, as wide as high, and the panel beside it.
+int widthOf(const Canvas& canvas) {
+    return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
+}
+
 // The whole of `from` into the columns [x0, x1) of `to`, as large as its shape allows.
 void blit(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image to, int x0, int x1, int height) {
     const double scale = std::min(static_cast<double>(x1 - x0) / from_px.x, static_cast<double>(height) / from_px.y);
-    const int w = static_cast<int>(scale * from_px.x), h = static_cast<int>(scale * from_px.y);
+    const int w = std::max(static_cast<int>(scale * from_px.x), 1), h = std::max(static_cast<int>(scale * from_px.y), 1);
     const int left = x0 + (x1 - x0 - w) / 2, top = (height - h) / 2;
     const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0, 1);
     const std::array source{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
@@ -61,8 +68,7 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : conte
     check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
-    const int panel_width = kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
-    window_ = glfwCreateWindow(kHeightPx + panel_width, kHeightPx, "binosplat", nullptr, nullptr);
+    window_ = glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr);
     check(window_ != nullptr, "the window does not open");
     // What was let go before the next frame still counts once.
     glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
@@ -93,12 +99,8 @@ MirrorWindow::~MirrorWindow() {
 
 void MirrorWindow::makeSwapchain() {
     const vk::raii::PhysicalDevice& device = context_.physicalDevice();
-    const auto formats = device.getSurfaceFormatsKHR(*surface_);
-    // Bytes are shown as they are.
-    const auto raw = std::ranges::find_if(formats, [](const vk::SurfaceFormatKHR& f) {
-        return f.format == vk::Format::eB8G8R8A8Unorm || f.format == vk::Format::eR8G8B8A8Unorm;
-    });
-    check(raw != formats.end(), "the display takes no 8-bit pictures");
+    const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
+    check(format.has_value(), "the display takes no pictures of eight bits as they are");
     // The headset sets the pace.
     const auto modes = device.getSurfacePresentModesKHR(*surface_);
     vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
@@ -106,13 +108,22 @@ void MirrorWindow::makeSwapchain() {
         if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
     }
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
-    extent_ = able.currentExtent;
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const auto extent = windowExtent(able, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+    is_stale_ = !extent;
+    if (!extent) { return; }
+    extent_ = *extent;
     const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
-    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), raw->format, raw->colorSpace, extent_, 1,
+    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, extent_, 1,
                                     vk::ImageUsageFlagBits::eTransferDst);
     info.preTransform = able.currentTransform;
+    info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
     info.presentMode = mode;
+    info.oldSwapchain = *swapchain_;
     swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
+    images_.clear();
     for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
 }
 
@@ -133,6 +144,10 @@ WindowInput MirrorWindow::poll() {
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
     glm::dvec2 cursor;
     glfwGetCursorPos(window_, &cursor.x, &cursor.y);
+    // A compositor may make the window another size than was asked for.
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
     const bool down = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
     const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
@@ -170,11 +185,21 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
 
 void MirrorWindow::acquire() {
     acquired_ = false;
+    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
+    if (is_stale_) {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+        makeSwapchain();
+    }
+    if (is_stale_) { return; }  // put away
     try {
         const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
         if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free: the headset does not wait
         index_ = index;
-    } catch (const vk::OutOfDateKHRError&) { return; }
+    } catch (const vk::OutOfDateKHRError&) {
+        is_stale_ = true;
+        return;
+    }
     const auto waited = context_.device().waitForFences(*acquired_fence_, VK_TRUE, UINT64_MAX);
     check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
     context_.device().resetFences(*acquired_fence_);
@@ -190,8 +215,9 @@ void MirrorWindow::record(Commands& commands) {
     commands.buffer().clearColorImage(target, Layout::eTransferDstOptimal, black,
                                       vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
-    if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, height, height); }
-    blit(commands, canvas_.image(), canvas_.sizePx(), target, height, width, height);
+    const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
+    if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, split, height); }
+    if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
 }
 
@@ -201,8 +227,8 @@ void MirrorWindow::show() {
     const vk::SwapchainKHR swapchain = *swapchain_;
     try {
         const std::lock_guard lock(context_.queueMutex());
-        static_cast<void>(context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)));
-    } catch (const vk::OutOfDateKHRError&) {}  // a window that changed its size shows nothing
+        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+    } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
 }
 
 }  // namespace binosplat

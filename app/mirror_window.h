@@ -75,6 +75,7 @@ private:
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
     bool acquired_ = false;
+    bool is_stale_ = false;  // the pictures are not as the display wants them any more
     std::uint32_t index_ = 0;
     glm::dvec2 cursor_{0.0};
     std::vector<int> pressed_;  // GLFW's keys, since the last poll

@@ -309,3 +309,21 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     // Beside it, the panel.
     CHECK(coloursOfPanel(screen) > 10);
 }
+
+TEST_CASE("Escape, and the window's cross, end it while the headset is off or not looked at") {
+    if (!haveScreen()) { return; }
+    for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n"}) {
+        CAPTURE(lines);
+        const Workplace work;
+        std::ofstream(work.path / "off.script") << "rate 90\nsize 96 96\nframes none\n" << lines;
+        Viewer viewer(work, "--simulate off.script --out seen");
+        // Keys are obeyed, and the panel with them.
+        viewer.tab();
+        viewer.tab();
+        viewer.hands("key Escape");
+        CHECK(viewer.program().exitCode() == 0);
+        INFO(viewer.program().said());
+        CHECK(viewer.program().said().find("frames; ") != std::string::npos);
+        CHECK(viewer.program().said().find("VUID") == std::string::npos);
+    }
+}

@@ -24,6 +24,9 @@ XrResult checkResult(XrResult result, const char* call) {
     const std::string message = fmt::format("OpenXR: {} failed: {}", text.substr(0, text.find('(')), nameOf(result));
     if (result == XR_ERROR_SESSION_LOST) { throw Lost(ExitCode::kNoDevice, message); }
     if (result == XR_ERROR_INSTANCE_LOST) { throw InstanceLost(ExitCode::kNoDevice, message); }
+    if (result == XR_ERROR_OUT_OF_MEMORY) {
+        throw Error(ExitCode::kBadInput, message + ", not enough memory for this scene and picture size");
+    }
     throw Error(ExitCode::kNoDevice, message);
 }
 

@@ -22,7 +22,7 @@ public:
 // "XR_ERROR_SESSION_LOST", or the number of a result that this build does not know.
 std::string nameOf(XrResult result);
 
-// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost where that is so, Error (exit code 3)
+// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost where that is so, Error (exit code 3, of memory 1)
 // otherwise, with the name of the function in `call`.
 XrResult checkResult(XrResult result, const char* call);
 

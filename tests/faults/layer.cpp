@@ -1,6 +1,7 @@
 // A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
 // BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait or allocate, N from 1, and FAULT lost, no-device-memory, no-host-memory, SIGINT or
-// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once.
+// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. BINOSPLAT_FAULT_TICKS=N: timestamps are
+// N ticks apart, however long the work between them took.
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
@@ -34,6 +35,7 @@ PFN_vkGetDeviceProcAddr g_device_next = nullptr;
 PFN_vkQueueSubmit g_submit = nullptr;
 PFN_vkWaitForFences g_wait = nullptr;
 PFN_vkAllocateMemory g_allocate = nullptr;
+PFN_vkGetQueryPoolResults g_results = nullptr;
 
 // What the call returns instead of being made; VK_SUCCESS: make it.
 VkResult strike(const char* call) {
@@ -65,6 +67,19 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateI
                                         VkDeviceMemory* memory) {
     const VkResult result = strike("allocate");
     return result != VK_SUCCESS ? result : g_allocate(device, info, callbacks, memory);
+}
+
+// The program reads 64 bits each.
+VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::uint32_t first, std::uint32_t count, std::size_t bytes,
+                                       void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
+    const VkResult result = g_results(device, pool, first, count, bytes, data, stride, flags);
+    const char* const apart = std::getenv("BINOSPLAT_FAULT_TICKS");
+    if (apart == nullptr || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t ticks = (first + i) * std::strtoull(apart, nullptr, 10);
+        std::memcpy(static_cast<char*>(data) + i * stride, &ticks, sizeof ticks);
+    }
+    return result;
 }
 
 // The next layer's link in what the loader chained to a create info.
@@ -101,6 +116,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     g_submit = reinterpret_cast<PFN_vkQueueSubmit>(g_device_next(*device, "vkQueueSubmit"));
     g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
     g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
+    g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
     return VK_SUCCESS;
 }
 
@@ -116,6 +132,7 @@ PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
     if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
+    if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
     return nullptr;
 }
