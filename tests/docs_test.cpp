@@ -58,10 +58,11 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
     return std::ranges::any_of(headings, [&](const std::string& heading) { return anchorOf(heading) == anchor; });
 }
 
-// Of cmake, cpack, ctest, doctest, git and others whose commands the documents show.
+// Of cmake, ctest, doctest, apt-get, compare_frame_logs and others whose commands the documents show.
 const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
                                             "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
-                                            "--help",      "--version", "--success"};
+                                            "--help",      "--version", "--success", "--pictures",  "--share",
+                                            "--tolerance", "--ignore"};
 
 bool isOption(const std::string& name) {
     const auto has = [&](const Command& command) {

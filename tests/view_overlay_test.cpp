@@ -19,7 +19,7 @@ const std::string kScene = "builtin:fence --load-first";
 
 // Widgets by their place on the panel, in shares of its width and height.
 const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
-    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.75, 0.477), kMargin(0.3, 0.355),
+    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.91, 0.477), kMargin(0.3, 0.355),
     kBudget(0.3, 0.395), kResolution(0.3, 0.436);
 
 // Where the panel hangs at the start.

@@ -16,7 +16,7 @@ namespace {
 const std::string kSmall = "rate 90\nsize 160 160\nframes every 10\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
 
 // Widgets by their place on the panel, in shares of its width and height.
-const glm::dvec2 kNextScene(0.355, 0.634), kPicture(0.49, 0.634), kRecentre(0.915, 0.477), kLevel(0.79, 0.572), kSave(0.05, 0.477),
+const glm::dvec2 kNextScene(0.355, 0.634), kPicture(0.49, 0.634), kRecentre(0.765, 0.477), kLevel(0.79, 0.572), kSave(0.05, 0.477),
     kBeside(0.9, 0.95);
 
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
