@@ -1,7 +1,7 @@
 // The subcommands. Each throws Error; none catches one.
 #pragma once
 
-#include "app/options.h"
+#include "app/options/options.h"
 
 namespace binosplat {
 

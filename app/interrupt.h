@@ -1,4 +1,4 @@
-// Ctrl-C, and a polite kill: asked for where work can stop, so that nothing half-written is left.
+// Ctrl-C and SIGTERM: asked for where work can stop, so that nothing half-written is left.
 #pragma once
 
 namespace binosplat {

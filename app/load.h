@@ -1,7 +1,7 @@
 // Loading a scene as the options ask for it, with progress on the terminal.
 #pragma once
 
-#include "app/options.h"
+#include "app/options/options.h"
 #include "app/progress.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/scene.h"

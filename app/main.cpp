@@ -1,7 +1,7 @@
 // The program: reads its options, runs one command, and turns what went wrong into one line and an exit code.
 #include "app/commands.h"
 #include "app/interrupt.h"
-#include "app/options.h"
+#include "app/options/options.h"
 #include "engine/gpu/device_error.h"
 #include "engine/platform.h"
 

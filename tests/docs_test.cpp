@@ -1,5 +1,5 @@
 // Facts about the documents: what they link to is there, and the options and files that they name exist.
-#include "app/commands_table.h"
+#include "app/options/commands_table.h"
 
 #include <doctest/doctest.h>
 

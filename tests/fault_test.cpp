@@ -139,7 +139,7 @@ TEST_CASE("faults end the viewer in its own line, behind what the runtime says")
     checkEnds("ulimit -f 1;", 3, "frames.jsonl: cannot be written");
 }
 
-TEST_CASE("a polite kill ends the viewer as its wearer would") {
+TEST_CASE("SIGTERM ends the viewer as its wearer would") {
     const Machine machine;
     std::ofstream(machine.path / "small.script") << "size 64 64\n";
     const Outcome outcome = machine.run("view builtin:fence --simulate small.script --load-first --out seen",

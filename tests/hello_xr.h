@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/simulated_fixture.h"
-#include "xr/simulated/picture_file.h"
+#include "xr/simulated/compose/picture_file.h"
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>

@@ -1,9 +1,9 @@
 // Facts about the wearer's place in the scene, and about keeping it.
-#include "app/placement.h"
-#include "app/overlay_panel.h"
-#include "app/view_eyes.h"
-#include "app/view_files.h"
-#include "app/view_settings.h"
+#include "app/view/placement.h"
+#include "app/view/overlay_panel.h"
+#include "app/view/view_eyes.h"
+#include "app/view/view_files.h"
+#include "app/view/view_settings.h"
 #include "engine/error.h"
 #include "xr/convert.h"
 

@@ -1,5 +1,5 @@
 // Facts about the axes of plots: round ends, and few enough ticks for their labels.
-#include "app/plot_axis.h"
+#include "app/plot/plot_axis.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Facts about what the simulated wearer sees: pixels and blending derived by hand.
-#include "xr/simulated/compose.h"
-#include "xr/simulated/picture_file.h"
+#include "xr/simulated/compose/compose.h"
+#include "xr/simulated/compose/picture_file.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // Facts about the simulated headset's poses and visibility mask.
-#include "xr/simulated/geometry.h"
+#include "xr/simulated/compose/geometry.h"
 
 #include <doctest/doctest.h>
 

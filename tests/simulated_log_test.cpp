@@ -1,6 +1,6 @@
 // Facts about the simulated runtime's log of frames.
-#include "xr/simulated/frame_log.h"
-#include "xr/simulated/old_output.h"
+#include "xr/simulated/compose/old_output.h"
+#include "xr/simulated/log/frame_log.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "xr/simulated/picture_file.h"
+#include "xr/simulated/compose/picture_file.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Facts about scripts with mistakes: each is named with its file and line, and nothing crashes.
-#include "xr/simulated/script.h"
+#include "xr/simulated/script/script.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // Facts about the simulated headset's scripts: what they say at a time.
 #include "tests/shared_data.h"
 #include "xr/simulated/extensions.h"
-#include "xr/simulated/script.h"
+#include "xr/simulated/script/script.h"
 
 #include <doctest/doctest.h>
 #include <unistd.h>

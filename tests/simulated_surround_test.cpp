@@ -1,7 +1,7 @@
 // XR_KHR_composition_layer_cylinder, _equirect2 and _cube on the simulated runtime: what is refused, and that they reach picture and log.
 #include "tests/simulated_fixture.h"
 #include "tests/simulated_painter.h"
-#include "xr/simulated/picture_file.h"
+#include "xr/simulated/compose/picture_file.h"
 
 #include <cmath>
 #include <fstream>

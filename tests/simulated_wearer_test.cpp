@@ -1,7 +1,7 @@
 // Facts about the way from an application's swapchain images through the runtime to the wearer's eyes, pixel by pixel.
 #include "tests/simulated_painter.h"
-#include "xr/simulated/compose.h"
-#include "xr/simulated/picture_file.h"
+#include "xr/simulated/compose/compose.h"
+#include "xr/simulated/compose/picture_file.h"
 
 #include <glm/gtc/packing.hpp>
 

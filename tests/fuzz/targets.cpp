@@ -10,7 +10,7 @@
 #include "engine/setup/headset.h"
 #include "engine/setup/settings.h"
 #ifdef BINOSPLAT_OPENXR
-#include "xr/simulated/script_files.h"
+#include "xr/simulated/script/script_files.h"
 #endif
 
 #include <sys/mman.h>

@@ -1,0 +1,126 @@
+// `binosplat bench`: error against run time, over scenes, splat counts, sizes, headsets and views.
+#include "app/bench/bench.h"
+
+#include "app/bench/bench_point.h"
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/load.h"
+#include "app/options/device_options.h"
+#include "app/progress.h"
+#include "engine/error.h"
+#include "engine/setup/output_files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+namespace binosplat {
+
+namespace {
+
+// Counts points, which take about as long as each other.
+class PointProgress {
+public:
+    explicit PointProgress(std::size_t points) : points_(points) {}
+    void next() { line_.show(static_cast<double>(++done_) / static_cast<double>(points_)); }
+
+private:
+    ProgressLine line_{"bench"};
+    std::size_t points_, done_ = 0;
+};
+
+std::vector<std::uint64_t> countsOf(const std::string& source, const BenchSeries& series) {
+    // A file has the splats it has: it is measured once for all counts of a series.
+    return isBuiltin(source) ? series.splats : std::vector<std::uint64_t>{0};
+}
+
+std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
+    std::size_t points = 0;
+    for (const std::string& source : plan.scenes) {
+        for (const BenchSeries& series : plan.series) {
+            for (const DrawnViews& drawn : viewsOf(plan, source, run)) {
+                points += countsOf(source, series).size() * series.sizes_px.size() * drawn.views.size() * plan.headsets.size();
+            }
+        }
+    }
+    return points;
+}
+
+// One scene with one splat count, drawn in one way: every size, headset and view.
+std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
+                                    const std::vector<BenchView>& views, const Scene& scene, PointProgress& progress) {
+    std::vector<BenchResult> results;
+    const GpuScene gpu_scene(context, scene);
+    for (const glm::uvec2 size_px : series.sizes_px) {
+        for (const std::string& headset : plan.headsets) {
+            for (const BenchView& view : views) {
+                RunOptions run = view.run;
+                if (size_px.x > 0) { run.camera.size_px = size_px; }
+                if (!headset.empty()) { run.camera.headset = headset; }
+                const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
+                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset};
+                std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
+                progress.next();
+            }
+        }
+    }
+    return results;
+}
+
+// Headsets, cameras: whatever can be known to fail is found out before anything is measured.
+void requireFiles(const BenchPlan& plan, const RunOptions& run) {
+    requireScenes(plan);
+    for (const std::string& headset : plan.headsets) {
+        CameraOptions camera = run.camera;
+        if (!headset.empty()) { camera.headset = headset; }
+        readCameraFiles(camera);
+    }
+}
+
+void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
+    requireFiles(plan, options.run);
+    OutputFiles files(options.out);
+    const Context context(contextOptions(options.run));
+    BenchRun run{context.deviceName(), options.run.config, {}};
+    {
+        PointProgress progress(pointCount(plan, options.run));
+        for (const std::string& source : plan.scenes) {
+            for (const BenchSeries& series : plan.series) {
+                for (const std::uint64_t splats : countsOf(source, series)) {
+                    for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+                        const Scene scene = loadAs(drawn.run, source, splats);
+                        std::ranges::move(benchScene(context, plan, series, drawn.views, scene, progress), std::back_inserter(run.results));
+                    }
+                }
+            }
+        }
+    }
+    compareModes(run.results);
+    markFront(run.results);
+    writeText(files.staging() / "bench.json", benchJson(run));
+    writeText(files.staging() / "bench.csv", benchCsv(run));
+    writeText(files.staging() / "bench.svg", benchPlot(run));
+    context.requireNoValidationMessages();
+    stopIfInterrupted();
+    files.publish();
+    fmt::print("{}", benchTable(run));
+}
+
+}  // namespace
+
+void requireScenes(const BenchPlan& plan) {
+    for (const std::string& source : plan.scenes) {
+        const bool there = isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source);
+        check(there, "{}: no such scene", source);
+    }
+}
+
+void runBench(const BenchOptions& options) {
+    const BenchPlan plan = planBench(options);
+    if (!options.motion_file.empty()) { return benchMotion(options, plan); }
+    if (!options.photos_folder.empty()) { return benchPhotos(options, plan); }
+    if (options.orders) { return benchOrders(options, plan); }
+    benchSpeed(options, plan);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,21 @@
+// The other kinds of bench, and what they have in common.
+#pragma once
+
+#include "app/bench/bench_plan.h"
+
+namespace binosplat {
+
+// A scene that is not there is found out before the others are measured. Throws Error naming it.
+void requireScenes(const BenchPlan& plan);
+
+// `bench --motion`: every method at every pose of a recorded head; error, time and flicker. Writes motion.csv, .json and .svg.
+void benchMotion(const BenchOptions& options, const BenchPlan& plan);
+
+// `bench --photos`: the affiliated eye where a photograph was taken, against the photograph. Writes photos.csv and .json.
+void benchPhotos(const BenchOptions& options, const BenchPlan& plan);
+
+// `bench --orders`: pictures by each order of splats against one in which every pixel has its own, and what pops while the head turns; on
+// the CPU alone, of the plan's scenes, views and first size. Writes orders.csv.
+void benchOrders(const BenchOptions& options, const BenchPlan& plan);
+
+}  // namespace binosplat

@@ -1,0 +1,59 @@
+// The methods that a bench compares, and sweeps over their settings.
+#include "app/bench/bench_methods.h"
+
+#include "app/options/option_table.h"
+#include "engine/error.h"
+#include "engine/setup/values.h"
+
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+bool isMethodKey(const std::string& key) {
+    const OptionRow<RunOptions>* row = findRunRow(key);
+    return key == "name" || (row != nullptr && (row->text.commands & kMethods) != 0);
+}
+
+// A method on the way: its name so far, and one entry for each key.
+struct Combination {
+    std::string name;
+    Settings settings;
+};
+
+// Every combination so far with every entry of one more key.
+std::vector<Combination> extend(const std::vector<Combination>& combinations, const std::string& key, const Setting& setting) {
+    std::vector<Combination> extended;
+    for (const Combination& combination : combinations) {
+        for (const std::string& item : setting.items) {
+            Combination& one = extended.emplace_back(combination);
+            one.settings[key] = Setting{setting.origin, {item}};
+            if (setting.items.size() > 1) { one.name += fmt::format(" {}={}", key, item); }
+        }
+    }
+    return extended;
+}
+
+}  // namespace
+
+std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base) {
+    for (const char* key : {"name", "mode"}) { check(table.settings.contains(key), "{}: {} is missing, must be given", table.origin, key); }
+    std::vector<Combination> combinations{{readText(table.settings.at("name")), {}}};
+    for (const auto& [key, setting] : table.settings) {
+        check(isMethodKey(key), "{} is not a known key of [methods]", setting.origin);
+        check(!setting.items.empty(), "{} is empty, must hold at least one value", setting.origin);
+        if (key != "name") { combinations = extend(combinations, key, setting); }
+    }
+    std::vector<BenchMethod> methods;
+    for (const Combination& one : combinations) { methods.push_back({one.name, runOptions(one.settings, base).stereo}); }
+    return methods;
+}
+
+BenchMethod plainMethod(const std::string& mode, const RunOptions& base) {
+    BenchMethod method{mode, base.stereo};
+    method.stereo.mode = mode;
+    return method;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,24 @@
+// The methods that a bench compares: each a mode with settings of its own.
+#pragma once
+
+#include "app/options/options.h"
+
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct BenchMethod {
+    std::string name;
+    StereoOptions stereo;
+};
+
+// One [[methods]] table: name, mode, and any of depth, order, resampling, per-eye, margin, budget, gap-px, center-roi, edge-bounds,
+// edge-samples, hole-error, newcomer-error and move-cost. What it does not say is as in `base`. A key with an array stands for a method per
+// entry, several such keys for every combination, each named "name key=value ...". Throws Error with file and line.
+std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
+
+// A mode with the settings of `base`, named as the mode.
+BenchMethod plainMethod(const std::string& mode, const RunOptions& base);
+
+}  // namespace binosplat

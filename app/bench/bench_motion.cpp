@@ -1,0 +1,160 @@
+// `binosplat bench --motion`: every method at every pose of a recorded head.
+#include "app/bench/bench.h"
+#include "app/bench/bench_point.h"
+#include "app/bench/motion_results.h"
+#include "app/interrupt.h"
+#include "app/load.h"
+#include "app/options/device_options.h"
+#include "app/options/modes.h"
+#include "app/progress.h"
+#include "engine/picture/metrics.h"
+#include "engine/setup/head_motion.h"
+#include "engine/setup/output_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+// What is recorded for one method between frames.
+struct MethodHistory {
+    BenchMethod method;
+    Image error;  // picture less full render, of the frame before
+};
+
+// R, G and B of a less those of b.
+Image subtract(const Image& a, const Image& b) {
+    Image difference{a.size_px, 3, {}};
+    difference.values.reserve(3 * a.pixelCount());
+    for (std::size_t pixel = 0; pixel < a.pixelCount(); ++pixel) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            difference.values.push_back(a.values[pixel * static_cast<std::size_t>(a.channels) + channel] -
+                                        b.values[pixel * static_cast<std::size_t>(b.channels) + channel]);
+        }
+    }
+    return difference;
+}
+
+// Mean |a - b|; 0 if there is nothing to compare with.
+double meanChange(const Image& a, const Image& b) {
+    if (a.size_px != b.size_px || a.pixelCount() == 0) { return 0.0; }
+    const Image difference = subtract(a, b);
+    double sum = 0.0;
+    for (const float value : difference.values) { sum += std::abs(static_cast<double>(value)); }
+    return sum / static_cast<double>(difference.values.size());
+}
+
+// The same eyes on a head that moved.
+Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {
+    Cameras moved = start;
+    moved.middle.world_from_camera = world_from_middle;
+    for (std::size_t side = 0; side < 2; ++side) {
+        const Pose middle_from_eye = compose(inverse(start.middle.world_from_camera), start.eyes[side].world_from_camera);
+        moved.eyes[side].world_from_camera = compose(world_from_middle, middle_from_eye);
+    }
+    return moved;
+}
+
+// One scene, view and size: all poses, and at each all methods.
+class MotionPoint {
+public:
+    MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name)
+        : camera_(run.camera), shared_(plainMethod("shared", run)), frames_(context, scene), name_(std::move(name)) {
+        for (const BenchMethod& method : plan.methods) {
+            if (method.stereo.mode != "mono") { sequences_.push_back({method, {}}); }
+        }
+    }
+
+    void warmUp(const Cameras& cameras, std::uint32_t count) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo); }
+        }
+    }
+
+    void play(const Cameras& cameras, double time_s, std::vector<MotionFrame>& result) {
+        const int affiliated = 1 - shared_.stereo.dominant;
+        std::map<std::string, Image> full_by_order;
+        for (MethodHistory& sequence : sequences_) {
+            shared_.stereo.order = sequence.method.stereo.order;
+            Image& full = full_by_order[shared_.stereo.order];
+            if (full.values.empty()) { full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated); }
+            const double full_change = meanChange(full, full_before_[shared_.stereo.order]);
+            const std::string& mode = sequence.method.stereo.mode;
+            const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
+            MotionFrame row{name_, sequence.method.name, mode, time_s, rendered.gpu_total_ms, stagesOf(mode, rendered.gpu_ms), 0.0,
+                            0.0,   full_change};
+            if (reprojects(frameMode(mode))) {
+                const Image picture = frame->readPicture(affiliated);
+                Image error = subtract(picture, full);
+                row.mean_square = compare(picture, full).mean_square;
+                row.flicker = meanChange(error, sequence.error);
+                sequence.error = std::move(error);
+            }
+            result.push_back(std::move(row));
+        }
+        full_before_ = std::move(full_by_order);
+    }
+
+private:
+    CameraOptions camera_;
+    BenchMethod shared_;
+    MethodFrames frames_;
+    std::string name_;
+    std::vector<MethodHistory> sequences_;
+    std::map<std::string, Image> full_before_;  // by the order of the splats
+};
+
+// One view of a scene at every pose.
+void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion, const Scene& scene,
+              const GpuScene& gpu_scene, const BenchView& view, MotionRun& run) {
+    RunOptions view_run = view.run;
+    const glm::uvec2 size_px = plan.series.front().sizes_px.front();
+    if (size_px.x > 0) { view_run.camera.size_px = size_px; }
+    const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
+    std::string name = std::filesystem::path(scene.name).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+    MotionPoint point(context, gpu_scene, view_run, plan, name);
+    point.warmUp(start, plan.warm_up);
+    ProgressLine progress(name);
+    for (std::size_t i = 0; i < motion.samples().size(); i += options.every) {
+        const double time_s = motion.samples()[i].time_s;
+        const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
+        point.play(moveCameras(start, world_from_middle), time_s, run.frames);
+        progress.show(time_s / std::max(motion.duration_s(), 1e-9));
+    }
+}
+
+}  // namespace
+
+void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
+    requireScenes(plan);
+    const HeadMotion motion =
+        readHeadMotion(options.motion_file, options.motion_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr);
+    OutputFiles files(options.out);
+    const Context context(contextOptions(options.run));
+    MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
+    for (const std::string& source : plan.scenes) {
+        for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+            const Scene scene = loadAs(drawn.run, source);
+            const GpuScene gpu_scene(context, scene);
+            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, scene, gpu_scene, view, run); }
+        }
+    }
+    writeText(files.staging() / "motion.csv", motionCsv(run));
+    writeText(files.staging() / "motion.json", motionJson(run));
+    writeText(files.staging() / "motion.svg", motionPlot(run));
+    context.requireNoValidationMessages();
+    stopIfInterrupted();
+    files.publish();
+    fmt::print("{}", motionTable(run));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,214 @@
+// `binosplat bench --orders`: how near the picture of each order of splats is to one in which every pixel has an order of its own, and what
+// pops while the head turns. In float64 on the CPU, so that nothing but the order differs.
+#include "app/bench/bench.h"
+#include "app/bench/bench_quality.h"
+#include "app/bench/bench_results.h"
+#include "app/interrupt.h"
+#include "app/load.h"
+#include "app/options/camera_options.h"
+#include "app/progress.h"
+#include "engine/picture/metrics.h"
+#include "engine/reference/reference.h"
+#include "engine/setup/output_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iterator>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kTurnDegrees = 0.1;
+constexpr int kTurns = 20;
+// From the middle between the eyes back to where a head turns.
+constexpr double kNeckMetres = 0.1;
+
+// What a pixel is blended by: splats in one order, of which each pixel may put a few right.
+struct OrderMethod {
+    const char* name;
+    bool by_distance;
+    std::size_t window;  // 1: none; SIZE_MAX: all
+};
+constexpr OrderMethod kOwnOrder{"each pixel's own", false, SIZE_MAX};
+constexpr std::array kOrderMethods{OrderMethod{"depth", false, 1},
+                                   OrderMethod{"distance", true, 1},
+                                   OrderMethod{"depth, window 8", false, 8},
+                                   OrderMethod{"distance, window 8", true, 8},
+                                   OrderMethod{"depth, window 16", false, 16},
+                                   OrderMethod{"distance, window 16", true, 16}};
+
+// An eye on a head.
+struct HeadEye {
+    Eye eye;
+    glm::dvec3 middle;  // between this eye and the other
+};
+
+// The head's eye after it turned to the right about a point that far behind the middle between the eyes.
+HeadEye turnHead(const Cameras& cameras, Side side, double angle_rad, double behind) {
+    const Pose& world_from_middle = cameras.middle.world_from_camera;
+    const glm::dvec3 neck(0.0, 0.0, -behind);
+    const glm::dquat turn = glm::angleAxis(angle_rad, glm::dvec3(0.0, 1.0, 0.0));
+    const Pose world_from_turned = compose(world_from_middle, {turn, neck - turn * neck});
+    HeadEye head{cameras.eyes[static_cast<std::size_t>(side)], world_from_turned.position};
+    head.eye.world_from_camera = compose(world_from_turned, compose(inverse(world_from_middle), head.eye.world_from_camera));
+    return head;
+}
+
+struct OrderChange {
+    double mean_square = 0.0;  // of R, G and B
+    double share_off = 0.0;    // of the pixels of which any of these is off by more than two steps of a display
+};
+
+OrderChange changeBetween(const reference::Picture& a, const reference::Picture& b) {
+    OrderChange change;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const glm::dvec3 difference = glm::abs(glm::dvec3(a.rgba[i]) - glm::dvec3(b.rgba[i]));
+        change.mean_square += glm::dot(difference, difference) / 3.0;
+        change.share_off += std::max({difference.x, difference.y, difference.z}) > kTwoDisplaySteps ? 1.0 : 0.0;
+    }
+    const auto pixels = static_cast<double>(std::max<std::size_t>(a.rgba.size(), 1));
+    return {change.mean_square / pixels, change.share_off / pixels};
+}
+
+struct OrderResult {
+    std::string point, method;
+    glm::uvec2 size_px;
+    OrderChange from_own, from_depth;
+    // Shares of pixels that change from one turn to the next by the order alone: mean and most.
+    double popped_eyes = 0.0, most_eyes = 0.0, popped_neck = 0.0, most_neck = 0.0;
+};
+
+// One scene and view.
+class OrderPoint {
+public:
+    OrderPoint(const Scene& scene, const RunOptions& run, const Cameras& cameras) : scene_(scene), run_(run), cameras_(cameras) {
+        settings_.near = run.camera.near;
+        settings_.background = run.camera.background;
+    }
+
+    std::vector<OrderResult> measure(const std::string& name) const {
+        ProgressLine progress(name);
+        const HeadEye start = turned(0, 0.0);
+        const reference::Picture own = render(kOwnOrder, start.eye, orderOf(kOwnOrder, start.eye, start));
+        std::vector<OrderResult> results;
+        reference::Picture by_depth;
+        for (std::size_t i = 0; i < kOrderMethods.size(); ++i) {
+            const OrderMethod& method = kOrderMethods[i];
+            OrderResult& result = results.emplace_back(OrderResult{name, method.name, start.eye.size_px, {}, {}});
+            const reference::Picture picture = render(method, start.eye, orderOf(method, start.eye, start));
+            if (i == 0) { by_depth = picture; }
+            result.from_own = changeBetween(picture, own);
+            result.from_depth = changeBetween(picture, by_depth);
+            for (int k = 1; k <= kTurns; ++k) {
+                countPopped(method, k, 0.0, result.popped_eyes, result.most_eyes);
+                countPopped(method, k, kNeckMetres / run_.metres_per_unit, result.popped_neck, result.most_neck);
+                progress.show((static_cast<double>(i) + static_cast<double>(k) / kTurns) / static_cast<double>(kOrderMethods.size()));
+            }
+        }
+        return results;
+    }
+
+private:
+    [[nodiscard]] HeadEye turned(int k, double behind) const {
+        return turnHead(cameras_, run_.stereo.dominant, glm::radians(kTurnDegrees * k), behind);
+    }
+
+    // The splats that `eye` sees, ordered as for `head`.
+    [[nodiscard]] std::vector<std::uint32_t> orderOf(const OrderMethod& method, const Eye& eye, const HeadEye& head) const {
+        stopIfInterrupted();
+        reference::Settings settings = settings_;
+        if (method.by_distance) { settings.order_from = head.middle; }
+        const auto visible = reference::cull(scene_, {&eye, 1}, settings);
+        return reference::sortDepth(reference::compact(scene_, visible, head.eye, settings), settings);
+    }
+
+    [[nodiscard]] reference::Picture render(const OrderMethod& method, const Eye& eye, std::span<const std::uint32_t> order) const {
+        stopIfInterrupted();
+        const auto splats = reference::project(scene_, order, eye, settings_);
+        auto pairs = reference::bin(splats, eye.size_px, settings_);
+        reference::sortTiles(pairs, settings_);
+        const auto ranges = reference::tileRanges(pairs, eye.size_px);
+        return method.window == 1 ? reference::rasterize(splats, pairs, ranges, eye, settings_)
+                                  : reference::rasterizeByPixel(scene_, order, splats, pairs, ranges, eye, settings_, method.window);
+    }
+
+    void countPopped(const OrderMethod& method, int k, double behind, double& mean, double& most) const {
+        const HeadEye before = turned(k - 1, behind), now = turned(k, behind);
+        const auto order = orderOf(method, now.eye, now), old_order = orderOf(method, now.eye, before);
+        if (order == old_order) { return; }
+        const double share = changeBetween(render(method, now.eye, order), render(method, now.eye, old_order)).share_off;
+        mean += share / kTurns;
+        most = std::max(most, share);
+    }
+
+    const Scene& scene_;
+    const RunOptions& run_;
+    const Cameras& cameras_;
+    reference::Settings settings_;
+};
+
+std::string ordersCsv(const std::vector<OrderResult>& results) {
+    std::string csv =
+        "point,width,height,order,psnr_to_own_db,share_off_own,psnr_to_depth_db,share_off_depth,popped_eyes,popped_eyes_most,popped_neck,"
+        "popped_neck_most\n";
+    for (const OrderResult& r : results) {
+        csv +=
+            fmt::format("{},{},{},{},{:.4f},{:.6g},{:.4f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", csvCell(r.point), r.size_px.x, r.size_px.y,
+                        csvCell(r.method), psnrOf(r.from_own.mean_square), r.from_own.share_off, psnrOf(r.from_depth.mean_square),
+                        r.from_depth.share_off, r.popped_eyes, r.most_eyes, r.popped_neck, r.most_neck);
+    }
+    return csv;
+}
+
+std::string ordersTable(const std::vector<OrderResult>& results) {
+    std::string table = fmt::format(
+        "Off: pixels that differ by more than 2/255 from those of each pixel's own order. Popped: pixels that change by as much from one "
+        "turn\n"
+        "of {} degrees to the next by the order alone, mean of {}: about the middle between the eyes, and about a neck {} m behind it.\n",
+        kTurnDegrees, kTurns, kNeckMetres);
+    std::string point;
+    for (const OrderResult& r : results) {
+        if (r.point != point) {
+            point = r.point;
+            table += fmt::format("\n{}, {}x{}\n  {:<22} {:>9} {:>9} {:>12} {:>11} {:>11}\n", point, r.size_px.x, r.size_px.y, "order", "dB",
+                                 "off %", "dB to depth", "popped %", "neck %");
+        }
+        table += fmt::format("  {:<22} {:>9.2f} {:>9.3f} {:>12.2f} {:>11.4f} {:>11.4f}\n", r.method, psnrOf(r.from_own.mean_square),
+                             100.0 * r.from_own.share_off, psnrOf(r.from_depth.mean_square), 100.0 * r.popped_eyes, 100.0 * r.popped_neck);
+    }
+    return table;
+}
+
+}  // namespace
+
+void benchOrders(const BenchOptions& options, const BenchPlan& plan) {
+    requireScenes(plan);
+    OutputFiles files(options.out);
+    const BenchSeries& series = plan.series.front();
+    std::vector<OrderResult> results;
+    for (const std::string& source : plan.scenes) {
+        for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
+            const Scene scene = loadAs(drawn.run, source, isBuiltin(source) ? series.splats.front() : 0);
+            for (const BenchView& view : drawn.views) {
+                RunOptions run = view.run;
+                if (series.sizes_px.front().x > 0) { run.camera.size_px = series.sizes_px.front(); }
+                const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
+                const std::string name = std::filesystem::path(source).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+                std::ranges::move(OrderPoint(scene, run, cameras).measure(name), std::back_inserter(results));
+            }
+        }
+    }
+    writeText(files.staging() / "orders.csv", ordersCsv(results));
+    stopIfInterrupted();
+    files.publish();
+    fmt::print("{}", ordersTable(results));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,109 @@
+// The plots of a bench run: error against time at every point, and time against splats and pixels.
+#include "app/bench/bench_results.h"
+#include "app/plot/svg_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <map>
+#include <set>
+
+namespace binosplat {
+
+namespace {
+
+double pixelsOf(const BenchResult& result) { return static_cast<double>(result.size_px.x) * static_cast<double>(result.size_px.y); }
+
+// One panel per point whose methods have an error: a series of points per mode, those of the front joined.
+std::vector<PlotPanel> errorPanels(const BenchRun& run) {
+    std::vector<PlotPanel> panels;
+    for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
+        const BenchResult& first = run.results[begin];
+        PlotPanel panel{.title = namePoint(first), .x_label = "GPU time of the pair, ms", .y_label = "PSNR of the affiliated eye, dB"};
+        panel.x_scale = panel.y_scale = Scale::kLinear;
+        std::vector<const BenchResult*> front;
+        std::map<std::string, std::size_t> methods;  // by mode
+        for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) { ++methods[run.results[end].mode]; }
+        for (std::size_t i = begin; i < end; ++i) {
+            const BenchResult& result = run.results[i];
+            const OriginScores* all = scoresOf(result, "all");
+            if (result.mode == "two-pass" || result.mode == "shared") {
+                panel.marks.push_back({result.method + " (no error)", result.total_ms});
+            }
+            if (all == nullptr) { continue; }
+            PlotLine& line = lineOf(panel, result.mode);
+            line.joined = false;
+            line.points.emplace_back(result.total_ms, all->psnrDb());
+            // In a crowd only the front is named.
+            line.names.push_back(methods[result.mode] < 6 || result.on_front ? result.method : "");
+            if (result.on_front) { front.push_back(&result); }
+        }
+        if (panel.lines.empty()) { continue; }
+        std::ranges::sort(front, {}, [](const BenchResult* result) { return result->total_ms; });
+        PlotLine& line = lineOf(panel, "Pareto front");
+        line.dots = false;
+        for (const BenchResult* result : front) { line.points.emplace_back(result->total_ms, scoresOf(*result, "all")->psnrDb()); }
+        panels.push_back(std::move(panel));
+    }
+    return panels;
+}
+
+// Which results belong together in a panel: all but splats and size.
+using Group = std::array<std::string, 4>;
+Group groupOf(const BenchResult& result) { return {result.scene, result.series, result.view, result.headset}; }
+
+struct Extent {
+    std::set<std::uint64_t> splats;
+    std::set<double> pixels;
+    const BenchResult* first = nullptr;
+};
+
+Extent extentOf(const BenchRun& run, const Group& group) {
+    Extent extent;
+    for (const BenchResult& result : run.results) {
+        if (groupOf(result) != group) { continue; }
+        extent.splats.insert(result.splats);
+        extent.pixels.insert(pixelsOf(result));
+        if (extent.first == nullptr) { extent.first = &result; }
+    }
+    return extent;
+}
+
+// Time against splats or pixels, whichever the group varies; pixels if it varies both.
+std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
+    const Extent extent = extentOf(run, group);
+    const bool against_splats = extent.splats.size() > 1 && extent.pixels.size() == 1;
+    const std::string x_label = against_splats ? "splats in the scene" : "pixels per eye";
+    const std::string fixed = against_splats ? fmt::format("{}x{}", extent.first->size_px.x, extent.first->size_px.y)
+                                             : fmt::format("{} splats", extent.first->splats);
+    PlotPanel totals{.title = fmt::format("{}, {}: each method", group[0], fixed), .x_label = x_label, .y_label = "ms"};
+    PlotPanel passes{.title = fmt::format("{}, {}: passes of shared", group[0], fixed), .x_label = x_label, .y_label = "GPU time, ms"};
+    for (const BenchResult& result : run.results) {
+        if (groupOf(result) != group) { continue; }
+        const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);
+        lineOf(totals, result.method).points.emplace_back(x, result.total_ms);
+        if (result.mode != "shared") { continue; }
+        for (const auto& [name, ms] : byPass(result)) { lineOf(passes, name).points.emplace_back(x, ms); }
+    }
+    return {totals, passes};
+}
+
+}  // namespace
+
+std::string benchPlot(const BenchRun& run) {
+    std::vector<PlotPanel> panels = errorPanels(run);
+    std::set<Group> done;
+    for (const BenchResult& result : run.results) {
+        const Group group = groupOf(result);
+        const Extent extent = extentOf(run, group);
+        if (!done.insert(group).second) { continue; }
+        if (extent.splats.size() * extent.pixels.size() > 1 || panels.empty()) {
+            std::ranges::move(scalingPanels(run, group), std::back_inserter(panels));
+        }
+    }
+    return drawPlot("Measured on " + run.device, panels);
+}
+
+}  // namespace binosplat

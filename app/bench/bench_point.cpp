@@ -1,0 +1,148 @@
+// All methods at one scene, view and size.
+#include "app/bench/bench_point.h"
+
+#include "app/interrupt.h"
+#include "app/options/modes.h"
+#include "engine/reference/reference.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace binosplat {
+
+namespace {
+
+// One method and what its frames took.
+struct Runner {
+    BenchMethod method;
+    std::vector<double> total_ms;
+    std::map<std::string, std::vector<double>> pass_ms;
+    FrameResult last;
+    std::uint64_t peak_gpu_bytes = 0;
+    std::vector<OriginScores> quality;
+
+    void count(const FrameResult& result) {
+        last = result;
+        total_ms.push_back(result.gpu_total_ms);
+        for (const auto& [name, ms] : result.gpu_ms) { pass_ms[name].push_back(ms); }
+    }
+};
+
+BenchResult summarize(const Runner& runner, const BenchPoint& point) {
+    BenchResult result;
+    result.series = point.series;
+    result.scene = point.scene.name;
+    result.view = point.view;
+    result.headset = point.headset;
+    result.splats = point.scene.size();
+    result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
+    result.size_px = point.cameras.middle.size_px;
+    result.method = runner.method.name;
+    result.mode = runner.method.stereo.mode;
+    result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
+    for (const auto& [name, ms] : runner.last.gpu_ms) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
+    result.total_ms = median(runner.total_ms);
+    result.least_ms = std::ranges::min(runner.total_ms);
+    result.most_ms = std::ranges::max(runner.total_ms);
+    result.counters = runner.last.counters;
+    result.peak_gpu_bytes = runner.peak_gpu_bytes;
+    result.tiles_rendered = runner.last.tiles_rendered;
+    result.work_rendered = runner.last.work_rendered;
+    if (!runner.last.stereo_bytes_per_pixel.empty()) { result.stereo_bytes_per_pixel = runner.last.stereo_bytes_per_pixel.back().second; }
+    result.quality = runner.quality;
+    return result;
+}
+
+// The float64 twin of `mono` on the CPU, as a frame of its own; wall-clock time.
+FrameResult renderTwin(const BenchPoint& point) {
+    static constexpr std::array<const char*, reference::kPassCount> kNames{"1_cull", "2_compact",    "3_sort_depth", "4_project",
+                                                                           "5_bin",  "6_sort_tiles", "7_rasterize"};
+    std::array<double, reference::kPassCount> seconds{};
+    reference::Settings settings;
+    settings.near = point.run.camera.near;
+    settings.background = point.run.camera.background;
+    settings.seconds = seconds.data();
+    const auto start = std::chrono::steady_clock::now();
+    const reference::Picture picture = reference::render(point.scene, point.cameras.middle, settings);
+    FrameResult result;
+    result.gpu_total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    for (std::size_t pass = 0; pass < kNames.size(); ++pass) { result.gpu_ms.emplace_back(kNames[pass], 1000.0 * seconds[pass]); }
+    return result;
+}
+
+// The affiliated eye in full, as `stereo` orders its splats.
+Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFrames& frames) {
+    BenchMethod shared = plainMethod("shared", point.run);
+    shared.stereo.order = stereo.order;
+    return frames.render(point.cameras, point.run.camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
+}
+
+// Memory and pictures of a method, before any of its frames count.
+Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPlan& plan, MethodFrames& frames, const Image& full) {
+    Runner runner{method, {}, {}, {}, 0, {}};
+    const auto [result, frame] = frames.renderAlone(point.cameras, point.run.camera, method.stereo);
+    runner.peak_gpu_bytes = result.peak_gpu_bytes;
+    if (plan.psnr && reprojects(frameMode(method.stereo.mode))) {
+        const int affiliated = 1 - method.stereo.dominant;
+        const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
+        runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
+                                        {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
+    }
+    return runner;
+}
+
+}  // namespace
+
+MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo,
+                                            bool compared) {
+    stopIfInterrupted();
+    FrameSettings settings = frameSettings(camera, stereo);
+    settings.keep_classes = compared;
+    settings.half_floats = !compared;  // as a viewer has it
+    settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
+    const bool reprojected = reprojects(settings.mode);
+    const bool predicted = settings.mode == Mode::kPredicted;
+    auto& frame = frames_[{settings.mode, reprojected && stereo.depth != "inverse", reprojected && stereo.center_roi,
+                           predicted ? stereo.budget : 0.0, predicted ? stereo.move_cost : 0}];
+    if (frame == nullptr) { frame = std::make_unique<StereoFrame>(context_, scene_); }
+    const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+    return {frame->render(eyes, settings), frame.get()};
+}
+
+MethodFrames::Rendered MethodFrames::renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
+    frames_.clear();
+    MemoryUse& use = context_.memoryUse();
+    use.peak_bytes = use.current_bytes.load();
+    return render(cameras, camera, stereo, true);
+}
+
+std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
+    const CameraOptions& camera = point.run.camera;
+    MethodFrames frames(context, point.gpu_scene);
+    std::map<std::string, Image> full_by_order;
+    for (const BenchMethod& method : plan.methods) {
+        Image& full = full_by_order[method.stereo.order];
+        if (full.values.empty()) { full = renderFull(method.stereo, point, frames); }
+    }
+
+    std::vector<Runner> runners;
+    for (const BenchMethod& method : plan.methods) {
+        runners.push_back(prepare(method, point, plan, frames, full_by_order.at(method.stereo.order)));
+    }
+    for (std::uint32_t i = 0; i < plan.warm_up; ++i) {
+        for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method.stereo); }
+    }
+    Runner twin{{"float64 twin, one eye", {}}, {}, {}, {}, 0, {}};
+    twin.method.stereo.mode = "twin";
+    for (std::uint32_t i = 0; i < plan.repeats; ++i) {
+        for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
+        if (plan.twin) { twin.count(renderTwin(point)); }
+    }
+    if (plan.twin) { runners.push_back(twin); }
+    std::vector<BenchResult> results;
+    for (const Runner& runner : runners) { results.push_back(summarize(runner, point)); }
+    return results;
+}
+
+}  // namespace binosplat

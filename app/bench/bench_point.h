@@ -1,0 +1,52 @@
+// All methods at one scene, view and size, in turn, again and again, so that a device that drifts drifts for all of them alike.
+#pragma once
+
+#include "app/bench/bench_plan.h"
+#include "app/bench/bench_results.h"
+#include "app/options/camera_options.h"
+#include "engine/frame.h"
+#include "engine/scene/scene.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace binosplat {
+
+// Renders methods, each in buffers that no method with other needs touches: what one allocates, no other pays for.
+class MethodFrames {
+public:
+    MethodFrames(const Context& context, const GpuScene& scene) : context_(context), scene_(scene) {}
+
+    // `frame` is where the pictures can be read until the next call.
+    struct Rendered {
+        FrameResult result;
+        StereoFrame* frame;
+    };
+    // `compared`: the pictures are read and compared, with what made each pixel; otherwise they are as a viewer has them.
+    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false);
+
+    // The most memory that the program holds while nothing but this method's buffers are there. Lets go of all others.
+    Rendered renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
+
+private:
+    // Mode, whether D is read, whether holes are grouped; and what a frame of `predicted` remembers of the one before: what it asked for.
+    using Needs = std::tuple<Mode, bool, bool, double, std::uint32_t>;
+    const Context& context_;
+    const GpuScene& scene_;
+    std::map<Needs, std::unique_ptr<StereoFrame>> frames_;
+};
+
+struct BenchPoint {
+    const GpuScene& gpu_scene;
+    const Scene& scene;
+    const RunOptions& run;
+    const Cameras& cameras;
+    std::string series, view, headset;
+};
+
+std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan);
+
+}  // namespace binosplat

@@ -1,0 +1,164 @@
+// What follows from what `bench` measured.
+#include "app/bench/bench_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <tuple>
+
+namespace binosplat {
+
+namespace {
+
+const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, const std::string& mode) {
+    const auto found =
+        std::ranges::find_if(results, [&](const BenchResult& other) { return other.mode == mode && samePoint(other, like); });
+    return found == results.end() ? nullptr : &*found;
+}
+
+std::optional<double> ratioTo(const BenchResult& result, const BenchResult* other) {
+    if (other == nullptr || !(other->total_ms > 0.0)) { return std::nullopt; }
+    return result.total_ms / other->total_ms;
+}
+
+// Bare pass: without the eyes in front.
+std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' ') + 1); }
+
+std::string stageOf(const std::string& mode, const std::string& pass) {
+    const std::string bare = bareName(pass);
+    if (bare.starts_with("8d") || bare.starts_with("8f")) { return "reprojection"; }
+    if (bare.starts_with("8")) { return "ROI choice"; }
+    if (bare < "4") { return "cull+sort"; }
+    if (!pass.starts_with("affiliated ")) { return "dominant"; }
+    return mode == "two-pass" || mode == "shared" ? "affiliated" : "patch";
+}
+
+double sumOf(const NamedTimes& times, const std::string& name) {
+    double sum = 0.0;
+    for (const auto& [time_name, ms] : times) { sum += time_name == name ? ms : 0.0; }
+    return sum;
+}
+
+std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
+    const auto found = result.counters.find(name);
+    return found == result.counters.end() ? 0 : found->second;
+}
+
+// What the reprojection of a tile took, in the time that rendering the affiliated eye takes a pair of tile and splat.
+std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
+    const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
+    if (predicted.mode != "predicted" || shared == nullptr || moved == 0) { return std::nullopt; }
+    const double pairs = 0.5 * static_cast<double>(counterOf(*shared, "tile_pairs_left") + counterOf(*shared, "tile_pairs_right"));
+    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf("shared", shared->pass_ms), "affiliated") / pairs : 0.0;
+    if (!(pair_ms > 0.0)) { return std::nullopt; }
+    return sumOf(stagesOf("predicted", predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
+}
+
+// Whether a result takes part in the comparison of error and time.
+bool isPair(const BenchResult& result) { return result.mode != "mono" && result.mode != "twin"; }
+
+std::optional<double> meanSquareOf(const BenchResult& result) {
+    if (result.mode == "two-pass" || result.mode == "shared") { return 0.0; }
+    const OriginScores* all = scoresOf(result, "all");
+    return isPair(result) && all != nullptr ? std::optional(all->mean_square) : std::nullopt;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+    if (values.empty()) { return 0.0; }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    const double upper = *middle;
+    return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), middle));
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty()) { return 0.0; }
+    const double rank = std::ceil(share * static_cast<double>(values.size()));
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+    std::ranges::nth_element(values, place);
+    return *place;
+}
+
+bool samePoint(const BenchResult& a, const BenchResult& b) {
+    const auto point = [](const BenchResult& r) {
+        return std::tie(r.series, r.scene, r.view, r.headset, r.backbone, r.splats, r.size_px.x, r.size_px.y);
+    };
+    return point(a) == point(b);
+}
+
+std::string namePoint(const BenchResult& result) {
+    std::string name = std::filesystem::path(result.scene).filename().string();
+    for (const std::string& part : {result.view, result.headset}) {
+        if (!part.empty()) { name += ", " + part; }
+    }
+    return fmt::format("{}, {} splats ({}), {}x{} per eye", name, result.splats, result.backbone, result.size_px.x, result.size_px.y);
+}
+
+NamedTimes byPass(const BenchResult& result) {
+    std::map<std::string, double> sums;  // the number in front of a pass's name makes this the order of the frame
+    for (const auto& [name, ms] : result.pass_ms) { sums[bareName(name)] += ms; }
+    return {sums.begin(), sums.end()};
+}
+
+NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms) {
+    NamedTimes stages;
+    for (const char* stage : {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"}) {
+        double sum = 0.0;
+        bool ran = false;
+        for (const auto& [pass, ms] : pass_ms) {
+            if (stageOf(mode, pass) != stage) { continue; }
+            sum += ms;
+            ran = true;
+        }
+        if (ran) { stages.emplace_back(stage, sum); }
+    }
+    return stages;
+}
+
+void compareModes(std::vector<BenchResult>& results) {
+    for (BenchResult& result : results) {
+        if (result.mode == "mono") { result.ratio_to_twin = ratioTo(result, findMode(results, result, "twin")); }
+        if (result.mode == "twin") { continue; }  // another clock
+        result.ratio_to_two_pass = ratioTo(result, findMode(results, result, "two-pass"));
+        const BenchResult* shared = findMode(results, result, "shared");
+        result.ratio_to_shared = ratioTo(result, shared);
+        result.move_cost = moveCost(result, shared);
+    }
+}
+
+void markFront(std::vector<BenchResult>& results) {
+    const auto beats = [&](const BenchResult& other, const BenchResult& result) {
+        if (!samePoint(other, result)) { return false; }
+        const std::optional<double> theirs = meanSquareOf(other), ours = meanSquareOf(result);
+        return theirs && *theirs <= *ours && other.total_ms <= result.total_ms && (*theirs < *ours || other.total_ms < result.total_ms);
+    };
+    for (BenchResult& result : results) {
+        result.on_front = meanSquareOf(result).has_value() &&
+                          std::ranges::none_of(results, [&](const BenchResult& other) { return beats(other, result); });
+    }
+}
+
+const OriginScores* scoresOf(const BenchResult& result, const std::string& origin) {
+    const auto found = std::ranges::find(result.quality, origin, &OriginScores::origin);
+    return found == result.quality.end() ? nullptr : &*found;
+}
+
+bool hasLpips(const std::vector<BenchResult>& results) {
+    return std::ranges::any_of(results, [](const BenchResult& result) {
+        const OriginScores* all = scoresOf(result, "all");
+        return all != nullptr && all->lpips.has_value();
+    });
+}
+
+std::string csvCell(const std::string& value) {
+    if (value.find_first_of(",\"\n") == std::string::npos) { return value; }
+    std::string quoted = "\"";
+    for (char c : value) { quoted += c == '"' ? "\"\"" : std::string(1, c); }
+    return quoted + "\"";
+}
+
+}  // namespace binosplat

@@ -1,0 +1,87 @@
+// What `bench` measured, and what follows from it: ratios, stages, the Pareto front.
+#pragma once
+
+#include "app/bench/bench_quality.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+// What the tables have columns for: `stagesOf` and `OriginScores` by these names.
+inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
+inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
+
+using NamedTimes = std::vector<std::pair<std::string, double>>;
+
+// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those of the mode "twin" are
+// wall-clock milliseconds of the float64 twin for one eye.
+struct BenchResult {
+    std::string series, scene, view, headset, method, mode;
+    std::string backbone;  // what the splats are drawn as: 2DGS or 3DGS
+    std::uint64_t splats = 0;
+    glm::uvec2 size_px{0, 0};  // per eye
+    std::uint32_t frames = 0;
+    NamedTimes pass_ms;                                    // in frame order
+    double total_ms = 0.0, least_ms = 0.0, most_ms = 0.0;  // the whole pair (one eye for mono)
+    std::map<std::string, std::uint64_t> counters;
+    std::uint64_t peak_gpu_bytes = 0;
+    std::vector<OriginScores> quality;                         // of the affiliated eye; empty where it is rendered in full
+    std::optional<double> ratio_to_two_pass, ratio_to_shared;  // of total_ms, in the same run
+    std::optional<double> ratio_to_twin;                       // mono: of total_ms to the twin's
+    double tiles_rendered = 1.0, work_rendered = 1.0;          // see FrameResult
+    double stereo_bytes_per_pixel = 0.0;                       // likewise, of all passes; 0 where every eye is rendered in full
+    std::optional<double> move_cost;                           // predicted: what moving a tile took, in pairs of `shared`
+    bool on_front = false;                                     // no other method of the point is as fast and as close to the full render
+};
+
+struct BenchRun {
+    std::string device, config;
+    std::vector<BenchResult> results;
+};
+
+double median(std::vector<double> values);
+// The least value that `share` of the values do not exceed (nearest rank); 0 of none.
+double percentile(std::vector<double> values, double share);
+
+// Whether both were measured at the same point: same series, scene, view, headset, backbone, splats and size.
+bool samePoint(const BenchResult& a, const BenchResult& b);
+// "atelier, near, quest2, 1000 splats (2DGS), 512x512 per eye".
+std::string namePoint(const BenchResult& result);
+
+// The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".
+NamedTimes byPass(const BenchResult& result);
+
+// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8f), "ROI choice" (the rest of 8), and of the
+// affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
+NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms);
+
+// Fills in the ratios and what moving cost, where both modes were measured at the same point.
+void compareModes(std::vector<BenchResult>& results);
+
+// Marks what is worth its time: of two methods with the same error the faster one, of two as fast the closer one. Modes that render
+// every eye in full have no error.
+void markFront(std::vector<BenchResult>& results);
+
+// The result's scores over one origin; null where it has none.
+const OriginScores* scoresOf(const BenchResult& result, const std::string& origin);
+
+// Whether LPIPS was measured: its column is absent otherwise.
+bool hasLpips(const std::vector<BenchResult>& results);
+
+std::string benchTable(const BenchRun& run);
+std::string benchJson(const BenchRun& run);
+std::string benchCsv(const BenchRun& run);
+// Error against run time at every point, the front drawn; and time against splats and pixels where a series varies them.
+std::string benchPlot(const BenchRun& run);
+
+// Quoted where the text would break a row of CSV.
+std::string csvCell(const std::string& value);
+
+}  // namespace binosplat

@@ -1,0 +1,115 @@
+// What `bench` measured, as tables on a terminal: per point one of methods and one of passes.
+#include "app/bench/bench_results.h"
+#include "app/report/text_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+std::string ratioText(const std::optional<double>& ratio) { return ratio ? fmt::format("{:.3f}", *ratio) : "-"; }
+
+std::string psnrText(const OriginScores* scores) {
+    if (scores == nullptr) { return "-"; }
+    return scores->mean_square > 0.0 ? fmt::format("{:.2f}", scores->psnrDb()) : "equal";
+}
+
+std::string scoreText(const std::optional<double>& score) { return score ? fmt::format("{:.4f}", *score) : "-"; }
+
+// A counter that is kept per eye, added up.
+std::uint64_t ofBothEyes(const BenchResult& result, const std::string& name) {
+    std::uint64_t sum = 0;
+    for (const char* suffix : {"", "_left", "_right"}) {
+        const auto found = result.counters.find(name + suffix);
+        if (found != result.counters.end()) { sum += found->second; }
+    }
+    return sum;
+}
+
+std::string methodsTable(const std::vector<const BenchResult*>& point, bool with_lpips) {
+    TextColumns columns;
+    std::vector<std::string> head{"method",   "front",   "ms",          "least",        "most",    "/ two-pass", "/ shared",
+                                  "peak MiB", "PSNR dB", "reprojected", "interpolated", "patched", "SSIM",       "FLIP"};
+    if (with_lpips) { head.emplace_back("LPIPS"); }
+    for (const char* rest : {"tiles again", "% of work", "bytes a px", "commands", "holes px", "gaps px", "pairs"}) {
+        head.emplace_back(rest);
+    }
+    columns.addRow(std::move(head));
+    for (const BenchResult* r : point) {
+        std::vector<std::string> row{r->method, r->on_front ? "*" : ""};
+        for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
+        row.push_back(ratioText(r->ratio_to_two_pass));
+        row.push_back(ratioText(r->ratio_to_shared));
+        row.push_back(r->mode == "twin" ? "-" : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
+        for (const char* origin : kOrigins) { row.push_back(psnrText(scoresOf(*r, origin))); }
+        const OriginScores* all = scoresOf(*r, "all");
+        row.push_back(scoreText(all != nullptr ? all->ssim : std::nullopt));
+        row.push_back(scoreText(all != nullptr ? all->flip : std::nullopt));
+        if (with_lpips) { row.push_back(scoreText(all != nullptr ? all->lpips : std::nullopt)); }
+        const bool reprojects = r->counters.contains("tiles_patched");
+        row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, "tiles_patched")) : "-");
+        row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered) : "-");
+        row.push_back(reprojects ? fmt::format("{:.1f}", r->stereo_bytes_per_pixel) : "-");
+        row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "commands")));
+        for (const char* name : {"pixels_hole", "pixels_gap"}) {
+            row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, name)) : "-");
+        }
+        row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "tile_pairs")));
+        columns.addRow(std::move(row));
+    }
+    return columns.text();
+}
+
+std::string find(const NamedTimes& times, const std::string& name) {
+    const auto found = std::ranges::find(times, name, &std::pair<std::string, double>::first);
+    return found == times.end() ? "-" : fmt::format("{:.3f}", found->second);
+}
+
+std::string timesTable(const std::vector<const BenchResult*>& point) {
+    std::map<std::string, bool> passes;
+    for (const BenchResult* r : point) {
+        for (const auto& [name, ms] : byPass(*r)) { passes[name] = true; }
+    }
+    TextColumns columns;
+    std::vector<std::string> head{"ms by stage, then by pass"};
+    for (const char* stage : kStages) { head.emplace_back(stage); }
+    for (const auto& [name, there] : passes) { head.push_back(name); }
+    columns.addRow(head);
+    for (const BenchResult* r : point) {
+        std::vector<std::string> row{r->method};
+        const NamedTimes stages = stagesOf(r->mode, r->pass_ms), times = byPass(*r);
+        for (const char* stage : kStages) { row.push_back(find(stages, stage)); }
+        for (const auto& [name, there] : passes) { row.push_back(find(times, name)); }
+        columns.addRow(std::move(row));
+    }
+    return columns.text();
+}
+
+}  // namespace
+
+std::string benchTable(const BenchRun& run) {
+    std::string table = fmt::format("device: {}\n", run.device);
+    for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
+        std::vector<const BenchResult*> point;
+        for (end = begin; end < run.results.size() && samePoint(run.results[begin], run.results[end]); ++end) {
+            point.push_back(&run.results[end]);
+        }
+        table += fmt::format("\n{}: {}, median of {} frames\n", point[0]->series, namePoint(*point[0]), point[0]->frames);
+        table += methodsTable(point, hasLpips(run.results)) + timesTable(point);
+        for (const BenchResult* r : point) {
+            if (r->move_cost) {
+                table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
+            }
+            if (r->ratio_to_twin && *r->ratio_to_twin > 0.0) {
+                table += fmt::format("  mono is {:.2f} times as fast as its float64 twin on the CPU\n", 1.0 / *r->ratio_to_twin);
+            }
+        }
+    }
+    return table;
+}
+
+}  // namespace binosplat

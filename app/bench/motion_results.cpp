@@ -1,0 +1,158 @@
+// What a bench with head motion measured.
+#include "app/bench/motion_results.h"
+
+#include "app/plot/svg_plot.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace binosplat {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// All frames of one method at one point, in the order of time.
+struct Sequence {
+    std::string point, method;
+    std::vector<const MotionFrame*> frames;
+};
+
+std::vector<Sequence> sequencesOf(const MotionRun& run) {
+    std::vector<Sequence> sequences;
+    for (const MotionFrame& frame : run.frames) {
+        const auto found =
+            std::ranges::find_if(sequences, [&](const Sequence& s) { return s.point == frame.point && s.method == frame.method; });
+        Sequence& sequence = found != sequences.end() ? *found : sequences.emplace_back(Sequence{frame.point, frame.method, {}});
+        sequence.frames.push_back(&frame);
+    }
+    return sequences;
+}
+
+template <typename Value>
+std::vector<double> valuesOf(const Sequence& sequence, Value&& value) {
+    std::vector<double> values;
+    for (const MotionFrame* frame : sequence.frames) { values.push_back(value(*frame)); }
+    return values;
+}
+
+double stageMs(const MotionFrame& frame, const std::string& stage) {
+    const auto found = std::ranges::find(frame.stage_ms, stage, &std::pair<std::string, double>::first);
+    return found == frame.stage_ms.end() ? 0.0 : found->second;
+}
+
+double totalMs(const MotionFrame& frame) { return frame.total_ms; }
+double meanSquare(const MotionFrame& frame) { return frame.mean_square; }
+
+// The first frame has none before it.
+std::vector<double> flickerOf(const Sequence& sequence) {
+    std::vector<double> values = valuesOf(sequence, [](const MotionFrame& frame) { return frame.flicker; });
+    if (!values.empty()) { values.erase(values.begin()); }
+    return values;
+}
+
+bool isLossy(const Sequence& sequence) { return sequence.frames[0]->mode != "two-pass" && sequence.frames[0]->mode != "shared"; }
+
+Json statisticsJson(const std::vector<double>& values) {
+    return {{"median", median(values)}, {"p95", percentile(values, 0.95)}, {"p99", percentile(values, 0.99)}};
+}
+
+// Null where the pictures are equal: JSON has no infinity.
+Json psnrJson(double mean_square) { return mean_square > 0.0 ? Json(psnrOf(mean_square)) : Json(); }
+
+std::string psnrText(double mean_square) { return mean_square > 0.0 ? fmt::format("{:.2f}", psnrOf(mean_square)) : "equal"; }
+
+}  // namespace
+
+std::string motionCsv(const MotionRun& run) {
+    std::string csv = "device,motion,point,method,mode,time_s,gpu_total_ms";
+    for (const char* stage : kStages) { csv += fmt::format(",{} ms", stage); }
+    csv += ",mean_square,psnr_db,flicker,full_change\n";
+    for (const MotionFrame& frame : run.frames) {
+        csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
+                           csvCell(frame.method), frame.mode, frame.time_s, frame.total_ms);
+        for (const char* stage : kStages) { csv += fmt::format(",{:.6g}", stageMs(frame, stage)); }
+        csv +=
+            fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}\n", frame.mean_square, psnrOf(frame.mean_square), frame.flicker, frame.full_change);
+    }
+    return csv;
+}
+
+std::string motionJson(const MotionRun& run) {
+    Json results = Json::array();
+    for (const Sequence& sequence : sequencesOf(run)) {
+        Json stages = Json::object();
+        for (const char* stage : kStages) {
+            const std::vector<double> values = valuesOf(sequence, [&](const MotionFrame& frame) { return stageMs(frame, stage); });
+            if (std::ranges::max(values) > 0.0) { stages[stage] = statisticsJson(values); }
+        }
+        Json json{{"point", sequence.point},
+                  {"method", sequence.method},
+                  {"mode", sequence.frames[0]->mode},
+                  {"frames", sequence.frames.size()},
+                  {"gpu_total_ms", statisticsJson(valuesOf(sequence, totalMs))},
+                  {"stage_ms", stages}};
+        if (isLossy(sequence)) {
+            const std::vector<double> errors = valuesOf(sequence, meanSquare);
+            json["psnr_db"] = {{"median", psnrJson(median(errors))},
+                               {"p95", psnrJson(percentile(errors, 0.95))},
+                               {"p99", psnrJson(percentile(errors, 0.99))}};
+            json["flicker"] = statisticsJson(flickerOf(sequence));
+        }
+        json["full_change"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.full_change; }));
+        results.push_back(json);
+    }
+    const Json root{{"device", run.device}, {"config", run.config}, {"motion", run.motion}, {"results", results}};
+    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string motionTable(const MotionRun& run) {
+    std::string table = fmt::format("device: {}, motion: {}\n", run.device, run.motion), point;
+    for (const Sequence& sequence : sequencesOf(run)) {
+        if (sequence.point != point) {
+            point = sequence.point;
+            table += fmt::format("\n{}, {} poses; PSNR that half, 95 % and 99 % of the frames reach\n", point, sequence.frames.size());
+            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}\n", "method", "ms median", "ms p95",
+                                 "ms p99", "dB", "dB 95", "dB 99", "flicker", "p95", "p99");
+        }
+        const std::vector<double> times = valuesOf(sequence, totalMs), errors = valuesOf(sequence, meanSquare),
+                                  flicker = flickerOf(sequence);
+        table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f}", sequence.method, median(times), percentile(times, 0.95),
+                             percentile(times, 0.99));
+        if (isLossy(sequence)) {
+            table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f} {:>10.6f} {:>10.6f}", psnrText(median(errors)),
+                                 psnrText(percentile(errors, 0.95)), psnrText(percentile(errors, 0.99)), median(flicker),
+                                 percentile(flicker, 0.95), percentile(flicker, 0.99));
+        }
+        table += "\n";
+    }
+    return table;
+}
+
+std::string motionPlot(const MotionRun& run) {
+    std::vector<PlotPanel> panels;
+    const auto panelOf = [&](const std::string& title, const char* y_label) -> PlotPanel& {
+        const auto found = std::ranges::find(panels, title, &PlotPanel::title);
+        if (found != panels.end()) { return *found; }
+        PlotPanel& panel = panels.emplace_back(PlotPanel{.title = title, .x_label = "time, s", .y_label = y_label});
+        panel.x_scale = panel.y_scale = Scale::kLinear;
+        return panel;
+    };
+    const auto add = [&](const std::string& title, const char* y_label, const MotionFrame& frame, double value) {
+        PlotLine& line = lineOf(panelOf(title, y_label), frame.method);
+        line.dots = false;
+        line.points.emplace_back(frame.time_s, value);
+    };
+    for (const MotionFrame& frame : run.frames) {
+        add(frame.point + ": time", "GPU time of the pair, ms", frame, frame.total_ms);
+        if (frame.mode == "two-pass" || frame.mode == "shared") { continue; }
+        add(frame.point + ": error", "PSNR of the affiliated eye, dB", frame, psnrOf(frame.mean_square));
+    }
+    return drawPlot("Measured on " + run.device + " with " + run.motion, panels);
+}
+
+}  // namespace binosplat

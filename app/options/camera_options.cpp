@@ -1,0 +1,80 @@
+// From camera options, camera files and headsets to the eyes of a frame.
+#include "app/options/camera_options.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kDefaultFovXDegrees = 60.0;
+constexpr glm::uvec2 kDefaultSize{1024, 1024};
+
+// The range of one coordinate that holds nine tenths of the splats, seen through at most 2^16 of them.
+std::pair<double, double> commonRange(const Scene& scene, int axis) {
+    const std::size_t step = scene.size() / 65536 + 1;
+    std::vector<float> values;
+    for (std::size_t i = 0; i < scene.size(); i += step) { values.push_back(scene.positions[i][axis]); }
+    std::ranges::sort(values);
+    return {values[values.size() / 20], values[values.size() - 1 - values.size() / 20]};
+}
+
+}  // namespace
+
+CameraFiles readCameraFiles(const CameraOptions& options) {
+    CameraFiles files;
+    if (!options.cameras_file.empty()) {
+        const std::vector<FileCamera> cameras = readCameraFile(options.cameras_file);
+        check(options.view < cameras.size(), "{}: --view is {}, must be 0 to {}", options.cameras_file, options.view, cameras.size() - 1);
+        files.camera = cameras[options.view];
+    }
+    if (!options.headset.empty()) { files.headset = readHeadset(findHeadset(options.headset)); }
+    return files;
+}
+
+View viewOfScene(const Scene& scene, double fov_x_deg) {
+    if (isBuiltin(scene.name)) {
+        if (const std::optional<View> view = builtinView(scene.name)) { return *view; }
+    }
+    View view{{0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, fov_x_deg};
+    if (scene.size() == 0) { return view; }
+    glm::dvec3 low, high;
+    for (int axis = 0; axis < 3; ++axis) { std::tie(low[axis], high[axis]) = commonRange(scene, axis); }
+    // A sphere about the common box fills the picture's width; a point-like scene is seen from one unit away.
+    const double radius = std::max(0.5 * glm::length(high - low), 1e-3);
+    view.look = 0.5 * (low + high);
+    view.eye = view.look - glm::dvec3(0.0, 0.0, radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0))));
+    return view;
+}
+
+Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
+    const CameraOptions& camera = options.camera;
+    const double default_ipd_m = files.headset ? files.headset->eye_distance_m : kDefaultIpdMetres;
+    const double eye_distance = options.stereo.ipd_m.value_or(default_ipd_m) / options.metres_per_unit;
+
+    if (files.camera) {
+        const Eye middle = camera.size_px ? resize(files.camera->eye, *camera.size_px) : files.camera->eye;
+        return {middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
+    }
+    View view = viewOfScene(scene, camera.fov_x_deg.value_or(kDefaultFovXDegrees));
+    // A built-in scene's own angle belongs to its own view; whoever places the eye gets the usual one.
+    const bool placed = camera.eye || camera.look;
+    view = {camera.eye.value_or(view.eye), camera.look.value_or(view.look), camera.up.value_or(view.up),
+            camera.fov_x_deg.value_or(placed ? kDefaultFovXDegrees : view.fov_x_deg)};
+    const Pose world_from_middle = lookAt(view.eye, view.look, view.up);
+    if (files.headset) {
+        view.fov_x_deg = 0.0;
+        const glm::uvec2 size_px = camera.size_px.value_or(files.headset->size_px);
+        return {headsetMiddle(*files.headset, world_from_middle, size_px),
+                headsetEyes(*files.headset, world_from_middle, eye_distance, size_px), eye_distance, view};
+    }
+    const glm::uvec2 size_px = camera.size_px.value_or(kDefaultSize);
+    const Eye middle{world_from_middle, intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
+    return {middle, stereoPair(middle, eye_distance), eye_distance, view};
+}
+
+}  // namespace binosplat

@@ -1,0 +1,35 @@
+// From camera options, camera files and headsets to the eyes of a frame.
+#pragma once
+
+#include "app/options/options.h"
+#include "engine/geometry.h"
+#include "engine/scene/procedural.h"
+#include "engine/setup/camera_file.h"
+#include "engine/setup/headset.h"
+
+#include <array>
+#include <optional>
+
+namespace binosplat {
+
+// The files that the options name, read; so that a bad one is known before the scene is loaded.
+struct CameraFiles {
+    std::optional<FileCamera> camera;
+    std::optional<Headset> headset;
+};
+CameraFiles readCameraFiles(const CameraOptions& options);
+
+// A view that shows the scene: the built-in one's, or from in front (y points down) at a distance that holds nine tenths of the splats.
+View viewOfScene(const Scene& scene, double fov_x_deg);
+
+struct Cameras {
+    Eye middle;                // for `mono`
+    std::array<Eye, 2> eyes;   // by Side
+    double eye_distance;       // scene units
+    std::optional<View> view;  // where --eye, --look, --up and --fov-x (0 with a headset) came out; empty with a camera file
+};
+
+// What the options leave open comes from the files, then from the scene. Throws Error if the points span no view.
+Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
+
+}  // namespace binosplat

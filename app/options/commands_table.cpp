@@ -1,0 +1,181 @@
+// The commands: their words, their options, and what is made of both.
+#include "app/options/commands_table.h"
+
+#include "app/options/option_documents.h"
+#include "app/options/option_layers.h"
+#include "engine/error.h"
+#include "engine/picture/flip.h"
+
+#include <set>
+
+namespace binosplat {
+
+namespace {
+
+const OptionDescription kConfig{
+    {"config", "", kRender | kBench | kView, "FILE", "TOML file with any of these options; the command line wins"}, "", ""};
+
+std::vector<OptionDescription> with(std::vector<OptionDescription> options, const OptionDescription& one) {
+    options.push_back(one);
+    return options;
+}
+
+std::string wordOf(const Settings& line, const char* name) {
+    const auto found = line.find(name);
+    return found == line.end() ? "" : found->second.text();
+}
+
+// The command line over the config. Tables of the config that `foreign` names are left alone, and go to `rest`.
+RunOptions readRun(const Settings& line, const std::set<std::string>& foreign, std::vector<SettingsTable>* rest = nullptr) {
+    const std::string config = wordOf(line, kConfig.text.key);
+    Settings config_settings;
+    if (!config.empty()) {
+        const std::vector<SettingsTable> tables = readSettingsFile(config);
+        config_settings = configLayer(config, tables, foreign);
+        for (const SettingsTable& table : tables) {
+            if (rest != nullptr && foreign.contains(table.name)) { rest->push_back(table); }
+        }
+    }
+    RunOptions options = runOptions(mergeLayers(line, config_settings));
+    options.config = config;
+    return options;
+}
+
+Options makeRender(const Settings& line) {
+    RenderOptions render{wordOf(line, "SCENE"), {}, readRun(line, {"view"})};
+    readRows(renderRows(), line, render);
+    return render;
+}
+
+// A motion starts from one camera, photographs have one camera each.
+void requireBenchKind(const BenchOptions& bench) {
+    const bool cameras = !bench.run.camera.cameras_file.empty();
+    const auto refuse = [](bool wrong, const char* message) {
+        if (wrong) { throw Error(ExitCode::kUsage, message); }
+    };
+    refuse(!bench.motion_file.empty() && !bench.photos_folder.empty(), "--motion and --photos contradict each other, must be one of them");
+    refuse(!bench.photos_folder.empty() && !cameras, "--photos is given without --cameras");
+    refuse(!bench.photos_folder.empty() && bench.run.camera.size_px.has_value(),
+           "--photos and --size contradict each other: pictures have the photographs' size");
+    refuse(!bench.motion_file.empty() && !bench.lpips_weights.empty(),
+           "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
+    refuse(bench.orders && (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
+           "--orders and --motion, --photos or --lpips contradict each other: orders are compared with one of each pixel's own, by PSNR");
+    refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
+}
+
+Options makeBench(const Settings& line) {
+    BenchOptions bench;
+    if (const auto scenes = line.find("SCENE"); scenes != line.end()) { bench.scenes = scenes->second.items; }
+    bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, &bench.tables);
+    readRows(benchRows(), line, bench);
+    requireBenchKind(bench);
+    return bench;
+}
+
+Options makeView(const Settings& line) {
+    ViewOptions view;
+    view.scene = wordOf(line, "SCENE");
+    view.simulate = line.contains("simulate");
+    if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
+    view.run = readRun(line, {"view"}, &view.tables);
+    readRows(viewRows(), line, view);
+    return view;
+}
+
+Options makeInfo(const Settings& line) { return InfoOptions{wordOf(line, "SCENE"), runOptions(line).load}; }
+
+Options makeScene(const Settings& line) {
+    SceneOptions scene;
+    scene.name = wordOf(line, "NAME");
+    readRows(sceneRows(), line, scene);
+    return scene;
+}
+
+Options makeConvert(const Settings& line) { return ConvertOptions{wordOf(line, "SCENE"), runOptions(line).load, wordOf(line, "OUT")}; }
+
+Options makeCompare(const Settings& line) {
+    CompareOptions compare;
+    compare.first = wordOf(line, "A");
+    compare.second = wordOf(line, "B");
+    compare.pixels_per_degree = kFlipPixelsPerDegree;
+    readRows(compareRows(), line, compare);
+    return compare;
+}
+
+Options makeStability(const Settings& line) {
+    StabilityOptions stability;
+    stability.device = runOptions(line).device;
+    readRows(stabilityRows(), line, stability);
+    return stability;
+}
+
+Options makeKernels(const Settings& line) {
+    KernelsOptions kernels;
+    kernels.device = runOptions(line).device;
+    readRows(kernelsRows(), line, kernels);
+    return kernels;
+}
+
+Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(line, "KIND"))}; }
+
+constexpr const char* kCompareFooter =
+    "Prints a line for each score, its name and its value: psnr in dB, of R, G and B as they are stored, inf for equal\n"
+    "pictures; ssim, 1 for equal pictures; flip and lpips, 0 for equal pictures. The last three clamp values to 0 to 1.";
+
+}  // namespace
+
+std::span<const Command> commands() {
+    const Word scene{"SCENE", "file, directory or builtin:NAME"};
+    static const std::vector<Command> rows{
+        {"render", kRender, "Render one frame and write its pictures", {scene}, with(describe(renderRows()), kConfig), makeRender},
+        {"bench",
+         kBench,
+         "Measure modes over scenes, splat counts and picture sizes",
+         {{"SCENE", "files, directories or builtin:NAME (default: those of the config)", /*required*/ false, /*many*/ true}},
+         with(describe(benchRows()), kConfig),
+         makeBench},
+        {"view", kView, "Show a scene in an OpenXR headset", {scene}, with(describe(viewRows()), kConfig), makeView},
+        {"info", kInfo, "Say what a scene holds", {scene}, {}, makeInfo},
+        {"scene",
+         kScene,
+         "Write a built-in scene as a 2DGS PLY file",
+         {{"NAME", "name of the built-in scene"}},
+         describe(sceneRows()),
+         makeScene},
+        {"convert",
+         kConvert,
+         "Write a scene as a PLY or an SPZ file",
+         {scene, {"OUT", "file to write, by its name: .ply or .spz"}},
+         {},
+         makeConvert},
+        {"compare",
+         kCompare,
+         "Say how much two pictures differ: PSNR, SSIM, FLIP and LPIPS",
+         {{"A", "picture: PNG, EXR, PFM, PPM (without OpenImageIO only the last two)"}, {"B", "picture of the same size"}},
+         describe(compareRows()),
+         makeCompare,
+         kCompareFooter},
+        {"stability", kStability, "Hold stiff and extreme cases against the float64 twin", {}, describe(stabilityRows()), makeStability},
+        {"kernels", kKernels, "Make every GPU kernel and say what the driver makes of it", {}, describe(kernelsRows()), makeKernels},
+        {"document",
+         CommandBit{},
+         "Print the list of options: markdown, man, bash, zsh or fish",
+         {{"KIND", "markdown, man, bash, zsh or fish"}},
+         {},
+         makeDocument,
+         "",
+         /*hidden*/ true},
+    };
+    return rows;
+}
+
+std::vector<OptionDescription> optionsOf(const Command& command) {
+    std::vector<OptionDescription> options = command.own;
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        if ((row.text.commands & command.bit) != 0) { options.push_back(describe(row)); }
+    }
+    return options;
+}
+
+}  // namespace binosplat

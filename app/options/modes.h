@@ -1,0 +1,17 @@
+// From the options to a frame's mode and settings.
+#pragma once
+
+#include "app/options/options.h"
+#include "engine/frame.h"
+
+#include <string>
+
+namespace binosplat {
+
+// Throws Error (bad input) for a name that is no mode.
+Mode frameMode(const std::string& name);
+
+// The settings of a frame as the options say.
+FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo);
+
+}  // namespace binosplat

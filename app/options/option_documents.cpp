@@ -1,0 +1,232 @@
+// The list of commands and options for readers and shells.
+#include "app/options/option_documents.h"
+
+#include "app/options/commands_table.h"
+#include "app/version.h"
+#include "engine/error.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+bool isFlag(const OptionText& text) { return *text.value == '\0'; }
+bool isFile(const OptionText& text) {
+    const std::string_view value = text.value;
+    return value.find("FILE") != value.npos || value.find("DIR") != value.npos || value == "WEIGHTS" || value == "[SCRIPT]" ||
+           value == "TRACE.csv";
+}
+
+// "a, b, c" of an option that is one of these, as its range says.
+std::vector<std::string> choicesOf(const OptionDescription& option) {
+    std::vector<std::string> names;
+    if (option.range.find(", ") == std::string::npos) { return names; }
+    for (std::size_t begin = 0; begin < option.range.size();) {
+        const std::size_t end = std::min(option.range.find(", ", begin), option.range.size());
+        names.push_back(option.range.substr(begin, end - begin));
+        begin = end + 2;
+    }
+    return names;
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+        text.replace(at, what.size(), by);
+    }
+    return text;
+}
+
+std::string usage(const Command& command) {
+    std::string line = fmt::format("binosplat {}", command.name);
+    for (const Word& word : command.words) {
+        const std::string name = fmt::format("{}{}", word.name, word.many ? "..." : "");
+        line += word.required ? " " + name : fmt::format(" [{}]", name);
+    }
+    for (const OptionDescription& option : command.own) {
+        if (option.text.required) { line += fmt::format(" --{} {}", option.text.key, option.text.value); }
+    }
+    return line + (optionsOf(command).empty() ? "" : " [OPTIONS]");
+}
+
+std::vector<const Command*> shownCommands() {
+    std::vector<const Command*> shown;
+    for (const Command& command : commands()) {
+        if (!command.hidden) { shown.push_back(&command); }
+    }
+    return shown;
+}
+
+std::string markdownRow(const OptionDescription& option, const std::string& last) {
+    const std::string value = isFlag(option.text) ? "" : fmt::format(" {}", replaced(option.text.value, "|", "\\|"));
+    return fmt::format("| `--{}{}` | {} | {} | {} | {} |\n", option.text.key, value, replaced(option.text.help, "|", "\\|"), option.range,
+                       option.standard, last);
+}
+
+std::string commandsWith(const OptionText& text) {
+    std::string names;
+    for (const Command* command : shownCommands()) {
+        if ((text.commands & command->bit) != 0) { names += fmt::format("{}`{}`", names.empty() ? "" : ", ", command->name); }
+    }
+    return (text.commands & kMethods) != 0 ? names + ", `[[methods]]`" : names;
+}
+
+std::string markdown() {
+    std::string text =
+        "# Options\n\nMade from the program's own table (`binosplat document markdown`). Every command prints its part with "
+        "`--help`.\n\n## Commands\n";
+    for (const Command* command : shownCommands()) {
+        text += fmt::format("\n### {}\n\n{}.\n\n```\n{}\n```\n\n", command->name, command->help, usage(*command));
+        for (const Word& word : command->words) { text += fmt::format("- `{}`: {}\n", word.name, word.help); }
+        if (command->own.empty()) { continue; }
+        text += fmt::format("{}| option | | range | default | |\n|---|---|---|---|---|\n", command->words.empty() ? "" : "\n");
+        for (const OptionDescription& option : command->own) { text += markdownRow(option, option.text.required ? "required" : ""); }
+    }
+    text +=
+        "\n## Shared options\n\nThe last column says which commands have an option. It may also stand in a config file (`--config`), in "
+        "the table that is\n"
+        "named here or at the top, without its dashes; the command line wins. `[[methods]]`: it may also stand in a bench's methods.\n";
+    const char* table = "";
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        if (std::string_view(table) != row.text.table) {
+            table = row.text.table;
+            text += fmt::format("\n### [{}]\n\n| option | | range | default | commands |\n|---|---|---|---|---|\n", table);
+        }
+        text += markdownRow(describe(row), commandsWith(row.text));
+    }
+    return text;
+}
+
+// What begins a line with a dot or an apostrophe would be a request, and a bare dash a hyphen that searches do not find.
+std::string manText(const std::string& text) {
+    std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+    if (escaped.starts_with('.') || escaped.starts_with('\'')) { escaped = "\\&" + escaped; }
+    return escaped;
+}
+
+std::string man() {
+    std::string text = fmt::format(".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- {}\n.SH SYNOPSIS\n",
+                                   kVersion, "Gaussian splatting scenes for the two eyes of a VR headset");
+    for (const Command* command : shownCommands()) { text += fmt::format(".B {}\n.br\n", manText(usage(*command))); }
+    text += ".SH COMMANDS\n";
+    for (const Command* command : shownCommands()) {
+        text += fmt::format(".SS {}\n{}.\n", manText(usage(*command)), manText(command->help));
+        for (const Word& word : command->words) { text += fmt::format(".TP\n.I {}\n{}\n", word.name, manText(word.help)); }
+        for (const OptionDescription& option : optionsOf(*command)) {
+            text += fmt::format(".TP\n\\fB\\-\\-{}\\fR{}\n{}\n", manText(option.text.key),
+                                isFlag(option.text) ? "" : fmt::format(" \\fI{}\\fR", manText(option.text.value)), manText(option.help()));
+        }
+    }
+    text +=
+        ".SH EXIT STATUS\n0 done; 1 bad input; 2 the command line was not understood; 3 no usable device, runtime or headset; 130 and 143 "
+        "interrupted.\n"
+        ".SH ENVIRONMENT\n.TP\n.B BINOSPLAT_DATA\nfolder that holds configs/headsets\n.TP\n.B BINOSPLAT_PIPELINE_CACHE\nfolder for what "
+        "the driver compiles; 0: "
+        "none\n.TP\n.B BINOSPLAT_VALIDATION\n1: with Vulkan's validation layers, whose messages fail the command\n";
+    return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) { text += (text.empty() ? "" : " ") + name; }
+    return text;
+}
+
+std::string bash() {
+    std::string names, options, values;
+    for (const Command* command : shownCommands()) {
+        names += fmt::format("{}{}", names.empty() ? "" : " ", command->name);
+        std::vector<std::string> keys;
+        for (const OptionDescription& option : optionsOf(*command)) {
+            keys.push_back(fmt::format("--{}", option.text.key));
+            const std::vector<std::string> choices = choicesOf(option);
+            if (!choices.empty()) {
+                values += fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", command->name,
+                                      option.text.key, joined(choices));
+            } else if (!isFlag(option.text)) {
+                values += fmt::format("        {}:--{}) {} return ;;\n", command->name, option.text.key,
+                                      isFile(option.text) ? "COMPREPLY=($(compgen -f -- \"$word\"));" : "");
+            }
+        }
+        options += fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command->name, joined(keys));
+    }
+    return fmt::format(R"(# Completion of binosplat for bash.
+_binosplat() {{
+    local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=${{COMP_WORDS[1]}}
+    if ((COMP_CWORD == 1)); then
+        COMPREPLY=($(compgen -W "{} --help --version" -- "$word"))
+        return
+    fi
+    case $command:$before in
+{}    esac
+    if [[ $word != -* ]]; then
+        COMPREPLY=($(compgen -f -- "$word"))
+        return
+    fi
+    case $command in
+{}    esac
+}}
+complete -o filenames -F _binosplat binosplat
+)",
+                       names, values, options);
+}
+
+// Within single quotes of a shell; zsh takes brackets and colons for its own.
+std::string quoted(const std::string& text) { return replaced(text, "'", "'\\''"); }
+std::string zshText(const std::string& text) { return quoted(replaced(replaced(replaced(text, "[", "\\["), "]", "\\]"), ":", "\\:")); }
+
+std::string zsh() {
+    std::string list, cases;
+    for (const Command* command : shownCommands()) {
+        list += fmt::format("        '{}:{}'\n", command->name, zshText(command->help));
+        cases += fmt::format("        {}) _arguments", command->name);
+        for (const OptionDescription& option : optionsOf(*command)) {
+            cases += fmt::format(" \\\n            '--{}[{}]", option.text.key, zshText(option.help()));
+            const std::vector<std::string> choices = choicesOf(option);
+            if (!choices.empty()) {
+                cases += fmt::format(":{}:({})'", option.text.value, joined(choices));
+            } else if (isFlag(option.text)) {
+                cases += "'";
+            } else {
+                cases += fmt::format(":{}:{}'", zshText(option.text.value), isFile(option.text) ? "_files" : "");
+            }
+        }
+        cases += " \\\n            '*:file:_files' ;;\n";
+    }
+    return fmt::format(
+        "#compdef binosplat\n# Completion of binosplat for zsh.\n_binosplat() {{\n    local -a commands=(\n{}    )\n    if ((CURRENT == "
+        "2)); then\n"
+        "        _describe command commands\n        return\n    fi\n    local command=$words[2]\n    shift words\n    ((CURRENT--))\n"
+        "    case $command in\n{}    esac\n}}\n_binosplat \"$@\"\n",
+        list, cases);
+}
+
+std::string fish() {
+    std::string text = "# Completion of binosplat for fish.\n";
+    for (const Command* command : shownCommands()) {
+        text += fmt::format("complete -c binosplat -n __fish_use_subcommand -f -a {} -d '{}'\n", command->name, quoted(command->help));
+        for (const OptionDescription& option : optionsOf(*command)) {
+            const std::vector<std::string> choices = choicesOf(option);
+            const std::string value = isFlag(option.text)   ? ""
+                                      : !choices.empty()    ? fmt::format(" -x -a '{}'", joined(choices))
+                                      : isFile(option.text) ? " -r"
+                                                            : " -x";
+            text += fmt::format("complete -c binosplat -n '__fish_seen_subcommand_from {}' -l {}{} -d '{}'\n", command->name,
+                                option.text.key, value, quoted(option.help()));
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string documentOf(const std::string& kind) {
+    if (kind == "markdown") { return markdown(); }
+    if (kind == "man") { return man(); }
+    if (kind == "bash") { return bash(); }
+    if (kind == "zsh") { return zsh(); }
+    if (kind == "fish") { return fish(); }
+    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, man, bash, zsh or fish", kind));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,183 @@
+// What a row of the table of options is made of: a name, a help text, and a field of a struct with its type and range, from which reading,
+// writing and the documents follow.
+#pragma once
+
+#include "app/options/options.h"
+#include "engine/setup/values.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <limits>
+#include <type_traits>
+#include <variant>
+
+namespace binosplat {
+
+// The commands that have an option. `methods` is a bench's [[methods]], whose keys are options, too.
+enum CommandBit : unsigned {
+    kRender = 1,
+    kBench = 2,
+    kView = 4,
+    kInfo = 8,
+    kConvert = 16,
+    kStability = 32,
+    kKernels = 64,
+    kCompare = 128,
+    kScene = 256,
+    kMethods = 512,
+};
+
+// An option's value as it is reported; nothing where there is none.
+using OptionValue = std::variant<std::monostate, bool, std::uint64_t, double, std::string, glm::dvec3>;
+
+// One field of Owner: how its text is read, what it holds, and what it may hold, in words.
+template <typename Owner>
+struct OptionField {
+    std::function<void(const Setting&, Owner&)> read;  // throws Error (bad input)
+    std::function<OptionValue(const Owner&)> value;
+    std::string range;
+};
+
+// What people are told about an option.
+struct OptionText {
+    const char* key;    // --key on the command line, key in a config
+    const char* table;  // the config table it may stand in, at whose place it may also stand at the top; "": command line alone
+    unsigned commands;
+    const char* value;  // placeholder, which says the unit; "" for a flag, in brackets if it may be left out
+    const char* help;
+    const char* standard = "";  // what it is if nobody says so, where the field cannot tell
+    bool required = false;
+};
+
+template <typename Owner>
+struct OptionRow {
+    OptionText text;
+    OptionField<Owner> field;
+};
+
+namespace field {
+
+template <typename Pointer>
+struct OwnerOf;
+template <typename Owner, typename Field>
+struct OwnerOf<Field Owner::*> {
+    using Type = Owner;
+};
+
+// A field of a field: pointers to members from the outermost one on.
+template <auto First, auto... Rest>
+struct Path {
+    using Owner = typename OwnerOf<decltype(First)>::Type;
+    static auto& in(auto& owner) {
+        if constexpr (sizeof...(Rest) == 0) {
+            return owner.*First;
+        } else {
+            return Path<Rest...>::in(owner.*First);
+        }
+    }
+};
+
+template <typename Value>
+OptionValue toValue(const Value& value) {
+    if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, glm::dvec3>) {
+        return value;
+    } else if constexpr (std::is_integral_v<Value>) {
+        return static_cast<std::uint64_t>(value);
+    } else if constexpr (std::is_floating_point_v<Value>) {
+        return static_cast<double>(value);
+    } else if constexpr (std::is_same_v<Value, Side>) {
+        return std::string(value == kLeft ? "left" : "right");
+    } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
+        return fmt::format("{}x{}", value.x, value.y);
+    } else if constexpr (std::is_convertible_v<Value, std::filesystem::path>) {
+        const std::string text = std::filesystem::path(value).string();
+        return text.empty() ? OptionValue{} : text;
+    } else {
+        return value ? toValue(*value) : OptionValue{};
+    }
+}
+
+// `parse` makes what the field holds of a Setting.
+template <auto... Members>
+auto make(std::string range, auto parse) {
+    using At = Path<Members...>;
+    using Owner = typename At::Owner;
+    return OptionField<Owner>{[parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); },
+                              [](const Owner& owner) { return toValue(At::in(owner)); }, std::move(range)};
+}
+
+template <auto... Members>
+auto number(double least, double most) {
+    return make<Members...>(fmt::format("{} to {}", least, most), [=](const Setting& s) { return readNumber(s, least, most); });
+}
+
+template <auto... Members>
+auto positive() {
+    return make<Members...>("greater than 0", readPositive);
+}
+
+template <auto... Members>
+auto count(std::uint64_t least, std::uint64_t most) {
+    using At = Path<Members...>;
+    using Field = std::remove_cvref_t<decltype(At::in(std::declval<typename At::Owner&>()))>;
+    const auto parse = [=](const Setting& s) -> Field {
+        if constexpr (std::is_integral_v<Field>) {
+            return static_cast<Field>(readCount(s, least, most));
+        } else {
+            return static_cast<typename Field::value_type>(readCount(s, least, most));
+        }
+    };
+    const bool unlimited = most >= std::numeric_limits<std::uint32_t>::max();
+    return make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most), parse);
+}
+
+template <auto... Members>
+auto flag() {
+    return make<Members...>("", readFlag);
+}
+
+template <auto... Members>
+auto text() {
+    return make<Members...>("", readText);
+}
+
+// Where the value may be left out.
+template <auto... Members>
+auto textIfAny() {
+    return make<Members...>("", [](const Setting& s) { return s.text(); });
+}
+
+template <auto... Members>
+auto vector() {
+    return make<Members...>("", readVector);
+}
+
+template <auto... Members>
+auto colour() {
+    return make<Members...>("0 to 1 each", readColour);
+}
+
+template <auto... Members>
+auto size() {
+    return make<Members...>(fmt::format("1 to {} each", kMaxSide), readSize);
+}
+
+template <auto... Members>
+auto choice(std::initializer_list<std::string_view> names) {
+    const std::vector<std::string_view> all(names);
+    std::string range;
+    for (const std::string_view name : names) { range += fmt::format("{}{}", range.empty() ? "" : ", ", name); }
+    return make<Members...>(range, [all](const Setting& s) { return readChoice(s, all); });
+}
+
+template <auto... Members>
+auto side() {
+    return make<Members...>("left, right", [](const Setting& s) {
+        return readChoice(s, std::vector<std::string_view>{"left", "right"}) == "left" ? kLeft : kRight;
+    });
+}
+
+}  // namespace field
+
+}  // namespace binosplat

@@ -1,0 +1,224 @@
+// Every option, once.
+#include "app/options/option_table.h"
+
+#include "engine/picture/flip.h"
+#include "engine/scene/scene.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
+// A gap is filled pixel by pixel from its two ends; beyond this it is no crack in a surface but something hidden.
+constexpr std::uint64_t kMaxGapPx = 64;
+constexpr std::uint64_t kMaxMoveCost = 1'000'000;
+// Values lie between 0 and a few; the passes hold a pixel's squared error under 64.
+constexpr double kMaxExpectedError = 8.0;
+constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMaxFrames = 1'000'000'000;
+constexpr std::uint64_t kMaxStep = 1'000'000;
+
+constexpr unsigned kPictures = kRender | kBench;          // what makes pictures without a headset
+constexpr unsigned kWearer = kPictures | kView;           // what shows a scene to two eyes
+constexpr unsigned kScenes = kWearer | kInfo | kConvert;  // what loads one
+constexpr unsigned kDevices = kPictures | kStability | kKernels;
+constexpr unsigned kTried = kWearer | kMethods;  // what a bench varies
+
+constexpr auto kCamera = &RunOptions::camera;
+constexpr auto kStereo = &RunOptions::stereo;
+constexpr auto kLoad = &RunOptions::load;
+
+// A count of 0 that stands for no limit.
+template <typename Owner>
+OptionField<Owner> noneIfZero(OptionField<Owner> field) {
+    field.value = [value = std::move(field.value)](const Owner& owner) {
+        const OptionValue given = value(owner);
+        return given == OptionValue{std::uint64_t{0}} ? OptionValue{} : given;
+    };
+    return field;
+}
+
+}  // namespace
+
+std::span<const OptionRow<RunOptions>> runRows() {
+    static const std::vector<OptionRow<RunOptions>> rows{
+        // Camera.
+        {{"eye", "camera", kWearer, "x,y,z", "middle of the eyes", "a view of the whole scene"},
+         field::vector<kCamera, &CameraOptions::eye>()},
+        {{"look", "camera", kWearer, "x,y,z", "point looked at"}, field::vector<kCamera, &CameraOptions::look>()},
+        {{"up", "camera", kWearer, "x,y,z", "direction that is up in the picture", "0,-1,0, or the built-in scene's"},
+         field::vector<kCamera, &CameraOptions::up>()},
+        {{"fov-x", "camera", kPictures, "DEG", "horizontal field of view", "60, or the built-in scene's view"},
+         field::number<kCamera, &CameraOptions::fov_x_deg>(0.1, 179.0)},
+        {{"size", "camera", kPictures, "WxH", "pixels per eye", "1024x1024, or what --cameras or --headset says"},
+         field::size<kCamera, &CameraOptions::size_px>()},
+        {{"cameras", "camera", kPictures, "FILE", "cameras.json of a 3DGS or 2DGS training"},
+         field::text<kCamera, &CameraOptions::cameras_file>()},
+        {{"view", "camera", kPictures, "N", "which camera of --cameras, from 0"}, field::count<kCamera, &CameraOptions::view>(0, kAny32)},
+        {{"headset", "camera", kPictures, "NAME", "angles, size and eye distance from configs/headsets/NAME.toml"},
+         field::text<kCamera, &CameraOptions::headset>()},
+        {{"near", "camera", kWearer, "Z", "nearest depth that is drawn, scene units"},
+         field::number<kCamera, &CameraOptions::near>(1e-6, 1e6)},
+        {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"}, field::colour<kCamera, &CameraOptions::background>()},
+
+        // Stereo.
+        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made"},
+         field::choice<kStereo, &StereoOptions::mode>({"mono", "two-pass", "shared", "reproject", "paper", "predicted"})},
+        {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"}, field::side<kStereo, &StereoOptions::dominant>()},
+        {{"ipd", "stereo", kPictures, "METRES", "distance of the eyes", "0.063, or the headset's"},
+         field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},
+        {{"center-roi", "stereo", kTried, "", "paper mode: also render again what is still unfilled inside the picture"},
+         field::flag<kStereo, &StereoOptions::center_roi>()},
+        {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
+         field::count<kStereo, &StereoOptions::margin_px>(0, kMaxSide)},
+        {{"budget", "stereo", kTried, "FRACTION", "predicted mode: share of an eye's work that is spent on what moving gets wrong"},
+         field::number<kStereo, &StereoOptions::budget>(0.0, 1.0)},
+        {{"move-cost", "stereo", kTried, "PAIRS",
+          "predicted mode: tiles with at most so many pairs of tile and splat are rendered, not moved"},
+         field::count<kStereo, &StereoOptions::move_cost>(0, kMaxMoveCost)},
+        {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
+         field::choice<kStereo, &StereoOptions::depth>({"sum", "mean", "inverse"})},
+        {{"order", "stereo", kTried, "KIND", "splats are blended by their depth, or by their distance from the middle between the eyes"},
+         field::choice<kStereo, &StereoOptions::order>({"depth", "distance"})},
+        {{"resampling", "stereo", kTried, "KIND",
+          "reproject and paper modes: by a cubic kernel, or as the paper moves colours: copied, gaps interpolated"},
+         field::choice<kStereo, &StereoOptions::resampling>({"cubic", "forward"})},
+        {{"per-eye", "stereo", kTried, "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
+         field::flag<kStereo, &StereoOptions::per_eye>()},
+        {{"gap-px", "stereo", kTried, "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes"},
+         field::count<kStereo, &StereoOptions::gap_px>(0, kMaxGapPx)},
+        {{"edge-samples", "stereo", kTried, "N", "paper mode: samples along each edge of the picture"},
+         field::count<kStereo, &StereoOptions::edge_samples>(1, kMaxSide)},
+        {{"edge-bounds", "stereo", kTried, "KIND", "paper mode: the paper's bounds, or at the edges also what near content uncovers"},
+         field::choice<kStereo, &StereoOptions::edge_bounds>({"paper", "tight"})},
+        {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the difference expected of a hole's pixel"},
+         field::number<kStereo, &StereoOptions::hole_error>(0.0, kMaxExpectedError)},
+        {{"newcomer-error", "stereo", kTried, "E",
+          "predicted mode: error of a pixel that splats cover which the dominant eye does not see"},
+         field::number<kStereo, &StereoOptions::newcomer_error>(0.0, kMaxExpectedError)},
+
+        // Scene.
+        {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
+         field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
+        {{"sh-degree", "scene", kScenes, "N", "highest band of colours that is kept; lower ones take less memory and time",
+          "what there is"},
+         field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
+        {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},
+         field::flag<kLoad, &LoadOptions::flatten>()},
+        {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, as scenes trained with antialiasing want it", "what the file says"},
+         field::flag<kLoad, &LoadOptions::antialiased>()},
+        {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"}, field::positive<&RunOptions::metres_per_unit>()},
+
+        // Run.
+        {{"memory-limit", "run", kWearer, "MIB", "device memory that may be used", "all there is"},
+         noneIfZero(field::count<&RunOptions::memory_limit_mib>(1, kMaxMemoryMib))},
+        {{"device", "run", kDevices, "NAME|INDEX", "GPU to use: part of its name, or its number", "the most capable"},
+         field::text<&RunOptions::device>()},
+    };
+    return rows;
+}
+
+const OptionRow<RunOptions>* findRunRow(std::string_view key) {
+    const auto found = std::ranges::find(runRows(), key, [](const auto& row) { return std::string_view(row.text.key); });
+    return found == runRows().end() ? nullptr : &*found;
+}
+
+std::span<const OptionRow<RenderOptions>> renderRows() {
+    static const std::vector<OptionRow<RenderOptions>> rows{
+        {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::text<&RenderOptions::out>()},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<BenchOptions>> benchRows() {
+    static const std::vector<OptionRow<BenchOptions>> rows{
+        {{"out", "", kBench, "DIR", "directory for bench.json, bench.csv and bench.svg", "", /*required*/ true},
+         field::text<&BenchOptions::out>()},
+        {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::text<&BenchOptions::motion_file>()},
+        {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::choice<&BenchOptions::motion_axes>({"openxr", "unity"})},
+        {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
+         field::text<&BenchOptions::photos_folder>()},
+        {{"orders", "", kBench, "",
+          "compare the orders of splats with one that every pixel has of its own, on the CPU, and count what pops"},
+         field::flag<&BenchOptions::orders>()},
+        {{"every", "", kBench, "N", "only every Nth pose of --motion or camera of --photos"},
+         field::count<&BenchOptions::every>(1, kMaxStep)},
+        {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
+         field::text<&BenchOptions::lpips_weights>()},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<ViewOptions>> viewRows() {
+    static const std::vector<OptionRow<ViewOptions>> rows{
+        {{"out", "", kView, "DIR", "where the simulated headset writes what its wearer sees"}, field::text<&ViewOptions::out>()},
+        {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
+        {{"load-first", "", kView, "", "load the scene before the session starts, not meanwhile"}, field::flag<&ViewOptions::load_first>()},
+        {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},
+        {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
+         field::text<&ViewOptions::shaders>()},
+        {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
+         field::textIfAny<&ViewOptions::script>()},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<SceneOptions>> sceneRows() {
+    static const std::vector<OptionRow<SceneOptions>> rows{
+        {{"splats", "", kScene, "N", "how many splats", "the scene's own number"},
+         noneIfZero(field::count<&SceneOptions::splats>(1, kMaxSplats))},
+        {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true}, field::text<&SceneOptions::out>()},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<CompareOptions>> compareRows() {
+    static const std::vector<OptionRow<CompareOptions>> rows{
+        {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
+         field::text<&CompareOptions::lpips_weights>()},
+        {{"pixels-per-degree", "", kCompare, "N", "how large FLIP takes the picture to be seen",
+          "67.02; bench: focal length in pixels times pi / 180"},
+         field::number<&CompareOptions::pixels_per_degree>(kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree)},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<StabilityOptions>> stabilityRows() {
+    static const std::vector<OptionRow<StabilityOptions>> rows{
+        {{"out", "", kStability, "DIR", "directory for stability.txt, stability.csv and stability.svg", "", /*required*/ true},
+         field::text<&StabilityOptions::out>()},
+    };
+    return rows;
+}
+
+std::span<const OptionRow<KernelsOptions>> kernelsRows() {
+    static const std::vector<OptionRow<KernelsOptions>> rows{
+        {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::text<&KernelsOptions::out>()},
+    };
+    return rows;
+}
+
+std::string textOf(const OptionValue& value) {
+    const auto convert = [](const auto& held) -> std::string {
+        using Held = std::remove_cvref_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, std::monostate>) {
+            return "";
+        } else if constexpr (std::is_same_v<Held, glm::dvec3>) {
+            return fmt::format("{},{},{}", held.x, held.y, held.z);
+        } else {
+            return fmt::format("{}", held);
+        }
+    };
+    return std::visit(convert, value);
+}
+
+std::string OptionDescription::help() const {
+    std::string brackets = range;
+    if (!standard.empty()) { brackets += fmt::format("{}default {}", range.empty() ? "" : "; ", standard); }
+    return brackets.empty() ? text.help : fmt::format("{} ({})", text.help, brackets);
+}
+
+}  // namespace binosplat

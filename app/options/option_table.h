@@ -1,0 +1,59 @@
+// Every option, once. The command line, config files, reports, what the viewer saves, the man page, the completions and docs/options.md are
+// made from these rows.
+#pragma once
+
+#include "app/options/option_row.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+// Options of more than one command, which config files may hold as well.
+std::span<const OptionRow<RunOptions>> runRows();
+const OptionRow<RunOptions>* findRunRow(std::string_view key);  // nullptr: there is none
+
+// Those of one command alone.
+std::span<const OptionRow<RenderOptions>> renderRows();
+std::span<const OptionRow<BenchOptions>> benchRows();
+std::span<const OptionRow<ViewOptions>> viewRows();
+std::span<const OptionRow<SceneOptions>> sceneRows();
+std::span<const OptionRow<CompareOptions>> compareRows();
+std::span<const OptionRow<StabilityOptions>> stabilityRows();
+std::span<const OptionRow<KernelsOptions>> kernelsRows();
+
+// "text", "0.5", "1,2,3", "true"; empty where there is none.
+std::string textOf(const OptionValue& value);
+
+// An option as people are told about it.
+struct OptionDescription {
+    OptionText text;
+    std::string range, standard;  // what it may be and what it is if nobody says so; empty where the help says it, or nothing does
+
+    [[nodiscard]] std::string help() const;  // with both in brackets
+};
+
+// In a fresh `Owner` fields have the values that they have when nobody says otherwise.
+template <typename Owner>
+OptionDescription describe(const OptionRow<Owner>& row) {
+    const bool told = *row.text.standard != '\0' || *row.text.value == '\0';
+    return {row.text, row.field.range, told ? row.text.standard : textOf(row.field.value(Owner{}))};
+}
+template <typename Owner>
+std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) {
+    std::vector<OptionDescription> descriptions;
+    for (const OptionRow<Owner>& row : rows) { descriptions.push_back(describe(row)); }
+    return descriptions;
+}
+
+// Reads what `settings` have of `rows` into `options`; what they do not have stays.
+template <typename Owner>
+void readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner& options) {
+    for (const OptionRow<Owner>& row : rows) {
+        if (const auto found = settings.find(row.text.key); found != settings.end()) { row.field.read(found->second, options); }
+    }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,121 @@
+// The command line, read with CLI11, and the typed values of all settings.
+#include "app/options/options.h"
+
+#include "app/options/commands_table.h"
+#include "app/options/option_layers.h"
+#include "app/options/option_table.h"
+#include "app/version.h"
+#include "engine/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <deque>
+#include <string_view>
+
+namespace binosplat {
+
+namespace {
+
+// What CLI11 fills in for one command; values stay text until they are laid over those of a config.
+struct CommandLine {
+    const Command* command = nullptr;
+    CLI::App* parser = nullptr;
+    std::map<std::string, std::string> values;
+    std::map<std::string, std::vector<std::string>> words;  // of which there may be many
+    std::map<std::string, CLI::Option*> given;
+};
+
+const char* groupOf(const OptionText& text) {
+    static const std::map<std::string_view, const char*> groups{
+        {"camera", "Camera"}, {"stereo", "Stereo"}, {"scene", "Scene"}, {"run", "Run"}};
+    const auto found = groups.find(text.table);
+    return found == groups.end() ? "Options" : found->second;
+}
+
+void addOption(CommandLine& line, const OptionDescription& option) {
+    const OptionText& text = option.text;
+    const std::string name = std::string("--") + text.key;
+    CLI::Option* added = nullptr;
+    if (*text.value == '\0') {
+        added = line.parser->add_flag(name)->description(option.help());
+    } else {
+        added = line.parser->add_option(name, line.values[text.key], option.help())->type_name(text.value);
+        if (*text.value == '[') { added->expected(0, 1); }
+    }
+    added->group(groupOf(text))->required(text.required);
+    line.given[text.key] = added;
+}
+
+void addCommand(CLI::App& app, CommandLine& line, const Command& command) {
+    line.command = &command;
+    line.parser = app.add_subcommand(command.name, command.help);
+    if (command.hidden) { line.parser->group(""); }
+    for (const Word& word : command.words) {
+        CLI::Option* added = word.many ? line.parser->add_option(word.name, line.words[word.name], word.help)
+                                       : line.parser->add_option(word.name, line.values[word.name], word.help);
+        line.given[word.name] = added->required(word.required);
+    }
+    for (const OptionDescription& option : optionsOf(command)) { addOption(line, option); }
+    if (*command.footer != '\0') { line.parser->footer(command.footer); }
+}
+
+Settings settingsOf(const CommandLine& line) {
+    Settings settings;
+    for (const auto& [key, option] : line.given) {
+        if (option->count() == 0) { continue; }
+        if (const auto words = line.words.find(key); words != line.words.end()) {
+            settings.emplace(key, Setting{key, words->second});
+        } else {
+            const auto value = line.values.find(key);
+            settings.emplace(key, Setting{"--" + key, {value == line.values.end() ? "true" : value->second}});
+        }
+    }
+    return settings;
+}
+
+// CLI11 takes "-.5,0,0" for an option but "-0.5,0,0" for a value.
+std::vector<std::string> readableArguments(int count, const char* const* arguments) {
+    std::vector<std::string> reversed;
+    for (int i = count - 1; i > 0; --i) {
+        std::string argument = arguments[i];
+        const bool bare_fraction =
+            argument.size() > 2 && argument[0] == '-' && argument[1] == '.' && std::isdigit(static_cast<unsigned char>(argument[2])) != 0;
+        if (bare_fraction) { argument.insert(1, "0"); }
+        reversed.push_back(argument);
+    }
+    return reversed;
+}
+
+std::string oneLine(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+}  // namespace
+
+RunOptions runOptions(const Settings& settings, RunOptions options) {
+    readRows(runRows(), settings, options);
+    return options;
+}
+
+Options parseOptions(int argument_count, const char* const* arguments) {
+    CLI::App app{"binosplat: stereo pictures of Gaussian splatting scenes", "binosplat"};
+    app.require_subcommand(1);
+    app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
+    std::deque<CommandLine> lines;  // CLI11 keeps addresses within
+    for (const Command& command : commands()) { addCommand(app, lines.emplace_back(), command); }
+    try {
+        app.parse(readableArguments(argument_count, arguments));
+    } catch (const CLI::CallForHelp&) {
+        const auto chosen = app.get_subcommands();
+        return HelpText{chosen.empty() ? app.help() : chosen.front()->help("binosplat")};
+    } catch (const CLI::CallForVersion&) { return HelpText{app.version() + "\n"}; } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::kUsage, oneLine(error.what()) + " (see `binosplat --help`)");
+    }
+    const auto chosen = std::ranges::find_if(lines, [](const CommandLine& line) { return line.parser->parsed(); });
+    return chosen->command->make(settingsOf(*chosen));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,39 @@
+// Panels of lines and points as an SVG text: axes, ticks, labels, legend.
+#pragma once
+
+#include "app/plot/plot_axis.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+struct PlotLine {
+    std::string label;
+    std::vector<std::pair<double, double>> points = {};  // x, y; those without a place on the axes are left out
+    std::vector<std::string> names = {};                 // written beside the points; empty: none
+    bool joined = true;                                  // a line through the points
+    bool dots = true;
+};
+
+// A value of x that has no y: a dashed vertical line with its name.
+struct PlotMark {
+    std::string name;
+    double x;
+};
+
+struct PlotPanel {
+    std::string title, x_label, y_label;
+    std::vector<PlotLine> lines = {};
+    std::vector<PlotMark> marks = {};
+    Scale x_scale = Scale::kLog, y_scale = Scale::kLog;
+};
+
+// The line of a panel with that label, added if it is not there.
+PlotLine& lineOf(PlotPanel& panel, const std::string& label);
+
+// Panels in rows of two.
+std::string drawPlot(const std::string& title, const std::vector<PlotPanel>& panels);
+
+}  // namespace binosplat

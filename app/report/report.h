@@ -1,0 +1,29 @@
+// report.json of `render`: what was asked for, what ran, how long it took.
+#pragma once
+
+#include "app/options/camera_options.h"
+#include "app/options/options.h"
+#include "engine/frame.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+struct FrameReport {
+    std::string device;
+    RenderOptions options;
+    Cameras cameras;
+    FrameResult frame;  // passes of the same name are added up
+};
+
+// Times by name; entries of the same name are added up, in order of first appearance.
+std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times);
+
+std::string reportJson(const FrameReport& report);
+
+// The same on a terminal, a line per pass.
+std::string reportTable(const FrameReport& report);
+
+}  // namespace binosplat

@@ -1,0 +1,148 @@
+// The results of `stability` as text, CSV and SVG.
+#include "app/report/stability_report.h"
+
+#include "app/plot/svg_plot.h"
+#include "app/report/text_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat {
+
+using stability::Bound;
+using stability::Case;
+using stability::CaseScore;
+using stability::kModes;
+using stability::PathScore;
+using stability::PictureScore;
+
+namespace {
+
+// Where equal pictures are drawn: a bit more than single precision can tell of a whole picture.
+constexpr double kEqualDb = 150.0;
+
+std::string decibels(double psnr_db) { return std::isinf(psnr_db) ? "equal" : fmt::format("{:.1f}", psnr_db); }
+std::string share(double value) { return value == 0.0 ? "0" : fmt::format("{:.2g}", value); }
+
+template <typename Value>
+double greatest(const CaseScore& score, Value&& value) {
+    double most = 0.0;
+    for (const PictureScore& picture : score.pictures) { most = std::max(most, static_cast<double>(value(picture))); }
+    return most;
+}
+
+std::string casesTable(const StabilityRun& run) {
+    TextColumns columns;
+    std::vector<std::string> head{"case"};
+    for (const Mode mode : kModes) { head.emplace_back(stability::nameOf(mode)); }
+    for (const char* name :
+         {"largest", "off, full", "off, moved", "other tiles", "not finite", "repeats", "bound, full", "bound, moved", ""}) {
+        head.emplace_back(name);
+    }
+    columns.addRow(std::move(head));
+    for (std::size_t i = 0; i < run.cases.size(); ++i) {
+        const Case& one = run.cases[i];
+        const CaseScore& score = run.scores[i];
+        std::vector<std::string> row{one.name()};
+        for (const Mode mode : kModes) { row.push_back(decibels(score.worstOf(mode).psnr_db)); }
+        row.push_back(fmt::format("{:.1e}", greatest(score, [](const PictureScore& p) { return p.moved ? 0.0 : p.largest; })));
+        row.push_back(share(greatest(score, [](const PictureScore& p) { return p.moved ? 0.0 : p.share_off; })));
+        row.push_back(share(greatest(score, [](const PictureScore& p) { return p.moved ? p.share_off : 0.0; })));
+        row.push_back(share(greatest(score, [](const PictureScore& p) { return p.other_tiles; })));
+        row.push_back(fmt::format("{:.0f}", greatest(score, [](const PictureScore& p) { return p.not_finite; })));
+        row.emplace_back(greatest(score, [](const PictureScore& p) { return p.repeats ? 0 : 1; }) > 0.0 ? "NO" : "yes");
+        row.push_back(fmt::format("{:.0f}", one.rendered.psnr_db));
+        row.push_back(fmt::format("{:.0f}", one.moved.psnr_db));
+        row.emplace_back(!score.passes() ? "FAILS" : one.beyond ? "limit" : "");
+        columns.addRow(std::move(row));
+    }
+    return columns.text();
+}
+
+std::string pathsTable(const StabilityRun& run) {
+    TextColumns columns;
+    columns.addRow({"the eye moves by 1e-6 a frame", "change", "twin's", "slack", "worst frame", "not finite", ""});
+    for (std::size_t i = 0; i < run.paths.size(); ++i) {
+        const PathScore& score = run.path_scores[i];
+        columns.addRow({run.paths[i].name, fmt::format("{:.2e}", score.device), fmt::format("{:.2e}", score.twin),
+                        fmt::format("{:.1e}", run.paths[i].slack), decibels(score.psnr_db), fmt::format("{}", score.not_finite),
+                        score.passes ? "" : "FAILS"});
+    }
+    return columns.text();
+}
+
+std::string reasons(const StabilityRun& run) {
+    std::string text, family;
+    for (const Case& one : run.cases) {
+        if (one.family == family) { continue; }
+        family = one.family;
+        text += fmt::format("  {}: {}\n", family, one.reason);
+    }
+    for (const stability::Path& path : run.paths) { text += fmt::format("  {}: {}\n", path.name, path.reason); }
+    return text;
+}
+
+std::string boundCells(const Bound& bound) {
+    return fmt::format("{},{},{},{}", bound.psnr_db, bound.share_off, bound.largest, bound.other_tiles);
+}
+
+}  // namespace
+
+std::vector<std::string> StabilityRun::failures() const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (!scores[i].passes()) { names.push_back(cases[i].name()); }
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (!path_scores[i].passes) { names.push_back(paths[i].name); }
+    }
+    return names;
+}
+
+std::string stabilityTable(const StabilityRun& run) {
+    return fmt::format(
+        "device: {}\nPSNR in dB against the float64 twin, of the worse eye; off: share of the values that differ by more than 2/255; "
+        "full:\n"
+        "eyes that are rendered; moved: the eye that is made from the other, over tiles that both or neither render again\n\n{}\n{}\n"
+        "what bounds them\n{}",
+        run.device, casesTable(run), pathsTable(run), reasons(run));
+}
+
+std::string stabilityCsv(const StabilityRun& run) {
+    std::string csv =
+        "family,parameter,value,mode,eye,moved,psnr_db,share_off,largest,other_tiles,not_finite,repeats,bound_psnr_db,bound_share_off,"
+        "bound_largest,bound_other_tiles,passes\n";
+    for (std::size_t i = 0; i < run.cases.size(); ++i) {
+        const Case& one = run.cases[i];
+        for (const PictureScore& p : run.scores[i].pictures) {
+            csv += fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{:d}\n", one.family, one.parameter,
+                               one.value, stability::nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles,
+                               p.not_finite, p.repeats, boundCells(p.moved ? one.moved : one.rendered), p.passes);
+        }
+    }
+    return csv;
+}
+
+std::string stabilityPlot(const StabilityRun& run) {
+    std::vector<PlotPanel> panels;
+    for (std::size_t i = 0; i < run.cases.size(); ++i) {
+        const Case& one = run.cases[i];
+        if (one.parameter.empty()) { continue; }
+        if (panels.empty() || panels.back().title != one.family) {
+            panels.push_back({.title = one.family, .x_label = one.parameter, .y_label = "PSNR against the twin, dB"});
+            panels.back().y_scale = Scale::kLinear;
+        }
+        PlotPanel& panel = panels.back();
+        const auto add = [&](const std::string& label, double psnr_db, bool dots) {
+            PlotLine& line = lineOf(panel, label);
+            line.dots = dots;
+            line.points.emplace_back(one.value, std::min(psnr_db, kEqualDb));
+        };
+        for (const Mode mode : kModes) { add(stability::nameOf(mode), run.scores[i].worstOf(mode).psnr_db, true); }
+        add("bound, rendered eyes", one.rendered.psnr_db, false);
+        add("bound, moved eye", one.moved.psnr_db, false);
+    }
+    return drawPlot("Against the float64 twin, on " + run.device, panels);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,52 @@
+// Dear ImGui on a picture of our own, from where it is copied to a headset's panel or a window. Values are display-encoded, and the
+// copies are raw: an sRGB image shows them as they are.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+
+namespace binosplat {
+
+// What points at the canvas.
+struct CanvasPointer {
+    std::optional<glm::dvec2> place_px;  // empty: nowhere near
+    bool pressed = false;
+    double wheel = 0.0;
+};
+
+// One at a time: ImGui has one current context. Throws Error (exit code 3) where the queue cannot draw.
+class Canvas {
+public:
+    // `format` is 8-bit RGBA or BGRA; what the canvas is copied to has the same order of channels.
+    Canvas(const Context& context, glm::uvec2 size_px, vk::Format format);
+    Canvas(const Canvas&) = delete;
+    Canvas& operator=(const Canvas&) = delete;
+    ~Canvas();
+
+    // Widgets are drawn between this and record().
+    void begin(const CanvasPointer& pointer, double step_seconds);
+    // Draws; then the canvas may be copied from.
+    void record(Commands& commands);
+
+    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    [[nodiscard]] vk::Image image() const { return *image_; }
+
+private:
+    void makeImage(vk::Format format);
+    void makeRenderPass(vk::Format format);
+    void startImGui();
+
+    const Context& context_;
+    glm::uvec2 size_px_;
+    vk::raii::DeviceMemory memory_{nullptr};
+    vk::raii::Image image_{nullptr};
+    vk::raii::ImageView view_{nullptr};
+    vk::raii::RenderPass render_pass_{nullptr};
+    vk::raii::Framebuffer framebuffer_{nullptr};
+    vk::raii::DescriptorPool descriptors_{nullptr};
+};
+
+}  // namespace binosplat

@@ -1,0 +1,25 @@
+// What the viewer has of the headset for as long as one session lasts. A session may be lost, and another one takes its place.
+#pragma once
+
+#include "app/view/eye_images.h"
+#include "app/view/lens_mask.h"
+#include "xr/input.h"
+#include "xr/layers.h"
+
+#include <memory>
+
+namespace binosplat {
+
+struct HeadsetStay {
+    // `panel_px` is the size of the panel's picture. Throws xr::Lost where the session is lost at once.
+    HeadsetStay(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
+
+    xr::Session session;
+    vk::Format format;
+    xr::Input input;
+    xr::Swapchain panel_images, ray_image;
+    std::unique_ptr<EyeImages> images;  // once their size is known
+    LensMask lens_mask;
+};
+
+}  // namespace binosplat

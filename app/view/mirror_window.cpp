@@ -1,0 +1,234 @@
+// GLFW and a Vulkan swapchain.
+#include "app/view/mirror_window.h"
+
+#include "app/view/window_surface.h"
+
+#include "engine/error.h"
+
+#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr int kHeightPx = 720;
+constexpr double kRadiansPerPixel = 0.004;
+
+using Layout = vk::ImageLayout;
+
+void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
+    const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+    const vk::ImageMemoryBarrier barrier(all, all, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+                                         {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+    const auto stage = vk::PipelineStageFlagBits::eAllCommands;
+    commands.buffer().pipelineBarrier(stage, stage, {}, {}, {}, barrier);
+}
+
+// Of the window: the eye, as wide as high, and the panel beside it.
+int widthOf(const Canvas& canvas) {
+    return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
+}
+
+// The whole of `from` into the columns [x0, x1) of `to`, as large as its shape allows.
+void blit(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image to, int x0, int x1, int height) {
+    const double scale = std::min(static_cast<double>(x1 - x0) / from_px.x, static_cast<double>(height) / from_px.y);
+    const int w = std::max(static_cast<int>(scale * from_px.x), 1), h = std::max(static_cast<int>(scale * from_px.y), 1);
+    const int left = x0 + (x1 - x0 - w) / 2, top = (height - h) / 2;
+    const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0, 1);
+    const std::array source{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
+    const std::array target{vk::Offset3D(left, top, 0), vk::Offset3D(left + w, top + h, 1)};
+    commands.buffer().blitImage(from, Layout::eTransferSrcOptimal, to, Layout::eTransferDstOptimal,
+                                vk::ImageBlit(layers, source, layers, target), vk::Filter::eLinear);
+}
+
+}  // namespace
+
+std::unique_ptr<WindowSystem> WindowSystem::find() {
+    if (glfwInit() != GLFW_TRUE) { return nullptr; }
+    std::unique_ptr<WindowSystem> system(new WindowSystem());
+    return glfwVulkanSupported() == GLFW_TRUE && !instanceExtensions().empty() ? std::move(system) : nullptr;
+}
+
+WindowSystem::~WindowSystem() { glfwTerminate(); }
+
+std::vector<const char*> WindowSystem::instanceExtensions() {
+    std::uint32_t count = 0;
+    const char** names = glfwGetRequiredInstanceExtensions(&count);
+    return names == nullptr ? std::vector<const char*>{} : std::vector<const char*>(names, names + count);
+}
+
+MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : context_(context), canvas_(canvas) {
+    check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
+    window_ = glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr);
+    check(window_ != nullptr, "the window does not open");
+    // What was let go before the next frame still counts once.
+    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
+    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+        if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
+    });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+        if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
+    });
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
+    check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
+    surface_ = vk::raii::SurfaceKHR(context.instance(), surface);
+    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
+          context.deviceName());
+    acquired_fence_ = context.device().createFence({});
+    makeSwapchain();
+}
+
+MirrorWindow::~MirrorWindow() {
+    context_.device().waitIdle();
+    swapchain_ = vk::raii::SwapchainKHR(nullptr);
+    surface_ = vk::raii::SurfaceKHR(nullptr);
+    glfwDestroyWindow(window_);
+}
+
+void MirrorWindow::makeSwapchain() {
+    const vk::raii::PhysicalDevice& device = context_.physicalDevice();
+    const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
+    check(format.has_value(), "the display takes no pictures of eight bits as they are");
+    // The headset sets the pace.
+    const auto modes = device.getSurfacePresentModesKHR(*surface_);
+    vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
+    for (const auto better : {vk::PresentModeKHR::eImmediate, vk::PresentModeKHR::eMailbox}) {
+        if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
+    }
+    const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const auto extent = windowExtent(able, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+    is_stale_ = !extent;
+    if (!extent) { return; }
+    extent_ = *extent;
+    const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
+    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, extent_, 1,
+                                    vk::ImageUsageFlagBits::eTransferDst);
+    info.preTransform = able.currentTransform;
+    info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
+    info.presentMode = mode;
+    info.oldSwapchain = *swapchain_;
+    swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
+    images_.clear();
+    for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
+}
+
+WindowInput MirrorWindow::poll() {
+    glfwPollEvents();
+    const auto pressed = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
+    WindowInput input;
+    for (const int key : std::exchange(pressed_, {})) {
+        input.toggle_panel ^= key == GLFW_KEY_TAB;
+        input.reload_shaders |= key == GLFW_KEY_F5;
+        input.recentre |= key == GLFW_KEY_R;
+        input.quit |= key == GLFW_KEY_ESCAPE;
+    }
+    input.dropped = std::exchange(dropped_, {});
+    input.quit |= glfwWindowShouldClose(window_) == GLFW_TRUE;
+    input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
+                  pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
+    input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
+    glm::dvec2 cursor;
+    glfwGetCursorPos(window_, &cursor.x, &cursor.y);
+    // A compositor may make the window another size than was asked for.
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
+    const bool down = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
+    const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
+    const glm::dvec2 size(canvas_.sizePx());
+    if (glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size))) {
+        input.pointer = {place, down, 0.0};
+    } else if (down) {
+        input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x);  // the picture follows the mouse
+    }
+    cursor_ = cursor;
+    return input;
+}
+
+void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
+    using Usage = vk::ImageUsageFlagBits;
+    const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
+    eye_ = vk::raii::Image(nullptr);
+    eye_ = vk::raii::Image(context_.device(),
+                           vk::ImageCreateInfo({}, vk::ImageType::e2D, blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm,
+                                               {size_px.x, size_px.y, 1}, 1, 1, vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                               Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
+    const auto needs = eye_.getMemoryRequirements();
+    eye_memory_ = vk::raii::DeviceMemory(
+        context_.device(),
+        vk::MemoryAllocateInfo(needs.size, context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal)));
+    eye_.bindMemory(*eye_memory_, 0);
+    eye_px_ = size_px;
+}
+
+void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
+    if (eye_px_ != size_px) { makeEyeImage(size_px, format); }
+    commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
+    changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
+}
+
+void MirrorWindow::acquire() {
+    acquired_ = false;
+    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
+    if (is_stale_) {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+        makeSwapchain();
+    }
+    if (is_stale_) { return; }  // put away
+    try {
+        const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
+        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free: the headset does not wait
+        index_ = index;
+    } catch (const vk::OutOfDateKHRError&) {
+        is_stale_ = true;
+        return;
+    }
+    const auto waited = context_.device().waitForFences(*acquired_fence_, VK_TRUE, UINT64_MAX);
+    check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
+    context_.device().resetFences(*acquired_fence_);
+    acquired_ = true;
+}
+
+void MirrorWindow::record(Commands& commands) {
+    if (!acquired_) { return; }
+    const vk::Image target = images_[index_];
+    const int width = static_cast<int>(extent_.width), height = static_cast<int>(extent_.height);
+    changeLayout(commands, target, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const vk::ClearColorValue black(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f});
+    commands.buffer().clearColorImage(target, Layout::eTransferDstOptimal, black,
+                                      vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
+    changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
+    const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
+    if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, split, height); }
+    if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
+    changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
+}
+
+void MirrorWindow::show() {
+    if (!acquired_) { return; }
+    acquired_ = false;
+    const vk::SwapchainKHR swapchain = *swapchain_;
+    try {
+        const std::lock_guard lock(context_.queueMutex());
+        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+    } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
+}
+
+}  // namespace binosplat

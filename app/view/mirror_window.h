@@ -1,0 +1,85 @@
+// A window on the desktop: what the dominant eye sees, and the panel beside it for the mouse.
+#pragma once
+
+#include "app/view/canvas.h"
+
+#include <glm/glm.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace binosplat {
+
+// GLFW, where there is a display. Before the Vulkan instance, which needs its extensions.
+class WindowSystem {
+public:
+    // Null where there is no display, or none that Vulkan can show on.
+    static std::unique_ptr<WindowSystem> find();
+    WindowSystem(const WindowSystem&) = delete;
+    WindowSystem& operator=(const WindowSystem&) = delete;
+    ~WindowSystem();
+
+    [[nodiscard]] static std::vector<const char*> instanceExtensions();
+
+private:
+    WindowSystem() = default;
+};
+
+// What came from mouse and keyboard since the last time.
+struct WindowInput {
+    CanvasPointer pointer;   // on the panel
+    glm::dvec3 walk{0.0};    // right, down, forward; -1 to 1
+    double turn_rad = 0.0;   // to the right
+    double turn_rate = 0.0;  // by keys, -1 to 1
+    bool toggle_panel = false;
+    bool reload_shaders = false;
+    bool recentre = false;
+    bool quit = false;
+    std::string dropped;  // a file let fall on the window; empty: none
+};
+
+class MirrorWindow {
+public:
+    // Throws Error if the device cannot show on the display.
+    MirrorWindow(const Context& context, const Canvas& canvas);
+    MirrorWindow(const MirrorWindow&) = delete;
+    MirrorWindow& operator=(const MirrorWindow&) = delete;
+    ~MirrorWindow();
+
+    [[nodiscard]] WindowInput poll();
+    // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
+    void acquire();
+    // Between begin and submitAndWait: keeps an eye's presented pixels, of an image of `format`.
+    void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
+    // Between begin and submitAndWait, once the canvas is drawn; also more than once.
+    void record(Commands& commands);
+    // After submitAndWait.
+    void show();
+
+private:
+    void makeSwapchain();
+    void makeEyeImage(glm::uvec2 size_px, vk::Format format);
+
+    const Context& context_;
+    const Canvas& canvas_;
+    GLFWwindow* window_ = nullptr;
+    vk::raii::SurfaceKHR surface_{nullptr};
+    vk::raii::SwapchainKHR swapchain_{nullptr};
+    vk::raii::Fence acquired_fence_{nullptr};
+    std::vector<vk::Image> images_;
+    vk::Extent2D extent_;
+    vk::raii::DeviceMemory eye_memory_{nullptr};
+    vk::raii::Image eye_{nullptr};
+    glm::uvec2 eye_px_{0, 0};
+    bool acquired_ = false;
+    bool is_stale_ = false;  // the pictures are not as the display wants them any more
+    std::uint32_t index_ = 0;
+    glm::dvec2 cursor_{0.0};
+    std::vector<int> pressed_;  // GLFW's keys, since the last poll
+    std::string dropped_;       // likewise
+};
+
+}  // namespace binosplat

@@ -1,0 +1,38 @@
+// The panel's widgets: what the wearer can change and what the last frame cost.
+#pragma once
+
+#include "app/view/view_settings.h"
+#include "engine/frame.h"
+
+#include <glm/glm.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// What the panel shows.
+struct OverlayStatus {
+    std::string scene;
+    std::string state;                   // why the headset shows nothing; empty: it does
+    bool has_scene = false;              // there is something to see
+    std::optional<double> loading;       // share done, while a scene is on its way
+    const FrameResult* frame = nullptr;  // the last one; null before the first
+    std::vector<float> frame_ms;         // from frame to frame by the clock on the wall, oldest first
+    std::string governor;                // what it does about the frame rate, and why
+    std::string message;                 // what came of the last button
+    bool can_reload_shaders = false;     // whether there is a button for it
+};
+
+// Buttons that were pressed.
+struct OverlayActions {
+    bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
+         take_picture = false;
+    int scene_step = 0;  // to the scene before or after
+};
+
+// Says the widgets of a whole canvas of `size_px`, between Canvas::begin and record. Changes `settings` as the wearer does.
+OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const OverlayStatus& status);
+
+}  // namespace binosplat

@@ -1,0 +1,44 @@
+// Where the wearer's room lies in the scene. Room axes are those of a camera that looks ahead (x right, y down, z forward), metres.
+#pragma once
+
+#include "app/options/camera_options.h"
+#include "engine/geometry.h"
+#include "engine/scene/scene.h"
+
+namespace binosplat {
+
+// A similarity target_from_source: p_target = scale * (orientation * p_source) + position.
+struct Similarity {
+    glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
+    glm::dvec3 position{0.0};
+    double scale = 1.0;
+};
+
+glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source);
+// The pose of something that sits at `pose` in the source.
+Pose transform(const Similarity& target_from_source, const Pose& pose);
+// a_from_c out of a_from_b and b_from_c.
+Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c);
+
+// The room's origin where the options put the eye, or where the scene is best seen from; upright, looking that way. A room metre is
+// 1 / metres_per_unit scene units.
+Similarity startPlacement(const RunOptions& options, const Scene& scene);
+
+// What moves the wearer through the scene: each is a scene_from_room to follow `scene_from_room`.
+// By `step_m` in the room.
+Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m);
+// About the vertical through `about`, to the right where `angle_rad` is positive.
+Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about);
+
+// Two points of the scene that are held, at `from` before and at `to` now: the scene moves, turns about the vertical and grows with
+// them, or turns as they do where it may be `tilted`. Points that lie above one another do not turn it about the vertical, and scale
+// changes stay within 1000 in all from `scene_from_room`.
+Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
+                  bool tilted = false);
+// Stands as upright in the scene as `upright` does, with its heading; `about`, in the room, stays where it is.
+Similarity levelledLike(const Similarity& scene_from_room, const Similarity& upright, const glm::dvec3& about);
+
+// How the wearer looks ahead, level: the horizontal part of `forward`, or straight ahead if there is none.
+glm::dvec3 levelled(const glm::dvec3& forward);
+
+}  // namespace binosplat

@@ -1,0 +1,54 @@
+// A scene on its way to the device while frames go on.
+#pragma once
+
+#include "app/options/options.h"
+#include "app/view/placement.h"
+#include "engine/frame.h"
+
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <string>
+#include <thread>
+
+namespace binosplat {
+
+// A scene that can be shown. Stays where it is: the frame refers to the scene.
+struct LoadedScene {
+    LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
+        : gpu_scene(context, scene, progress), frame(context, gpu_scene) {}
+    std::string name;
+    GpuScene gpu_scene;
+    StereoFrame frame;
+    Similarity start;  // see startPlacement
+    LoadNotes notes;
+};
+
+// Loads on a thread of its own.
+class SceneLoader {
+public:
+    SceneLoader(const Context& context, std::string scene, RunOptions options);
+    SceneLoader(const SceneLoader&) = delete;
+    SceneLoader& operator=(const SceneLoader&) = delete;
+    // Gives up where it can, and waits for the rest.
+    ~SceneLoader();
+
+    [[nodiscard]] const std::string& scene() const { return scene_; }
+    // Share done, 0 to 1.
+    [[nodiscard]] double progress() const { return progress_; }
+    [[nodiscard]] bool isDone() const { return done_; }
+    // Waits for the scene and hands it over, once. Throws what loading threw.
+    [[nodiscard]] std::unique_ptr<LoadedScene> take();
+
+private:
+    void load(const Context& context, const RunOptions& options);
+
+    std::string scene_;
+    std::atomic<double> progress_ = 0.0;
+    std::atomic<bool> done_ = false, cancelled_ = false;
+    std::unique_ptr<LoadedScene> loaded_;
+    std::exception_ptr error_;
+    std::thread thread_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,106 @@
+// Running glslang's command line tool as the build does.
+#include "app/view/shader_reload.h"
+
+#include "engine/error.h"
+#include "engine/platform.h"
+#include "shaders/embedded_shaders.h"
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <future>
+#include <sstream>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own, gone with this.
+struct Workshop {
+    Workshop() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
+        check(!path.empty(), "{}: cannot be written ({})", fs::temp_directory_path().string(), std::strerror(errno));
+    }
+    Workshop(const Workshop&) = delete;
+    Workshop& operator=(const Workshop&) = delete;
+    ~Workshop() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+    fs::path path;
+};
+
+template <typename T>
+std::vector<T> readAll(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::stringstream bytes;
+    bytes << stream.rdbuf();
+    const std::string text = bytes.str();
+    std::vector<T> values(text.size() / sizeof(T));
+    std::copy_n(text.data(), values.size() * sizeof(T), reinterpret_cast<char*>(values.data()));
+    return values;
+}
+
+// The first complaint in what glslang printed, "ERROR: FILE:LINE: REASON".
+std::string firstError(const fs::path& log, const fs::path& source) {
+    const std::vector<char> text = readAll<char>(log);
+    std::istringstream lines(std::string(text.begin(), text.end()));
+    const std::string mark = "ERROR: ";
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(mark)) { return line.substr(mark.size()); }
+    }
+    return source.string() + " does not compile";
+}
+
+std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& name, const fs::path& workshop) {
+    const fs::path source = folder / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
+    std::error_code ignored;
+    check(fs::exists(source, ignored), "{} is not there", source.string());
+    check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
+    // As shaders/CMakeLists.txt has it. The compiler comes with the package glslang-tools.
+    const bool ok = runProgram({"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-I" + (folder / "shared").string(),
+                                "-I" + folder.string(), "-o", words.string(), source.string()},
+                               log);
+    check(ok, "{}", firstError(log, source));
+    return readAll<std::uint32_t>(words);
+}
+
+}  // namespace
+
+fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder; }
+
+ShaderWords compileShaders(const fs::path& folder) {
+    const Workshop workshop;
+    std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
+    for (const std::string_view name : embeddedShaderNames()) {
+        results.emplace_back(name, std::async(std::launch::async, compileShader, folder, std::string(name), workshop.path));
+    }
+    ShaderWords shaders;
+    for (auto& [name, words] : results) { shaders[name] = words.get(); }
+    return shaders;
+}
+
+std::string reloadShaders(const Context& context, const fs::path& folder, const std::function<void()>& rebuild) {
+    const auto start = std::chrono::steady_clock::now();
+    ShaderWords before;
+    bool replaced = false;
+    try {
+        ShaderWords shaders = compileShaders(folder);
+        const std::size_t count = shaders.size();
+        before = std::exchange(context.replacedShaders(), std::move(shaders));
+        replaced = true;
+        rebuild();
+        const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - start;
+        return fmt::format("{} shaders reloaded in {:.0f} ms", count, taken.count());
+    } catch (const Error& error) {
+        if (replaced) {
+            context.replacedShaders() = std::move(before);
+            rebuild();
+        }
+        return fmt::format("shaders stay as they were: {}", error.what());
+    }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,66 @@
+// The environment of the simulated headset.
+#include "app/view/simulate.h"
+
+#include "engine/error.h"
+#include "engine/platform.h"
+#include "engine/setup/text_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include <filesystem>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A headset that rests has been seen after a second.
+constexpr std::uint64_t kFramesAtRest = 90;
+
+bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
+
+// Beside the program, as it is built, or where it and its package are installed.
+fs::path findManifest() {
+    const fs::path folder = programFile().parent_path();
+    const fs::path installed = fs::path("share") / "openxr" / "1" / "binosplat_simulated_runtime.json";
+    const std::array candidates{folder / "simulated_runtime.json", folder.parent_path() / installed, "/usr" / installed};
+    const auto* found = std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
+    if (found == candidates.end()) {
+        throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {} and {}, which the build and the package "
+                                                     "binosplat-simulated-runtime have",
+                                                     candidates[0].string(), candidates[1].string()));
+    }
+    return *found;
+}
+
+}  // namespace
+
+void simulateHeadset(ViewOptions& options) {
+    const fs::path manifest = findManifest();
+    setEnvironment("XR_RUNTIME_JSON", manifest.string());
+    if (!options.script.empty()) {
+        std::error_code ignored;
+        check(fs::is_regular_file(options.script, ignored), "--simulate: {} is not a file, must be a script (see docs/simulated_script.md)",
+              options.script);
+        const std::uintmax_t bytes = fs::file_size(options.script, ignored);
+        check(bytes <= kMostTextBytes, "--simulate: {} is longer than {} MiB, must be a script (see docs/simulated_script.md)",
+              options.script, kMostTextBytes >> 20);
+        setEnvironment("SIMULATED_OPENXR_SCRIPT", fs::absolute(options.script).string());
+    }
+    if (!hasDisplay()) {
+        if (options.out.empty()) { options.out = "out/view"; }
+        if (options.script.empty() && options.frames == 0) { options.frames = kFramesAtRest; }
+    }
+    if (!options.out.empty()) {
+        std::error_code error;
+        fs::create_directories(options.out, error);
+        check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
+        setEnvironment("SIMULATED_OPENXR_OUT", fs::absolute(options.out).string());
+    } else if (environment("BINOSPLAT_SIMULATED_CLOCK").empty() && environment("SIMULATED_OPENXR_CLOCK").empty()) {
+        setEnvironment("SIMULATED_OPENXR_CLOCK", "real");  // somebody watches
+    }
+}
+
+}  // namespace binosplat

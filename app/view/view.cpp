@@ -1,0 +1,75 @@
+// `binosplat view`: a scene in a headset.
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/options/device_options.h"
+#include "app/view/mirror_window.h"
+#include "app/view/simulate.h"
+#include "app/view/viewer.h"
+#include "engine/error.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks(200);
+
+ViewSettings startSettings(const ViewOptions& options) {
+    ViewSettings settings;
+    settings.stereo = options.run.stereo;
+    settings = readViewSettings(options.tables, settings);
+    if (options.hide_panel) { settings.panel = false; }
+    if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
+    return settings;
+}
+
+// Until the headset is there, or until Ctrl-C.
+void waitForHeadset(const std::string& runtime, bool& said) {
+    if (!std::exchange(said, true)) {
+        fmt::print("{} has no headset yet: waiting for it (Ctrl-C ends)\n", runtime);
+        std::fflush(stdout);
+    }
+    stopIfInterrupted();
+    std::this_thread::sleep_for(kBetweenLooks);
+}
+
+void showScene(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance) {
+    ContextOptions context_options = contextOptions(options.run);
+    context_options.maker = instance.deviceMaker();
+    const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
+    if (windows) {
+        context_options.instance_extensions = WindowSystem::instanceExtensions();
+        context_options.device_extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    }
+    const Context context(context_options);
+    const glm::uvec2 size_px = instance.recommendedSizePx();
+    fmt::print("{}, {}x{} per eye, on {}\n", instance.description(), size_px.x, size_px.y, context.deviceName());
+    Viewer(options, settings, instance, context, windows != nullptr).run();
+    if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
+    context.requireNoValidationMessages();
+}
+
+}  // namespace
+
+void runView(const ViewOptions& given) {
+    ViewOptions options = given;
+    if (options.simulate) { simulateHeadset(options); }
+    const ViewSettings settings = startSettings(options);
+    xr::InstanceOptions instance_options;
+    instance_options.visibility_mask = settings.visibility_mask;
+    instance_options.wait_for_headset = [said = false](const std::string& runtime) mutable { waitForHeadset(runtime, said); };
+    std::unique_ptr<xr::Instance> instance;
+    try {
+        instance = std::make_unique<xr::Instance>(instance_options);
+    } catch (const Interrupted&) {
+        fmt::print("0 frames; stopped before there was a headset\n");
+        return;
+    }
+    showScene(options, settings, *instance);
+}
+
+}  // namespace binosplat

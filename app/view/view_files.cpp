@@ -1,0 +1,79 @@
+// Saving and loading from the panel.
+#include "app/view/view_files.h"
+
+#include "app/options/option_layers.h"
+#include "engine/error.h"
+#include "engine/platform.h"
+#include "engine/scene/procedural.h"
+#include "engine/setup/output_files.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path configFolder() {
+    const fs::path folder = userConfigFolder();
+    check(!folder.empty(), "HOME: no folder for settings, must be set");
+    return folder / "binosplat" / "scenes";
+}
+
+// FNV-1a: another scene has another one, and the same scene always this.
+std::uint64_t fingerprint(const std::string& text) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3; }
+    return hash;
+}
+
+std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) {
+    std::vector<SettingsTable> view;
+    for (const SettingsTable& table : tables) {
+        if (table.name == "view") { view.push_back(table); }
+    }
+    return view;
+}
+
+}  // namespace
+
+fs::path viewSettingsFile(const std::string& scene) {
+    if (isBuiltin(scene)) { return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml"); }
+    std::error_code ignored;
+    fs::path place = fs::weakly_canonical(scene, ignored);
+    if (!place.has_filename()) { place = place.parent_path(); }
+    const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
+    return configFolder() /
+           fmt::format("{}-{:016x}.view.toml", place.stem().string(), fingerprint(fmt::format("{}:{}", place.string(), bytes)));
+}
+
+std::optional<Similarity> rememberedPlacement(const std::string& scene) {
+    const fs::path file = viewSettingsFile(scene);
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) { return std::nullopt; }
+    return readViewSettings(viewTables(readSettingsFile(file)), {}).scene_from_room;
+}
+
+std::string saveViewSettings(const std::string& scene, const ViewSettings& settings) {
+    try {
+        const fs::path file = viewSettingsFile(scene);
+        OutputFiles files(file.parent_path());
+        writeText(files.staging() / file.filename(), viewSettingsToml(settings));
+        files.publish();
+        return "saved as " + file.string();
+    } catch (const Error& error) { return error.what(); }
+}
+
+std::string loadViewSettings(const std::string& scene, ViewSettings& settings) {
+    try {
+        const fs::path file = viewSettingsFile(scene);
+        const std::vector<SettingsTable> tables = readSettingsFile(file);
+        RunOptions run;
+        run.stereo = settings.stereo;
+        ViewSettings loaded = readViewSettings(viewTables(tables), settings);
+        loaded.stereo = runOptions(configLayer(file, tables, {"view"}), run).stereo;
+        settings = loaded;
+        return "loaded " + file.string();
+    } catch (const Error& error) { return error.what(); }
+}
+
+}  // namespace binosplat

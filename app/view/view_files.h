@@ -1,0 +1,25 @@
+// Where the viewer keeps what the wearer sets, and what becomes of it.
+#pragma once
+
+#include "app/view/view_settings.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace binosplat {
+
+// A file of the user's configuration folder (XDG_CONFIG_HOME, or ~/.config) for this scene alone: of a file by its place and its size, so
+// that another one in its place begins anew; of a folder by its place, of builtin:NAME by its name. Throws Error where there is no such
+// folder.
+std::filesystem::path viewSettingsFile(const std::string& scene);
+
+// Where the wearer stood when the scene's settings were saved; empty where they never were. Throws Error where the file is broken.
+std::optional<Similarity> rememberedPlacement(const std::string& scene);
+
+// Both say in a line how it went; a file that cannot be read or written is no reason to leave the headset. What is written is whole or not
+// there.
+std::string saveViewSettings(const std::string& scene, const ViewSettings& settings);
+std::string loadViewSettings(const std::string& scene, ViewSettings& settings);
+
+}  // namespace binosplat

@@ -1,0 +1,35 @@
+// What the wearer can change while looking, and the config that keeps it.
+#pragma once
+
+#include "app/options/options.h"
+#include "app/view/governor.h"
+#include "app/view/placement.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct ViewSettings {
+    StereoOptions stereo;
+    double resolution_scale = 1.0;  // of what the headset recommends, each way
+    bool tint = false;              // show what made the affiliated picture
+    bool panel = true;
+    bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
+    bool tilt = false;                          // whether two hands may tilt the scene
+    Quality quality = Quality::kOff;            // how the frame rate is held
+    std::optional<Similarity> scene_from_room;  // absent: the scene's own view
+};
+
+// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, scene-position,
+// scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
+ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
+
+// A config that --config takes, also of `render`.
+std::string viewSettingsToml(const ViewSettings& settings);
+
+// What differs, as "mode = paper, margin = 16"; placements aside. Empty if nothing does.
+std::string describeChange(const ViewSettings& before, const ViewSettings& after);
+
+}  // namespace binosplat

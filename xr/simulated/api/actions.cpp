@@ -1,0 +1,149 @@
+#include "xr/simulated/api/actions.h"
+
+#include <algorithm>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/profiles.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::string_view kSubactionPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head", "/user/gamepad"};
+
+void checkNames(const std::string& name, const std::string& localized_name) {
+    require(!name.empty(), XR_ERROR_NAME_INVALID, "a name is empty");
+    require(!localized_name.empty(), XR_ERROR_LOCALIZED_NAME_INVALID, "a localized name is empty");
+    require(isPathLevel(name), XR_ERROR_PATH_FORMAT_INVALID, "a name has characters that a path may not have");
+}
+
+// Among those that are alive: a destroyed one gives its names free.
+template <class T>
+void checkUnique(const Object& parent, const std::string& name, const std::string& localized_name) {
+    for (const auto& child : parent.children) {
+        const T* const sibling = dynamic_cast<const T*>(child.get());
+        if (sibling == nullptr) continue;
+        require(sibling->name != name, XR_ERROR_NAME_DUPLICATED, "a name is taken");
+        require(sibling->localized_name != localized_name, XR_ERROR_LOCALIZED_NAME_DUPLICATED, "a localized name is taken");
+    }
+}
+
+std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActionCreateInfo& info) {
+    require(info.subactionPaths != nullptr || info.countSubactionPaths == 0, XR_ERROR_VALIDATION_FAILURE, "an array of paths is missing");
+    std::vector<XrPath> paths;
+    for (std::uint32_t i = 0; i < info.countSubactionPaths; ++i) {
+        const XrPath path = info.subactionPaths[i];
+        const std::string& text = instance.paths.textOf(path);
+        const bool is_known = std::find(std::begin(kSubactionPaths), std::end(kSubactionPaths), text) != std::end(kSubactionPaths);
+        require(is_known, XR_ERROR_PATH_UNSUPPORTED, "not a subaction path");
+        require(std::find(paths.begin(), paths.end(), path) == paths.end(), XR_ERROR_PATH_UNSUPPORTED, "a subaction path comes twice");
+        paths.push_back(path);
+    }
+    return paths;
+}
+
+}  // namespace
+
+ActionSet& getActionSet(const Instance& instance, XrActionSet set) {
+    ActionSet& found = get<ActionSet>(set);
+    require(found.parent == &instance, XR_ERROR_HANDLE_INVALID, "an action set of another instance");
+    return found;
+}
+
+Action& getAction(const Instance& instance, XrAction action) {
+    Action& found = get<Action>(action);
+    require(found.parent->parent == &instance, XR_ERROR_HANDLE_INVALID, "an action of another instance");
+    return found;
+}
+
+void checkSubactionPath(const Instance& instance, const std::vector<XrPath>& declared, XrPath path) {
+    if (path == XR_NULL_PATH) return;
+    instance.paths.textOf(path);
+    require(std::find(declared.begin(), declared.end(), path) != declared.end(), XR_ERROR_PATH_UNSUPPORTED,
+            "a subaction path that was not declared");
+}
+
+XrResult xrCreateActionSet(XrInstance instance, const XrActionSetCreateInfo* createInfo, XrActionSet* actionSet) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrActionSetCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_SET_CREATE_INFO);
+        XrActionSet& output = checkedOutput(actionSet);
+        auto created = std::make_unique<ActionSet>();
+        created->name = textOf(info.actionSetName);
+        created->localized_name = textOf(info.localizedActionSetName);
+        created->priority = info.priority;
+        checkNames(created->name, created->localized_name);
+        checkUnique<ActionSet>(owner, created->name, created->localized_name);
+        output = handleOf(adopt(owner, std::move(created)));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrDestroyActionSet(XrActionSet actionSet) {
+    return answer(__func__, [&] {
+        destroyObject(get<ActionSet>(actionSet));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createInfo, XrAction* action) {
+    return answer(__func__, [&] {
+        ActionSet& set = get<ActionSet>(actionSet);
+        const Instance& instance = getInstance(handleOf(ancestor<Instance>(set)));
+        const XrActionCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_CREATE_INFO);
+        XrAction& output = checkedOutput(action);
+        require(!set.is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set is attached already");
+        switch (info.actionType) {
+            case XR_ACTION_TYPE_BOOLEAN_INPUT:
+            case XR_ACTION_TYPE_FLOAT_INPUT:
+            case XR_ACTION_TYPE_VECTOR2F_INPUT:
+            case XR_ACTION_TYPE_POSE_INPUT:
+            case XR_ACTION_TYPE_VIBRATION_OUTPUT:
+                break;
+            default:
+                throw Refusal{XR_ERROR_VALIDATION_FAILURE, "no such type of action"};
+        }
+        auto created = std::make_unique<Action>();
+        created->name = textOf(info.actionName);
+        created->localized_name = textOf(info.localizedActionName);
+        created->type = info.actionType;
+        created->subaction_paths = checkedSubactionPaths(instance, info);
+        checkNames(created->name, created->localized_name);
+        checkUnique<Action>(set, created->name, created->localized_name);
+        output = handleOf(adopt(set, std::move(created)));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrDestroyAction(XrAction action) {
+    return answer(__func__, [&] {
+        destroyObject(get<Action>(action));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrInteractionProfileSuggestedBinding* suggestedBindings) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrInteractionProfileSuggestedBinding& info = checked(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
+        const Profile* const profile = findProfile(owner.paths.textOf(info.interactionProfile));
+        require(profile != nullptr && owner.has(*profile), XR_ERROR_PATH_UNSUPPORTED,
+                "not an interaction profile of this version, nor of an extension that is enabled");
+        require(info.countSuggestedBindings > 0 && info.suggestedBindings != nullptr, XR_ERROR_VALIDATION_FAILURE, "no bindings");
+        SuggestedProfile suggested{info.interactionProfile, {}};
+        for (std::uint32_t i = 0; i < info.countSuggestedBindings; ++i) {
+            const Action& action = getAction(owner, info.suggestedBindings[i].action);
+            require(!action.set().is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "an action set is attached already");
+            const XrPath path = info.suggestedBindings[i].binding;
+            require(allowsBinding(*profile, owner.paths.textOf(path), owner.vocabulary()), XR_ERROR_PATH_UNSUPPORTED,
+                    "the profile has no such path");
+            suggested.bindings.push_back({action.number, path});
+        }
+        std::erase_if(owner.suggestions, [&](const auto& earlier) { return earlier.profile == suggested.profile; });
+        owner.suggestions.push_back(std::move(suggested));
+        return XR_SUCCESS;
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,210 @@
+#include "xr/simulated/api/attachment.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "xr/simulated/api/actions.h"
+#include "xr/simulated/api/automation.h"
+#include "xr/simulated/api/profiles.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/script/script_profile.h"
+
+namespace simulated {
+namespace {
+
+constexpr double kPressed = 0.5;
+constexpr std::string_view kInput = "/input/";
+
+bool endsIn(std::string_view path, std::initializer_list<std::string_view> components) {
+    return std::any_of(components.begin(), components.end(), [&](std::string_view component) { return path.ends_with(component); });
+}
+
+// The component that a suggested path means for an action of this type, as the specification's rules have it; none: it stays unbound.
+std::optional<std::string> resolve(const Profile& profile, std::string_view user_path, std::string_view path, XrActionType type,
+                                   const Vocabulary& words) {
+    const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {
+        for (const char* component : components) {
+            const std::string whole = std::string(path) + component;
+            if (hasComponent(profile, user_path, whole, words)) return whole;
+        }
+        return std::nullopt;
+    };
+    const bool is_whole = hasComponent(profile, user_path, path, words);
+    const bool is_number = is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/proximity", "/x", "/y"});
+    switch (type) {
+        case XR_ACTION_TYPE_BOOLEAN_INPUT:
+            if (is_number) return std::string(path);
+            return firstOf({"/click", "/value"});
+        case XR_ACTION_TYPE_FLOAT_INPUT:
+            if (is_number) return std::string(path);
+            return firstOf({"/value", "/click"});
+        case XR_ACTION_TYPE_VECTOR2F_INPUT:
+            if (firstOf({"/x"}) && firstOf({"/y"})) return std::string(path);
+            return std::nullopt;
+        case XR_ACTION_TYPE_POSE_INPUT:
+            if (is_whole && path.ends_with("/pose")) return std::string(path);
+            return firstOf({"/pose"});
+        default:
+            if (is_whole && path.starts_with("/output/")) return std::string(path);
+            return std::nullopt;
+    }
+}
+
+std::optional<BoundSource> bind(const Instance& instance, const Profile& profile, XrPath path, XrActionType type) {
+    const std::string& text = instance.paths.textOf(path);
+    const std::string_view user_path = userPathOf(text);
+    const std::optional<std::size_t> device = deviceOf(user_path);
+    if (!device) return std::nullopt;
+    const std::optional<std::string> component =
+        resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type, instance.vocabulary());
+    if (!component) return std::nullopt;
+    const std::size_t start = component->find('/', 1) + 1;
+    const std::size_t end = component->find('/', start);
+    return BoundSource{path, instance.paths.findPath(user_path), *device, component->substr(start, end - start), component->substr(start)};
+}
+
+glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source, XrActionType type) {
+    if (type == XR_ACTION_TYPE_VECTOR2F_INPUT)
+        return {controller.input(source.component + "/x"), controller.input(source.component + "/y")};
+    const double value = controller.input(source.component);
+    if (type == XR_ACTION_TYPE_BOOLEAN_INPUT) return {value >= kPressed ? 1.0 : 0.0, 0.0};
+    return {value, 0.0};
+}
+
+// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
+// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
+Pose poseOf(const ControllerState& controller, const BoundSource& source) {
+    constexpr double kPalm_m = 0.02;
+    if (source.source == "aim") return controller.stage_from_aim;
+    if (source.source == "grip") return controller.stage_from_grip;
+    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
+    grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
+    return compose(controller.stage_from_grip, grip_from_palm);
+}
+
+bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
+    return active.set == action.set && (active.subaction_path == XR_NULL_PATH || active.subaction_path == source.user_path);
+}
+
+bool isActivated(const std::vector<ActiveSet>& active, const AttachedAction& action, const BoundSource& source) {
+    return std::any_of(active.begin(), active.end(), [&](const ActiveSet& set) { return isActivatedBy(set, action, source); });
+}
+
+using Priorities = std::map<std::pair<std::size_t, std::string>, std::uint32_t>;
+
+// The highest priority that any active action has on each source; lower ones are as if they were not bound.
+Priorities highestPriorities(const std::vector<AttachedAction>& actions, const std::vector<ActiveSet>& active) {
+    Priorities highest;
+    for (const AttachedAction& action : actions) {
+        for (const BoundSource& source : action.sources) {
+            if (!isActivated(active, action, source)) continue;
+            auto& priority = highest[{source.device, source.source}];
+            priority = std::max(priority, action.priority);
+        }
+    }
+    return highest;
+}
+
+ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state, const std::vector<ActiveSet>& active,
+                         const Priorities& highest) {
+    ActionReading reading;
+    for (const BoundSource& source : action.sources) {
+        if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
+        if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) continue;
+        const ControllerState& controller = state.device(source.device);
+        if (!controller.tracked) continue;
+        reading.is_active = true;
+        if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
+        // Of several sources the strongest counts; for booleans that is "or".
+        const glm::dvec2 value = valueOf(controller, source, action.type);
+        if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) reading.value = value;
+    }
+    return reading;
+}
+
+}  // namespace
+
+AttachedAction* Attachment::find(std::uint64_t action) {
+    const auto found = std::find_if(actions.begin(), actions.end(), [&](const auto& attached) { return attached.number == action; });
+    return found == actions.end() ? nullptr : &*found;
+}
+
+bool Attachment::isSuggested(const Instance& instance, const Profile& profile) const {
+    const XrPath path = instance.paths.findPath(profile.path);
+    return std::any_of(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
+}
+
+bool Attachment::chooseProfiles(Instance& instance, const Automation& automation) {
+    if (hands == nullptr) {
+        std::vector<Profile> candidates(allProfiles().begin(), allProfiles().end());
+        std::stable_partition(candidates.begin(), candidates.end(),
+                              [&](const Profile& one) { return one.path == instance.simulation->favourite_profile; });
+        for (const Profile& candidate : candidates) {
+            if (!candidate.user_paths.front().starts_with("/user/hand/") || !isSuggested(instance, candidate)) continue;
+            checkInputs(instance.simulation->script, candidate);
+            hands = findProfile(candidate.path);
+            break;
+        }
+    }
+    std::array<const Profile*, kDevices> chosen{hands, hands, nullptr, nullptr};
+    for (std::size_t device = 0; device < kDevices; ++device) {
+        const Profile* const wanted = automation.devices[device].profile;
+        if (wanted != nullptr) chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr;
+    }
+    if (chosen == profiles) return false;
+    profiles = chosen;
+    bindSources(instance);
+    return true;
+}
+
+void Attachment::bindSources(const Instance& instance) {
+    for (AttachedAction& action : actions) action.sources.clear();
+    for (const SuggestedProfile& suggested : suggestions) {
+        const Profile* const profile = findProfile(instance.paths.textOf(suggested.profile));
+        for (const SuggestedBinding& binding : suggested.bindings) {
+            AttachedAction* const action = find(binding.action);
+            if (action == nullptr) continue;
+            auto source = bind(instance, *profile, binding.path, action->type);
+            if (source && profiles[source->device] == profile) action->sources.push_back(std::move(*source));
+        }
+    }
+}
+
+void Attachment::read(const State& state, const std::vector<ActiveSet>& active, XrTime time) {
+    const Priorities highest = highestPriorities(actions, active);
+    for (AttachedAction& action : actions) {
+        for (auto& [subaction_path, reading] : action.readings) {
+            ActionReading now = readAction(action, subaction_path, state, active, highest);
+            if (now.is_active) {
+                now.has_changed = reading.is_active && now.value != reading.value;
+                now.changed_at = reading.is_active && !now.has_changed ? reading.changed_at : time;
+            }
+            reading = now;
+        }
+    }
+}
+
+AttachedAction& getAttached(Session& session, XrAction action) {
+    const Action& described = getAction(session.instance, action);
+    AttachedAction* const attached = session.attachment ? session.attachment->find(described.number) : nullptr;
+    require(attached != nullptr, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action's set is not attached to this session");
+    return *attached;
+}
+
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+    if (!session.attachment || !session.is_running) return std::nullopt;
+    for (const AttachedAction& attached : session.attachment->actions) {
+        if (attached.number != action) continue;
+        const auto reading = attached.readings.find(subaction_path);
+        if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
+        for (const BoundSource& source : attached.sources) {
+            if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
+            const ControllerState& controller = state.device(source.device);
+            if (!controller.tracked) return std::nullopt;
+            return poseOf(controller, source);
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace simulated

@@ -1,0 +1,76 @@
+// Chapter 11, second half: action sets attached to a session, and what their actions read. It keeps all it needs by value: an application
+// may destroy its handles and still have its action spaces located.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "xr/simulated/api/bindings.h"
+#include "xr/simulated/script/script.h"
+
+namespace simulated {
+
+struct Instance;
+struct Session;
+struct Profile;
+struct Automation;
+
+// A binding of the profile in use, resolved for its action's type.
+struct BoundSource {
+    XrPath path;
+    XrPath user_path;
+    std::size_t device = kLeftHand;
+    std::string source;     // "trigger": what priorities compare
+    std::string component;  // "trigger/value"; "thumbstick" for both axes; "grip/pose"; "haptic"
+};
+
+// As of the last xrSyncActions, for one subaction path or for all.
+struct ActionReading {
+    bool is_active = false;
+    glm::dvec2 value{0.0, 0.0};  // booleans are 0 or 1, scalars have y = 0
+    bool has_changed = false;
+    XrTime changed_at = 0;
+};
+
+struct AttachedAction {
+    std::uint64_t number, set;
+    std::uint32_t priority;
+    XrActionType type;
+    std::vector<XrPath> subaction_paths;
+    std::vector<BoundSource> sources;
+    // By subaction path; XR_NULL_PATH is all of them.
+    std::map<XrPath, ActionReading> readings;
+};
+
+struct ActiveSet {
+    std::uint64_t set;
+    XrPath subaction_path;
+};
+
+struct Attachment {
+    std::vector<std::uint64_t> sets;
+    std::vector<SuggestedProfile> suggestions;
+    std::vector<AttachedAction> actions;
+    // The profile that each device plays; none before the first xrSyncActions in focus.
+    std::array<const Profile*, kDevices> profiles{};
+    // What the hands play as long as nobody says otherwise.
+    const Profile* hands = nullptr;
+
+    [[nodiscard]] AttachedAction* find(std::uint64_t action);
+    // Whether any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
+    bool chooseProfiles(Instance& instance, const Automation& automation);
+    [[nodiscard]] bool isSuggested(const Instance& instance, const Profile& profile) const;
+    void bindSources(const Instance& instance);
+    void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
+};
+
+// XR_ERROR_ACTIONSET_NOT_ATTACHED.
+AttachedAction& getAttached(Session& session, XrAction action);
+
+// Where a pose action's source is; none while it is inactive.
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
+
+}  // namespace simulated

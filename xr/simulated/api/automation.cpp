@@ -1,0 +1,120 @@
+#include "xr/simulated/api/automation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/poses.h"
+#include "xr/simulated/api/profiles.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/spaces.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::string_view kInputPrefix = "/input/";
+
+std::size_t checkedDevice(const Session& session, XrPath user_path) {
+    const std::optional<std::size_t> device = deviceOf(session.instance.paths.textOf(user_path));
+    require(device.has_value(), XR_ERROR_PATH_UNSUPPORTED, "not the path of a device");
+    return *device;
+}
+
+struct Input {
+    DeviceOverride& device;
+    std::string name;  // "trigger/value"; "thumbstick" of a vector
+};
+
+// An input of the device, by its whole path. `suffix` is what a vector's components are called beyond that.
+Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const char* suffix) {
+    DeviceOverride& device = session.automation.devices[checkedDevice(session, user_path)];
+    const std::string &user = session.instance.paths.textOf(user_path), &source = session.instance.paths.textOf(source_path);
+    const std::string prefix = user + std::string(kInputPrefix);
+    require(source.starts_with(prefix), XR_ERROR_PATH_UNSUPPORTED, "not an input of this device");
+    const auto has = [&](const Profile& profile) {
+        return session.instance.has(profile) &&
+               hasComponent(profile, user, source.substr(user.size()) + suffix, session.instance.vocabulary());
+    };
+    bool is_known = device.profile != nullptr && has(*device.profile);
+    if (device.profile == nullptr) {
+        for (const Profile& profile : allProfiles()) is_known = is_known || has(profile);
+    }
+    require(is_known, XR_ERROR_PATH_UNSUPPORTED, "the device's profile has no such input");
+    return {device, source.substr(prefix.size())};
+}
+
+XrResult setInput(const char* function, XrSession session, XrPath user_path, XrPath source_path, double value) {
+    return answer(function, [&] {
+        Session& owner = getSession(session);
+        require(std::isfinite(value), XR_ERROR_VALIDATION_FAILURE, "not a number");
+        const Input input = checkedInput(owner, user_path, source_path, "");
+        input.device.inputs[input.name] = value;
+        return successOf(owner);
+    });
+}
+
+}  // namespace
+
+void Automation::applyTo(State& state) const {
+    for (std::size_t i = 0; i < kDevices; ++i) {
+        ControllerState& device = state.device(i);
+        if (devices[i].is_active) device.tracked = *devices[i].is_active;
+        for (const auto& [name, value] : devices[i].inputs) device.inputs[name] = value;
+        if (devices[i].stage_from_grip) device.stage_from_grip = *devices[i].stage_from_grip;
+        if (devices[i].stage_from_aim) device.stage_from_aim = *devices[i].stage_from_aim;
+    }
+}
+
+XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile, XrPath topLevelPath, XrBool32 isActive) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const Profile* const profile = findProfile(owner.instance.paths.textOf(interactionProfile));
+        require(profile != nullptr && owner.instance.has(*profile), XR_ERROR_PATH_UNSUPPORTED, "no such interaction profile");
+        const std::size_t device = checkedDevice(owner, topLevelPath);
+        const std::string& user_path = owner.instance.paths.textOf(topLevelPath);
+        const bool is_for_it = std::find(profile->user_paths.begin(), profile->user_paths.end(), user_path) != profile->user_paths.end();
+        require(is_for_it, XR_ERROR_PATH_UNSUPPORTED, "the profile is not for this device");
+        DeviceOverride& moved = owner.automation.devices[device];
+        // Another controller's buttons are others.
+        if (moved.profile != profile) moved.inputs.clear();
+        moved.profile = profile;
+        moved.is_active = isActive != XR_FALSE;
+        return successOf(owner);
+    });
+}
+
+XrResult xrSetInputDeviceStateBoolEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrBool32 state) {
+    return setInput(__func__, session, topLevelPath, inputSourcePath, state != XR_FALSE ? 1 : 0);
+}
+
+XrResult xrSetInputDeviceStateFloatEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, float state) {
+    return setInput(__func__, session, topLevelPath, inputSourcePath, static_cast<double>(state));
+}
+
+XrResult xrSetInputDeviceStateVector2fEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrVector2f state) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        require(std::isfinite(state.x) && std::isfinite(state.y), XR_ERROR_VALIDATION_FAILURE, "not a number");
+        const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "/x");
+        input.device.inputs[input.name + "/x"] = state.x;
+        input.device.inputs[input.name + "/y"] = state.y;
+        return successOf(owner);
+    });
+}
+
+XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrSpace space, XrPosef pose) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "");
+        require(input.name.ends_with("/pose"), XR_ERROR_PATH_UNSUPPORTED, "not a pose");
+        checkPose(pose);
+        const std::optional<Pose> stage_from_space =
+            stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));
+        require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "nobody knows where the space is");
+        const Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
+        (input.name == "aim/pose" ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,50 @@
+#include "xr/simulated/api/clock.h"
+
+#include <utility>
+
+namespace simulated {
+
+Clock::Clock(bool real, XrDuration period) : is_real(real), frame_period(period) {}
+
+Clock::Frame Clock::nextFrame() {
+    if (!birth) birth = std::chrono::steady_clock::now();
+    ++frame;
+    // A frame that comes late takes the next place that is left, as on a display.
+    if (is_real && (frame > 0 || is_early)) frame = std::max<std::int64_t>(frame, (now() - origin) / frame_period + 1);
+    const std::chrono::nanoseconds wake(shown() - frame_period - kStart);
+    return {shown(), *birth + std::max(wake, std::chrono::nanoseconds(0))};
+}
+
+void Clock::pass() {
+    if (!birth) birth = std::chrono::steady_clock::now();
+    if (!is_real) ++frame;
+}
+
+XrTime Clock::now() const {
+    if (!is_real || !birth) return shown();
+    return kStart + std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - *birth).count();
+}
+
+void Clock::setPeriod(XrDuration period) {
+    if (frame > 0) {
+        origin = shown();
+        frame = 0;
+    }
+    frame_period = period;
+}
+
+std::int64_t Clock::monotonicOffset() {
+    if (offset) return *offset;
+    const auto monotonic = std::chrono::steady_clock::now();
+    if (is_real && !birth) {
+        birth = monotonic;
+        is_early = true;
+    }
+    const auto nanoseconds = [](auto time) {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
+    };
+    offset = is_real ? nanoseconds(*birth) - kStart : nanoseconds(monotonic) - now();
+    return *offset;
+}
+
+}  // namespace simulated

@@ -1,0 +1,68 @@
+#include "xr/simulated/api/events.h"
+
+#include <algorithm>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::size_t kMostEvents = 64;
+
+XrSession sessionOf(const XrEventDataBuffer& event) {
+    switch (event.type) {
+        case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED:
+            return reinterpret_cast<const XrEventDataSessionStateChanged&>(event).session;
+        case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
+            return reinterpret_cast<const XrEventDataInteractionProfileChanged&>(event).session;
+        case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
+            return reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).session;
+        case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
+            return reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).session;
+        default:
+            break;
+    }
+    if (event.type == XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT)
+        return reinterpret_cast<const XrEventDataUserPresenceChangedEXT&>(event).session;
+    return XR_NULL_HANDLE;
+}
+
+}  // namespace
+
+void Events::pushBuffer(const XrEventDataBuffer& event) {
+    if (waiting.size() < kMostEvents)
+        waiting.push_back(event);
+    else
+        ++lost;
+}
+
+bool Events::pop(XrEventDataBuffer& event) {
+    if (waiting.empty() && lost > 0) {
+        XrEventDataEventsLost loss{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, lost};
+        lost = 0;
+        push(loss);
+    }
+    if (waiting.empty()) return false;
+    event = waiting.front();
+    waiting.pop_front();
+    return true;
+}
+
+void Events::forget(XrSession session) {
+    std::erase_if(waiting, [&](const auto& event) { return sessionOf(event) == session; });
+}
+
+XrResult xrPollEvent(XrInstance instance, XrEventDataBuffer* eventData) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        XrEventDataBuffer& event = checked(eventData, XR_TYPE_EVENT_DATA_BUFFER);
+        if (owner.events.pop(event)) return XR_SUCCESS;
+        if (owner.session != nullptr) owner.session->idle();
+        return XR_EVENT_UNAVAILABLE;
+    });
+}
+
+}  // namespace simulated

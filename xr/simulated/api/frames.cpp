@@ -1,0 +1,136 @@
+// Sections 10.3 to 10.5: xrLocateViews and the frame loop. In lock-step xrWaitFrame moves time on by one period and does not sleep.
+#include <condition_variable>
+#include <thread>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/layers.h"
+#include "xr/simulated/api/poses.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/spaces.h"
+#include "xr/simulated/api/structures.h"
+#include "xr/simulated/compose/show.h"
+
+namespace simulated {
+namespace {
+
+constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
+                           kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
+
+// An xrWaitFrame on another thread waits here for xrBeginFrame.
+std::condition_variable& frameBegun() {
+    static std::condition_variable begun;
+    return begun;
+}
+
+Session& runningSession(XrSession session) {
+    Session& found = getSession(session);
+    require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+    require(!found.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no frames");
+    return found;
+}
+
+void checkBlendMode(XrEnvironmentBlendMode mode) {
+    const bool is_known = mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such blend mode");
+    require(mode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "only OPAQUE");
+}
+
+}  // namespace
+
+void wakeFrameWaiters() { frameBegun().notify_all(); }
+
+XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
+                       uint32_t* viewCountOutput, XrView* views) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        const XrViewLocateInfo& info = checked(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
+        XrViewState& output = checked(viewState, XR_TYPE_VIEW_STATE);
+        checkViewConfiguration(owner.instance, info.viewConfigurationType);
+        const Space& space = getSpace(owner, info.space);
+        checkTime(info.displayTime);
+        output.viewStateFlags = 0;
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return successOf(owner);
+        for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW);
+        const State state = owner.at(info.displayTime);
+        const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
+        for (std::size_t eye = 0; eye < kEyes; ++eye) {
+            const EyeState& seen = state.eyes[eye];
+            Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
+            // What is not known is not told either.
+            if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
+                if (!state.head_place_known) pose.position = glm::dvec3(0.0);
+                if (!state.head_turn_known) pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0);
+            }
+            views[eye].pose = toXr(pose);
+            views[eye].fov = toXr(seen.fov);
+        }
+        const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
+        if (stage_from_space && (state.head_turn_known || is_in_head)) output.viewStateFlags = kTurnsKnown;
+        if (stage_from_space && (state.head_place_known || is_in_head)) output.viewStateFlags |= kPlacesKnown;
+        return successOf(owner);
+    });
+}
+
+XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, XrFrameState* frameState) {
+    Clock::Frame frame{};
+    std::unique_lock lock(runtimeLock());
+    const XrResult result = answerUnlocked(__func__, [&] {
+        runningSession(session);
+        checkOptional(frameWaitInfo, XR_TYPE_FRAME_WAIT_INFO);
+        XrFrameState& output = checked(frameState, XR_TYPE_FRAME_STATE);
+        // The session may end meanwhile, so it is looked up anew each time.
+        frameBegun().wait(lock, [&] {
+            const Session* const waiting = find<Session>(session);
+            return waiting == nullptr || !waiting->is_running || !waiting->frames.waited;
+        });
+        Session& owner = runningSession(session);
+        Simulation& simulation = *owner.instance.simulation;
+        frame = simulation.clock.nextFrame();
+        const State state = simulation.at(frame.display_time);
+        owner.meetEvents(frame.display_time);
+        owner.announceMasks(state);
+        owner.announcePresence(state);
+        const bool is_visible = owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
+        owner.frames.waited = frame.display_time;
+        owner.frames.should_render = is_visible && state.should_render;
+        output.predictedDisplayTime = frame.display_time;
+        output.predictedDisplayPeriod = simulation.clock.period();
+        output.shouldRender = owner.frames.should_render;
+        if (!simulation.clock.isReal()) frame.wake_time = {};
+        return successOf(owner);
+    });
+    lock.unlock();
+    deliverMessages();
+    if (XR_SUCCEEDED(result)) std::this_thread::sleep_until(frame.wake_time);
+    return result;
+}
+
+XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo) {
+    return answer(__func__, [&] {
+        Session& owner = runningSession(session);
+        checkOptional(frameBeginInfo, XR_TYPE_FRAME_BEGIN_INFO);
+        require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
+        const bool is_discarding = owner.frames.begun.has_value();
+        owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
+        wakeFrameWaiters();
+        return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
+    });
+}
+
+XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
+    return answer(__func__, [&] {
+        Session& owner = runningSession(session);
+        const XrFrameEndInfo& info = checked(frameEndInfo, XR_TYPE_FRAME_END_INFO);
+        require(owner.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
+        checkTime(info.displayTime);
+        checkBlendMode(info.environmentBlendMode);
+        checkLayers(owner, info);
+        owner.frames.begun.reset();
+        const State state = owner.at(info.displayTime);
+        showFrame(owner, info, state);
+        owner.step(state);
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,101 @@
+// XR_EXT_hand_tracking: hands that hold the script's controllers; trigger and squeeze close the fingers.
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/poses.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/spaces.h"
+#include "xr/simulated/api/structures.h"
+#include "xr/simulated/script/hand_model.h"
+
+namespace simulated {
+namespace {
+
+struct HandTracker : Object {
+    using Handle = XrHandTrackerEXT;
+
+    Session& session;
+    Side side;
+
+    HandTracker(Session& owner, Side of_side) : session(owner), side(of_side) {}
+};
+
+constexpr XrSpaceLocationFlags kPlaceKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
+                                             XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+constexpr XrDuration kStep = 1'000'000;
+
+// In the base space; none while the hand is not seen.
+std::optional<std::array<HandJoint, kHandJoints>> jointsAt(const HandTracker& tracker, const Space& base, XrTime time) {
+    const State state = tracker.session.at(time);
+    const ControllerState& controller = state.controllers[tracker.side];
+    const std::optional<Pose> stage_from_base = stageFromSpace(base, state);
+    if (!controller.tracked || !stage_from_base) return std::nullopt;
+    auto joints =
+        handJoints(tracker.side, controller.stage_from_grip, controller.input("trigger/value"), controller.input("squeeze/value"));
+    for (HandJoint& joint : joints) joint.stage_from_joint = compose(inverse(*stage_from_base), joint.stage_from_joint);
+    return joints;
+}
+
+void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, XrHandJointLocationsEXT& locations,
+                  XrHandJointVelocitiesEXT* velocities) {
+    // Hands are seen in focus alone.
+    const bool is_seen = tracker.session.is_running && tracker.session.state == XR_SESSION_STATE_FOCUSED;
+    const auto now = is_seen ? jointsAt(tracker, base, time) : std::nullopt;
+    locations.isActive = now ? XR_TRUE : XR_FALSE;
+    for (std::size_t i = 0; i < kHandJoints; ++i) {
+        XrHandJointLocationEXT& joint = locations.jointLocations[i];
+        joint = now ? XrHandJointLocationEXT{kPlaceKnown, toXr((*now)[i].stage_from_joint), static_cast<float>((*now)[i].radius_m)}
+                    : XrHandJointLocationEXT{0, toXr(Pose{}), 0};
+    }
+    if (velocities == nullptr) return;
+    const auto before = now ? jointsAt(tracker, base, time - kStep) : std::nullopt;
+    const auto after = now ? jointsAt(tracker, base, time + kStep) : std::nullopt;
+    for (std::size_t i = 0; i < kHandJoints; ++i) {
+        XrHandJointVelocityEXT& joint = velocities->jointVelocities[i];
+        joint = {0, {0, 0, 0}, {0, 0, 0}};
+        if (!before || !after) continue;
+        const glm::vec3 linear(((*after)[i].stage_from_joint.position - (*before)[i].stage_from_joint.position) / (2e-9 * kStep));
+        joint.velocityFlags = XR_SPACE_VELOCITY_LINEAR_VALID_BIT;
+        joint.linearVelocity = {linear.x, linear.y, linear.z};
+    }
+}
+
+}  // namespace
+
+XrResult xrCreateHandTrackerEXT(XrSession session, const XrHandTrackerCreateInfoEXT* createInfo, XrHandTrackerEXT* handTracker) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const auto& info = checked(createInfo, XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
+        XrHandTrackerEXT& output = checkedOutput(handTracker);
+        require(info.hand == XR_HAND_LEFT_EXT || info.hand == XR_HAND_RIGHT_EXT, XR_ERROR_VALIDATION_FAILURE, "no such hand");
+        require(info.handJointSet == XR_HAND_JOINT_SET_DEFAULT_EXT, XR_ERROR_VALIDATION_FAILURE, "no such set of joints");
+        output = handleOf(adopt(owner, std::make_unique<HandTracker>(owner, info.hand == XR_HAND_LEFT_EXT ? kLeft : kRight)));
+        return successOf(owner);
+    });
+}
+
+XrResult xrDestroyHandTrackerEXT(XrHandTrackerEXT handTracker) {
+    return answer(__func__, [&] {
+        destroyObject(get<HandTracker>(handTracker));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrLocateHandJointsEXT(XrHandTrackerEXT handTracker, const XrHandJointsLocateInfoEXT* locateInfo,
+                               XrHandJointLocationsEXT* locations) {
+    return answer(__func__, [&] {
+        const HandTracker& tracker = get<HandTracker>(handTracker);
+        checkNotLost(tracker.session);
+        const auto& info = checked(locateInfo, XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
+        auto& output = checked(locations, XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
+        require(output.jointCount == kHandJoints && output.jointLocations != nullptr, XR_ERROR_VALIDATION_FAILURE, "a hand has 26 joints");
+        auto* const velocities = reinterpret_cast<XrHandJointVelocitiesEXT*>(
+            const_cast<XrBaseInStructure*>(findInChain(output.next, XR_TYPE_HAND_JOINT_VELOCITIES_EXT)));
+        require(velocities == nullptr || (velocities->jointCount == kHandJoints && velocities->jointVelocities != nullptr),
+                XR_ERROR_VALIDATION_FAILURE, "a hand has 26 joints");
+        const Space& base = getSpace(tracker.session, info.baseSpace);
+        checkTime(info.time);
+        locateJoints(tracker, base, info.time, output, velocities);
+        return successOf(tracker.session);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,72 @@
+// Every object behind a handle, in a tree: children end with their parent. A handle's number is never used twice, so that one
+// that was destroyed, or that belongs to another type, is known as invalid.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "xr/simulated/api/answer.h"
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+struct Object {
+    std::uint64_t number = 0;
+    Object* parent = nullptr;
+    std::vector<std::unique_ptr<Object>> children;
+
+    Object() = default;
+    Object(const Object&) = delete;
+    Object& operator=(const Object&) = delete;
+    virtual ~Object() = default;
+};
+
+// The only objects without an owner above them: the root, and the process's table of all of them.
+Object& root();
+Object* findObject(std::uint64_t number);
+
+// XR_ERROR_LIMIT_REACHED if the parent has as many children as this runtime holds.
+void adoptObject(Object& parent, std::unique_ptr<Object> child);
+// Children first, in the reverse order of their creation.
+void destroyObject(Object& object);
+
+template <class Handle>
+std::uint64_t numberOf(Handle handle) {
+    return reinterpret_cast<std::uint64_t>(handle);
+}
+
+template <class T>
+typename T::Handle handleOf(const T& object) {
+    return reinterpret_cast<typename T::Handle>(object.number);
+}
+
+template <class T>
+T* find(typename T::Handle handle) {
+    return dynamic_cast<T*>(findObject(numberOf(handle)));
+}
+
+template <class T>
+T& get(typename T::Handle handle) {
+    T* const object = find<T>(handle);
+    require(object != nullptr, XR_ERROR_HANDLE_INVALID, "no such handle of this type");
+    return *object;
+}
+
+template <class T>
+T& adopt(Object& parent, std::unique_ptr<T> child) {
+    T& object = *child;
+    adoptObject(parent, std::move(child));
+    return object;
+}
+
+// The ancestor of type T: a swapchain's session, an action's instance.
+template <class T>
+T& ancestor(Object& object) {
+    Object* above = object.parent;
+    while (dynamic_cast<T*>(above) == nullptr) above = above->parent;
+    return dynamic_cast<T&>(*above);
+}
+
+}  // namespace simulated

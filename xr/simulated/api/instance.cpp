@@ -1,0 +1,157 @@
+#include "xr/simulated/api/instance.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/structures.h"
+#include "xr/simulated/extensions.h"
+#include "xr/simulated/names.h"
+
+namespace simulated {
+namespace {
+
+std::vector<Extension> offeredExtensions(const Script& script) {
+    std::vector<Extension> offered;
+    for (const Extension& extension : kExtensions) {
+        if (script.allowsExtension(extension.name)) offered.push_back(extension);
+    }
+    return offered;
+}
+
+// A broken script is reported when the instance is made; until then it takes nothing away.
+Script scriptBeforeInstance() {
+    try {
+        return scriptOfEnvironment();
+    } catch (const ScriptError&) { return {}; }
+}
+
+void checkApplication(const XrApplicationInfo& application) {
+    const auto isEnded = [](const auto& name) { return strnlen(name, sizeof name) < sizeof name; };
+    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "nothing ends a name");
+    require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
+    textOf(application.engineName);
+    const XrVersion version = application.apiVersion;
+    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED,
+            "this runtime implements OpenXR 1.0 and 1.1");
+}
+
+[[noreturn]] void refuseExtension(const char* name) {
+    // Programs of other graphics are not let into a session that cannot be: they hear at once what there is.
+    for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
+        if (std::strcmp(name, graphics) != 0) continue;
+        throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT,
+                      std::string(name) + ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable"};
+    }
+    throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
+}
+
+std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
+    require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE,
+            "an array of extension names is missing");
+    const std::vector<Extension> offered = offeredExtensions(script);
+    std::set<std::string> names;
+    for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
+        const char* const name = info.enabledExtensionNames[i];
+        require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
+        const bool is_offered =
+            std::any_of(offered.begin(), offered.end(), [&](const auto& one) { return std::strcmp(one.name, name) == 0; });
+        if (!is_offered) refuseExtension(name);
+        names.emplace(name);
+    }
+    return names;
+}
+
+template <std::size_t size, class Value>
+XrResult spell(char (&text)[size], const char* name, const char* unknown_prefix, Value value) {
+    if (name != nullptr)
+        copyText(text, name);
+    else
+        std::snprintf(text, size, "%s%d", unknown_prefix, static_cast<int>(value));
+    return XR_SUCCESS;
+}
+
+}  // namespace
+
+Instance& getInstance(XrInstance instance) {
+    Instance& owner = get<Instance>(instance);
+    require(!owner.lost_from || owner.simulation->clock.now() < *owner.lost_from, XR_ERROR_INSTANCE_LOST, "the script lost it");
+    return owner;
+}
+
+XrResult xrEnumerateApiLayerProperties(uint32_t propertyCapacityInput, uint32_t* propertyCountOutput, XrApiLayerProperties* properties) {
+    // The loader knows the layers; a runtime has none.
+    return answer(__func__, [&] { return fillArray(propertyCapacityInput, propertyCountOutput, properties, {}); });
+}
+
+XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t propertyCapacityInput, uint32_t* propertyCountOutput,
+                                                XrExtensionProperties* properties) {
+    return answer(__func__, [&] {
+        require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, "a runtime has no layers");
+        const std::vector<Extension> offered = offeredExtensions(scriptBeforeInstance());
+        if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) return XR_SUCCESS;
+        for (std::size_t i = 0; i < offered.size(); ++i) checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES);
+        for (std::size_t i = 0; i < offered.size(); ++i) {
+            copyText(properties[i].extensionName, offered[i].name);
+            properties[i].extensionVersion = offered[i].version;
+        }
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* instance) {
+    const CreationMessenger messenger(createInfo);
+    return answer(__func__, [&] {
+        const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
+        XrInstance& output = checkedOutput(instance);
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no instance creation flags are known");
+        // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
+        checkApplication(info.applicationInfo);
+        auto created = std::make_unique<Instance>();
+        require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
+        created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
+        // Last, since it empties the folder that is written to and takes over from an instance that was lost.
+        created->extensions = checkedExtensions(info, scriptOfEnvironment());
+        created->simulation = Simulation::begin();
+        output = handleOf(adopt(root(), std::move(created)));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrDestroyInstance(XrInstance instance) {
+    return answer(__func__, [&] {
+        destroyObject(get<Instance>(instance));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrGetInstanceProperties(XrInstance instance, XrInstanceProperties* instanceProperties) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        XrInstanceProperties& properties = checked(instanceProperties, XR_TYPE_INSTANCE_PROPERTIES);
+        properties.runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
+        copyText(properties.runtimeName, "Simulated OpenXR runtime");
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrResultToString(XrInstance instance, XrResult value, char buffer[XR_MAX_RESULT_STRING_SIZE]) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
+        auto& text = *reinterpret_cast<char(*)[XR_MAX_RESULT_STRING_SIZE]>(buffer);
+        return spell(text, nameOf(value), XR_SUCCEEDED(value) ? "XR_UNKNOWN_SUCCESS_" : "XR_UNKNOWN_FAILURE_", value);
+    });
+}
+
+XrResult xrStructureTypeToString(XrInstance instance, XrStructureType value, char buffer[XR_MAX_STRUCTURE_NAME_SIZE]) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
+        auto& text = *reinterpret_cast<char(*)[XR_MAX_STRUCTURE_NAME_SIZE]>(buffer);
+        return spell(text, nameOf(value), "XR_UNKNOWN_STRUCTURE_TYPE_", value);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,66 @@
+// Chapters 4 and 5: an instance, its system, and all that lives as long as they do.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "xr/simulated/api/bindings.h"
+#include "xr/simulated/api/events.h"
+#include "xr/simulated/api/handles.h"
+#include "xr/simulated/api/messages.h"
+#include "xr/simulated/api/paths.h"
+#include "xr/simulated/api/profiles.h"
+#include "xr/simulated/api/simulation.h"
+
+namespace simulated {
+
+struct Session;
+
+struct Instance : Object {
+    using Handle = XrInstance;
+
+    // Of API 1.1, not 1.0.
+    bool is_1_1 = false;
+    std::set<std::string> extensions;
+    Paths paths;
+    Events events;
+    std::unique_ptr<Simulation> simulation;
+    // Announced by the script; calls fail once the grace is over.
+    std::optional<XrTime> lost_from;
+    // What the application suggested, by interaction profile, in the order in which it first named them.
+    std::vector<SuggestedProfile> suggestions;
+    bool has_asked_requirements = false;
+    ObjectNames object_names;
+    // What xrGetVulkanGraphicsDevice(2)KHR gave and for which VkInstance, and where the functions of each VkInstance come from.
+    VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
+    VkInstance graphics_instance = VK_NULL_HANDLE;
+    std::map<VkInstance, PFN_vkGetInstanceProcAddr> vulkan_loaders;
+    Session* session = nullptr;
+
+    ~Instance() override { Simulation::end(std::move(simulation)); }
+
+    [[nodiscard]] bool has(const Profile& profile) const {
+        return profile.since == Since::k1_0 || is_1_1 || extensions.contains(std::string(profile.extension));
+    }
+    [[nodiscard]] Vocabulary vocabulary() const {
+        return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)};
+    }
+    // What the core has since 1.1, and what 1.0 has with an extension.
+    [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
+};
+
+// XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST.
+Instance& getInstance(XrInstance instance);
+
+constexpr XrSystemId kSystemId = 1;
+constexpr std::uint32_t kMostLayers = XR_MIN_COMPOSITION_LAYERS_SUPPORTED;
+constexpr std::uint32_t kMostSwapchainPixels = 16384;
+
+// XR_ERROR_SYSTEM_INVALID.
+void checkSystem(XrSystemId system);
+// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for mono, XR_ERROR_VALIDATION_FAILURE for what is none.
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type);
+
+}  // namespace simulated

@@ -1,0 +1,222 @@
+#include "xr/simulated/api/messages.h"
+
+#include <cstring>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr XrDebugUtilsMessageSeverityFlagsEXT kSeverities =
+    XR_DEBUG_UTILS_MESSAGE_SEVERITY_VERBOSE_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT |
+    XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+constexpr XrDebugUtilsMessageTypeFlagsEXT kTypes =
+    XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+    XR_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_TYPE_CONFORMANCE_BIT_EXT;
+
+// A message for one messenger, with all that it points to.
+struct Pending {
+    PFN_xrDebugUtilsMessengerCallbackEXT callback;
+    void* user_data;
+    XrDebugUtilsMessageSeverityFlagsEXT severity;
+    XrDebugUtilsMessageTypeFlagsEXT types;
+    std::string id, function, text;
+    std::vector<std::string> labels;
+    std::vector<std::pair<XrDebugUtilsObjectNameInfoEXT, std::string>> objects;
+};
+
+std::vector<Pending>& pending() {
+    thread_local std::vector<Pending> messages;
+    return messages;
+}
+
+const XrDebugUtilsMessengerCreateInfoEXT*& creationMessenger() {
+    thread_local const XrDebugUtilsMessengerCreateInfoEXT* messenger = nullptr;
+    return messenger;
+}
+
+void queueFor(const Pending& message, XrDebugUtilsMessageSeverityFlagsEXT severities, XrDebugUtilsMessageTypeFlagsEXT types,
+              PFN_xrDebugUtilsMessengerCallbackEXT callback, void* user_data) {
+    if ((severities & message.severity) == 0 || (types & message.types) == 0) return;
+    pending().push_back(message);
+    pending().back().callback = callback;
+    pending().back().user_data = user_data;
+}
+
+void queueForAll(const Pending& message) {
+    if (const auto* const creation = creationMessenger())
+        queueFor(message, creation->messageSeverities, creation->messageTypes, creation->userCallback, creation->userData);
+    for (const auto& instance : root().children) {
+        for (const auto& child : instance->children) {
+            const auto* const messenger = dynamic_cast<const Messenger*>(child.get());
+            if (messenger != nullptr) queueFor(message, messenger->severities, messenger->types, messenger->callback, messenger->user_data);
+        }
+    }
+}
+
+std::vector<std::string> labelsOf(const Instance* instance) {
+    std::vector<std::string> labels;
+    if (instance == nullptr || instance->session == nullptr) return labels;
+    const Labels& current = instance->session->labels;
+    if (current.inserted) labels.push_back(*current.inserted);
+    labels.insert(labels.end(), current.regions.rbegin(), current.regions.rend());
+    return labels;
+}
+
+const XrDebugUtilsMessengerCreateInfoEXT& checkedMessenger(const XrDebugUtilsMessengerCreateInfoEXT* info) {
+    const auto& checked_info = checked(info, XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+    require(checked_info.messageSeverities != 0 && (checked_info.messageSeverities & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE,
+            "no or unknown severities");
+    require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE,
+            "no or unknown types of messages");
+    require(checked_info.userCallback != nullptr, XR_ERROR_VALIDATION_FAILURE, "nobody to call back");
+    return checked_info;
+}
+
+std::string checkedLabel(const XrDebugUtilsLabelEXT* label) {
+    const auto& info = checked(label, XR_TYPE_DEBUG_UTILS_LABEL_EXT);
+    require(info.labelName != nullptr, XR_ERROR_VALIDATION_FAILURE, "a label has no name");
+    return info.labelName;
+}
+
+bool wantsMessages(const XrInstanceCreateInfo& info) {
+    for (std::uint32_t i = 0; info.enabledExtensionNames != nullptr && i < info.enabledExtensionCount; ++i) {
+        const char* const name = info.enabledExtensionNames[i];
+        if (name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+CreationMessenger::CreationMessenger(const XrInstanceCreateInfo* info) {
+    if (info == nullptr || info->type != XR_TYPE_INSTANCE_CREATE_INFO || !wantsMessages(*info)) return;
+    const auto* link = static_cast<const XrBaseInStructure*>(info->next);
+    for (int i = 0; link != nullptr && i < 64; ++i, link = link->next) {
+        if (link->type != XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT) continue;
+        const auto* const found = reinterpret_cast<const XrDebugUtilsMessengerCreateInfoEXT*>(link);
+        if (found->userCallback != nullptr) creationMessenger() = found;
+        return;
+    }
+}
+
+CreationMessenger::~CreationMessenger() { creationMessenger() = nullptr; }
+
+void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text) {
+    const Instance* const instance = root().children.empty() ? nullptr : dynamic_cast<const Instance*>(root().children.front().get());
+    queueForAll({nullptr, nullptr, XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, type, id, function, text, labelsOf(instance), {}});
+}
+
+void deliverMessages() {
+    // What a callback does may queue others.
+    for (const Pending& message : std::exchange(pending(), {})) {
+        std::vector<XrDebugUtilsLabelEXT> labels;
+        for (const std::string& label : message.labels) labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()});
+        std::vector<XrDebugUtilsObjectNameInfoEXT> objects;
+        for (const auto& [object, name] : message.objects) {
+            objects.push_back(object);
+            objects.back().objectName = name.empty() ? nullptr : name.c_str();
+        }
+        const XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
+                                                        nullptr,
+                                                        message.id.c_str(),
+                                                        message.function.c_str(),
+                                                        message.text.c_str(),
+                                                        static_cast<std::uint32_t>(objects.size()),
+                                                        objects.data(),
+                                                        static_cast<std::uint32_t>(labels.size()),
+                                                        labels.data()};
+        message.callback(message.severity, message.types, &data, message.user_data);
+    }
+}
+
+XrResult xrCreateDebugUtilsMessengerEXT(XrInstance instance, const XrDebugUtilsMessengerCreateInfoEXT* createInfo,
+                                        XrDebugUtilsMessengerEXT* messenger) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrDebugUtilsMessengerCreateInfoEXT& info = checkedMessenger(createInfo);
+        XrDebugUtilsMessengerEXT& output = checkedOutput(messenger);
+        auto created = std::make_unique<Messenger>();
+        created->severities = info.messageSeverities;
+        created->types = info.messageTypes;
+        created->callback = info.userCallback;
+        created->user_data = info.userData;
+        output = handleOf(adopt(owner, std::move(created)));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrDestroyDebugUtilsMessengerEXT(XrDebugUtilsMessengerEXT messenger) {
+    return answer(__func__, [&] {
+        destroyObject(get<Messenger>(messenger));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSeverityFlagsEXT messageSeverity,
+                                      XrDebugUtilsMessageTypeFlagsEXT messageTypes,
+                                      const XrDebugUtilsMessengerCallbackDataEXT* callbackData) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        const auto& data = checked(callbackData, XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT);
+        require(messageSeverity != 0 && (messageSeverity & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE, "no or unknown severities");
+        require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "no or unknown types of messages");
+        require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
+        require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
+        const auto textOr = [](const char* text) { return std::string(text == nullptr ? "" : text); };
+        Pending message{
+            nullptr,          nullptr, messageSeverity, messageTypes, textOr(data.messageId), textOr(data.functionName), data.message,
+            labelsOf(&owner), {}};
+        for (std::uint32_t i = 0; i < data.objectCount; ++i) {
+            const auto& object = data.objects[i];
+            const auto name = owner.object_names.find({object.objectType, object.objectHandle});
+            message.objects.emplace_back(object, name == owner.object_names.end() ? std::string() : name->second);
+        }
+        queueForAll(message);
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObjectNameInfoEXT* nameInfo) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const auto& info = checked(nameInfo, XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+        require(info.objectType != XR_OBJECT_TYPE_UNKNOWN && info.objectHandle != 0, XR_ERROR_VALIDATION_FAILURE, "no object to name");
+        const std::pair key(info.objectType, info.objectHandle);
+        if (info.objectName == nullptr || *info.objectName == '\0')
+            owner.object_names.erase(key);
+        else
+            owner.object_names[key] = info.objectName;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrSessionBeginDebugUtilsLabelRegionEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        owner.labels.regions.push_back(checkedLabel(labelInfo));
+        owner.labels.inserted.reset();
+        return successOf(owner);
+    });
+}
+
+XrResult xrSessionEndDebugUtilsLabelRegionEXT(XrSession session) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        owner.labels.inserted.reset();
+        if (!owner.labels.regions.empty()) owner.labels.regions.pop_back();
+        return successOf(owner);
+    });
+}
+
+XrResult xrSessionInsertDebugUtilsLabelEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        owner.labels.inserted = checkedLabel(labelInfo);
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,48 @@
+// XR_EXT_debug_utils: why a call was refused, told to the application's own function. Messages wait until the runtime's lock is free, so
+// that this function may call whatever it likes.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "xr/simulated/api/handles.h"
+
+namespace simulated {
+
+struct Instance;
+
+struct Messenger : Object {
+    using Handle = XrDebugUtilsMessengerEXT;
+
+    XrDebugUtilsMessageSeverityFlagsEXT severities = 0;
+    XrDebugUtilsMessageTypeFlagsEXT types = 0;
+    PFN_xrDebugUtilsMessengerCallbackEXT callback = nullptr;
+    void* user_data = nullptr;
+};
+
+// By type and handle, for messages that speak of the object.
+using ObjectNames = std::map<std::pair<XrObjectType, std::uint64_t>, std::string>;
+
+// Regions that a session is in, and the label inserted last; the latest at the end.
+struct Labels {
+    std::vector<std::string> regions;
+    std::optional<std::string> inserted;
+};
+
+// While it lives, the messenger in the chain of an xrCreateInstance hears of this thread's refusals.
+class CreationMessenger {
+public:
+    explicit CreationMessenger(const XrInstanceCreateInfo* info);
+    ~CreationMessenger();
+    CreationMessenger(const CreationMessenger&) = delete;
+    CreationMessenger& operator=(const CreationMessenger&) = delete;
+};
+
+void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text);
+// Without the runtime's lock.
+void deliverMessages();
+
+}  // namespace simulated

@@ -1,0 +1,73 @@
+#include "xr/simulated/api/paths.h"
+
+#include <algorithm>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::size_t kMostPaths = 1 << 16;
+
+// "/a/b": starts with a slash, ends with none, and no level is empty or made of dots alone.
+bool isWellFormed(std::string_view text) {
+    if (text.size() < 2 || text.size() >= XR_MAX_PATH_LENGTH || text.front() != '/') return false;
+    for (std::size_t start = 1; start <= text.size();) {
+        const std::size_t end = std::min(text.find('/', start), text.size());
+        const std::string_view level = text.substr(start, end - start);
+        if (level.empty() || !isPathLevel(level) || level.find_first_not_of('.') == std::string_view::npos) return false;
+        start = end + 1;
+    }
+    return text.back() != '/';
+}
+
+}  // namespace
+
+bool isPathLevel(std::string_view text) {
+    return std::all_of(text.begin(), text.end(),
+                       [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.'; });
+}
+
+XrPath Paths::pathOf(std::string_view text) {
+    require(isWellFormed(text), XR_ERROR_PATH_FORMAT_INVALID, "not a well-formed path");
+    const auto [entry, is_new] = paths.try_emplace(std::string(text), texts.size() + 1);
+    if (is_new) {
+        if (texts.size() == kMostPaths) {
+            paths.erase(entry);
+            throw Refusal{XR_ERROR_PATH_COUNT_EXCEEDED, "65536 paths are the most"};
+        }
+        texts.emplace_back(text);
+    }
+    return entry->second;
+}
+
+const std::string& Paths::textOf(XrPath path) const {
+    require(path != XR_NULL_PATH && path <= texts.size(), XR_ERROR_PATH_INVALID, "no such path");
+    return texts[path - 1];
+}
+
+XrPath Paths::findPath(std::string_view text) const {
+    const auto found = paths.find(std::string(text));
+    return found == paths.end() ? XR_NULL_PATH : found->second;
+}
+
+XrResult xrStringToPath(XrInstance instance, const char* pathString, XrPath* path) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        require(pathString != nullptr, XR_ERROR_VALIDATION_FAILURE, "a string is missing");
+        XrPath& output = checkedOutput(path);
+        output = owner.paths.pathOf({pathString, strnlen(pathString, XR_MAX_PATH_LENGTH)});
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrPathToString(XrInstance instance, XrPath path, uint32_t bufferCapacityInput, uint32_t* bufferCountOutput, char* buffer) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        return fillString(bufferCapacityInput, bufferCountOutput, buffer, owner.paths.textOf(path));
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,36 @@
+#include "xr/simulated/api/poses.h"
+
+#include <cmath>
+
+#include "xr/simulated/api/answer.h"
+
+namespace simulated {
+
+Pose fromXr(const XrPosef& pose) {
+    const auto& [x, y, z, w] = pose.orientation;
+    return {glm::normalize(glm::dquat(w, x, y, z)), {pose.position.x, pose.position.y, pose.position.z}};
+}
+
+XrPosef toXr(const Pose& pose) {
+    const glm::quat orientation(pose.orientation);
+    const glm::vec3 position(pose.position);
+    return {{orientation.x, orientation.y, orientation.z, orientation.w}, {position.x, position.y, position.z}};
+}
+
+Fov fromXr(const XrFovf& fov) { return {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}; }
+
+XrFovf toXr(const Fov& fov) {
+    return {static_cast<float>(fov.left_rad), static_cast<float>(fov.right_rad), static_cast<float>(fov.up_rad),
+            static_cast<float>(fov.down_rad)};
+}
+
+void checkPose(const XrPosef& pose) {
+    const auto& [x, y, z, w] = pose.orientation;
+    const float length = std::sqrt(x * x + y * y + z * z + w * w);
+    // So written that NaN fails too.
+    require(std::abs(length - 1) < 0.01f, XR_ERROR_POSE_INVALID, "a quaternion is not of length 1");
+    require(std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z), XR_ERROR_POSE_INVALID,
+            "a position is not finite");
+}
+
+}  // namespace simulated

@@ -1,0 +1,17 @@
+// Between OpenXR's single-precision poses and angles and this folder's own.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+[[nodiscard]] Pose fromXr(const XrPosef& pose);
+[[nodiscard]] XrPosef toXr(const Pose& pose);
+[[nodiscard]] Fov fromXr(const XrFovf& fov);
+[[nodiscard]] XrFovf toXr(const Fov& fov);
+
+// XR_ERROR_POSE_INVALID for a quaternion whose length is not 1 within a hundredth, or anything not finite.
+void checkPose(const XrPosef& pose);
+
+}  // namespace simulated

@@ -1,0 +1,58 @@
+// XR_FB_display_refresh_rate: what the display can, among it what the script says.
+#include <algorithm>
+#include <cmath>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+std::vector<float> ratesOf(const Script& script) {
+    std::vector<float> rates{72, 80, 90, 120, static_cast<float>(script.rate_hz)};
+    std::sort(rates.begin(), rates.end());
+    rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
+    return rates;
+}
+
+}  // namespace
+
+XrResult xrEnumerateDisplayRefreshRatesFB(XrSession session, uint32_t displayRefreshRateCapacityInput,
+                                          uint32_t* displayRefreshRateCountOutput, float* displayRefreshRates) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        fillArray(displayRefreshRateCapacityInput, displayRefreshRateCountOutput, displayRefreshRates,
+                  ratesOf(owner.instance.simulation->script));
+        return successOf(owner);
+    });
+}
+
+XrResult xrGetDisplayRefreshRateFB(XrSession session, float* displayRefreshRate) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        checkedOutput(displayRefreshRate) = static_cast<float>(owner.instance.simulation->rate_hz);
+        return successOf(owner);
+    });
+}
+
+XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRate) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        Simulation& simulation = *owner.instance.simulation;
+        const auto before = static_cast<float>(simulation.rate_hz);
+        // 0 leaves it to the runtime.
+        const float wanted = displayRefreshRate == 0 ? static_cast<float>(simulation.script.rate_hz) : displayRefreshRate;
+        const std::vector<float> rates = ratesOf(simulation.script);
+        require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
+                "a rate that was not enumerated");
+        if (wanted == before) return successOf(owner);
+        simulation.rate_hz = wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted;
+        simulation.clock.setPeriod(std::llround(1e9 / simulation.rate_hz));
+        owner.instance.events.push(
+            XrEventDataDisplayRefreshRateChangedFB{XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, wanted});
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,82 @@
+// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each xrEndFrame moves it a
+// state towards the one that the script wants.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "xr/simulated/api/attachment.h"
+#include "xr/simulated/api/automation.h"
+#include "xr/simulated/api/device.h"
+#include "xr/simulated/api/handles.h"
+#include "xr/simulated/api/instance.h"
+
+namespace simulated {
+
+// Where the calls xrWaitFrame, xrBeginFrame, xrEndFrame stand.
+struct FrameLoop {
+    std::optional<XrTime> waited;  // returned by xrWaitFrame, not begun yet
+    std::optional<XrTime> begun;   // begun, not ended yet
+    bool should_render = false;    // as the frame that was waited for last was told
+};
+
+struct Session : Object {
+    using Handle = XrSession;
+
+    Instance& instance;
+    // None of a headless session (XR_MND_headless).
+    std::unique_ptr<Device> device;
+    XrSessionState state = XR_SESSION_STATE_UNKNOWN;
+    bool is_running = false;
+    bool wants_exit = false;
+    FrameLoop frames;
+    // From xrAttachSessionActionSets on.
+    std::optional<Attachment> attachment;
+    std::optional<XrTime> loss_announced, lost_from;
+    std::uint32_t slow_images = 0;
+    // The eyes' angles as of the frame before: a mask changes with them.
+    std::optional<std::array<Fov, kEyes>> masked;
+    std::vector<std::string> log_events;
+    Automation automation;
+    Labels labels;
+    // What the application was told last of the wearer (XR_EXT_user_presence).
+    std::optional<bool> announced_presence;
+
+    Session(Instance& owner, std::unique_ptr<Device> graphics);
+    ~Session() override;
+
+    // The script's state at a time, with what the program's own test says of the controllers.
+    [[nodiscard]] State at(XrTime time) const;
+    void enter(XrSessionState next);
+    // After an xrEndFrame whose frame shows the headset in this state.
+    void step(const State& wanted);
+    // A headless session has no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time.
+    [[nodiscard]] bool isHeadless() const { return device == nullptr; }
+    void settle();
+    void passHeadlessFrame();
+    // What the script lets happen once, up to this display time.
+    void meetEvents(XrTime display_time);
+    // Tells whether somebody wears the headset, if that is new.
+    void announcePresence(const State& now);
+    // Time passes while nobody wears the headset: a period with every look for events that finds none.
+    void idle();
+    // Tells of visibility masks that are others than in the frame before.
+    void announceMasks(const State& now);
+};
+
+// XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST, XR_ERROR_SESSION_LOST.
+Session& getSession(XrSession session);
+// The same for a session's children.
+void checkNotLost(const Session& session);
+
+// While a loss is pending, whatever succeeds says so.
+XrResult successOf(const Session& session, XrResult success = XR_SUCCESS);
+
+// For an xrWaitFrame on another thread that waits for a frame which will not come any more.
+void wakeFrameWaiters();
+
+constexpr int kFramesOfGrace = 3;
+
+}  // namespace simulated

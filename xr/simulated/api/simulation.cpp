@@ -1,0 +1,87 @@
+#include "xr/simulated/api/simulation.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "xr/simulated/api/profiles.h"
+#include "xr/simulated/compose/old_output.h"
+#include "xr/simulated/environment.h"
+#include "xr/simulated/script/script_profile.h"
+
+namespace simulated {
+namespace {
+
+bool wantsRealClock() {
+    const Setting setting = settingOf("CLOCK");
+    const std::string_view clock = setting.isSet() ? setting.value : "lockstep";
+    if (clock != "lockstep" && clock != "real") {
+        throw std::runtime_error(setting.variable + " is '" + std::string(clock) + "', must be lockstep or real");
+    }
+    return clock == "real";
+}
+
+std::optional<Output> makeOutput() {
+    const Setting setting = settingOf("OUT");
+    if (!setting.isSet()) return std::nullopt;
+    const std::filesystem::path folder(setting.value);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")");
+    removeOldOutput(folder);
+    return Output{folder, FrameLog(folder / kLogName)};
+}
+
+// The environment's word counts before the script's.
+std::string favouriteProfile(const Script& script) {
+    const Setting setting = settingOf("PROFILE");
+    const std::string name = setting.isSet() ? setting.value : script.profile;
+    if (name.empty()) return {};
+    const Profile* const profile = findHandProfile(name);
+    if (profile == nullptr) throw std::runtime_error(setting.variable + " is '" + name + "', must be one of: " + handProfiles());
+    checkInputs(script, *profile);
+    return std::string(profile->path);
+}
+
+std::unique_ptr<Simulation>& survivor() {
+    // The loader closes the library between two instances; it is linked so that it stays loaded, or this would be forgotten.
+    static std::unique_ptr<Simulation> simulation;
+    return simulation;
+}
+
+std::string originOfEnvironment() {
+    std::string origin;
+    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) {
+        const Setting setting = settingOf(name);
+        origin.append(setting.isSet() ? setting.value : "").append("\n");
+    }
+    return origin;
+}
+
+}  // namespace
+
+Script scriptOfEnvironment() {
+    const Setting setting = settingOf("SCRIPT");
+    return setting.isSet() ? Script::load(setting.value) : Script();
+}
+
+std::unique_ptr<Simulation> Simulation::begin() {
+    // Another script or folder is another run within the same process.
+    const std::string origin = originOfEnvironment();
+    std::unique_ptr<Simulation> survived = std::move(survivor());
+    if (survived != nullptr && survived->origin == origin) {
+        survived->survives = false;
+        return survived;
+    }
+    Script script = scriptOfEnvironment();
+    const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
+    std::string profile = favouriteProfile(script);
+    const double rate_hz = script.rate_hz;
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile), rate_hz});
+}
+
+void Simulation::end(std::unique_ptr<Simulation> simulation) {
+    if (simulation != nullptr && simulation->survives) survivor() = std::move(simulation);
+}
+
+}  // namespace simulated

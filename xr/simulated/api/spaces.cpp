@@ -1,0 +1,239 @@
+#include "xr/simulated/api/spaces.h"
+
+#include <algorithm>
+
+#include "xr/simulated/api/actions.h"
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr XrSpaceLocationFlags kPoseKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
+                                            XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
+
+// A millisecond to either side: short against any motion, long against rounding.
+constexpr XrDuration kDifference = 1'000'000;
+
+bool hasStage(const Session& session) { return session.instance.simulation->script.has_stage; }
+
+std::vector<XrReferenceSpaceType> referenceSpacesOf(const Session& session) {
+    std::vector<XrReferenceSpaceType> types{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL};
+    if (hasStage(session)) types.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+    return types;
+}
+
+bool isKnown(const Session& session, XrReferenceSpaceType type) {
+    const std::vector<XrReferenceSpaceType> types = referenceSpacesOf(session);
+    return std::find(types.begin(), types.end(), type) != types.end();
+}
+
+// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one.
+XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
+    const auto follows_head = [](const Space& one) { return one.reference == XR_REFERENCE_SPACE_TYPE_VIEW; };
+    if (follows_head(space) == follows_head(base) || state.head_place_known) return kPoseKnown;
+    if (!state.head_turn_known) return 0;
+    return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+}
+
+std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
+    const State state = space.session.at(time);
+    const std::optional<Pose> stage_from_space = stageFromSpace(space, state), stage_from_base = stageFromSpace(base, state);
+    if (!stage_from_space || !stage_from_base) return std::nullopt;
+    return compose(inverse(*stage_from_base), *stage_from_space);
+}
+
+struct Location {
+    XrSpaceLocationFlags flags = 0;
+    XrPosef pose = toXr(Pose{});
+};
+
+Location locate(const Space& space, const Space& base, XrTime time) {
+    const std::optional<Pose> pose = baseFromSpace(space, base, time);
+    const XrSpaceLocationFlags flags = pose ? locationFlagsOf(space, base, space.session.instance.simulation->at(time)) : 0;
+    return flags != 0 ? Location{flags, toXr(*pose)} : Location{};
+}
+
+// Motion of the space's origin, in the base's axes.
+template <class Velocity>
+void differentiate(const Space& space, const Space& base, XrTime time, Velocity& velocity) {
+    velocity.velocityFlags = 0;
+    velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
+    const std::optional<Pose> before = baseFromSpace(space, base, time - kDifference),
+                              after = baseFromSpace(space, base, time + kDifference);
+    if (!before || !after) return;
+    constexpr double kSeconds = 2e-9 * kDifference;
+    const glm::dvec3 linear = (after->position - before->position) / kSeconds;
+    glm::dquat turn = after->orientation * glm::conjugate(before->orientation);
+    if (turn.w < 0) turn = -turn;
+    // Small turns: the vector part is half the angle along the axis.
+    const glm::dvec3 angular = glm::dvec3(turn.x, turn.y, turn.z) * (2 / kSeconds);
+    velocity.velocityFlags = kVelocityKnown;
+    velocity.linearVelocity = {static_cast<float>(linear.x), static_cast<float>(linear.y), static_cast<float>(linear.z)};
+    velocity.angularVelocity = {static_cast<float>(angular.x), static_cast<float>(angular.y), static_cast<float>(angular.z)};
+}
+
+}  // namespace
+
+void checkTime(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "a time is not positive"); }
+
+Space& getSpace(const Session& session, XrSpace space) {
+    Space& found = get<Space>(space);
+    require(&found.session == &session, XR_ERROR_HANDLE_INVALID, "a space of another session");
+    return found;
+}
+
+std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
+    if (!space.reference) {
+        const std::optional<Pose> stage_from_source = stageFromAction(space.session, space.action, space.subaction_path, state);
+        if (!stage_from_source) return std::nullopt;
+        return compose(*stage_from_source, space.origin_from_space);
+    }
+    // No case of its own: older headers' enumeration lacks it.
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR)
+        return compose(space.session.instance.simulation->script.stageFromLocalFloor(state.time_s), space.origin_from_space);
+    switch (*space.reference) {
+        case XR_REFERENCE_SPACE_TYPE_VIEW:
+            return compose(state.stage_from_head, space.origin_from_space);
+        case XR_REFERENCE_SPACE_TYPE_LOCAL:
+            return compose(space.session.instance.simulation->script.stageFromLocal(state.time_s), space.origin_from_space);
+        default:
+            return space.origin_from_space;
+    }
+}
+
+namespace {
+
+// Of 1.1's xrLocateSpaces and its elder.
+XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
+    const Session& owner = getSession(session);
+    const XrSpacesLocateInfo& info = checked(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
+    XrSpaceLocations& output = checked(space_locations, XR_TYPE_SPACE_LOCATIONS);
+    require(info.spaceCount > 0 && info.spaces != nullptr, XR_ERROR_VALIDATION_FAILURE, "no spaces");
+    require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE,
+            "not a location for each space");
+    const XrBaseInStructure* const chained = findInChain(output.next, XR_TYPE_SPACE_VELOCITIES);
+    auto* const velocities = const_cast<XrSpaceVelocities*>(reinterpret_cast<const XrSpaceVelocities*>(chained));
+    require(velocities == nullptr || (velocities->velocityCount == info.spaceCount && velocities->velocities != nullptr),
+            XR_ERROR_VALIDATION_FAILURE, "not a velocity for each space");
+    const Space& base = getSpace(owner, info.baseSpace);
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) getSpace(owner, info.spaces[i]);
+    checkTime(info.time);
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) {
+        const Space& space = getSpace(owner, info.spaces[i]);
+        const auto [flags, pose] = locate(space, base, info.time);
+        output.locations[i] = {flags, pose};
+        if (velocities != nullptr) differentiate(space, base, info.time, velocities->velocities[i]);
+    }
+    return successOf(owner);
+}
+
+}  // namespace
+
+const char* nameOf(const Space& space) {
+    if (!space.reference) return "action";
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) return "LOCAL_FLOOR";
+    switch (*space.reference) {
+        case XR_REFERENCE_SPACE_TYPE_VIEW:
+            return "VIEW";
+        case XR_REFERENCE_SPACE_TYPE_LOCAL:
+            return "LOCAL";
+        default:
+            return "STAGE";
+    }
+}
+
+XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInput, uint32_t* spaceCountOutput,
+                                    XrReferenceSpaceType* spaces) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        fillArray(spaceCapacityInput, spaceCountOutput, spaces, referenceSpacesOf(owner));
+        return successOf(owner);
+    });
+}
+
+XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateInfo* createInfo, XrSpace* space) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+        XrSpace& output = checkedOutput(space);
+        require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+        checkPose(info.poseInReferenceSpace);
+        auto created = std::make_unique<Space>(owner);
+        created->origin_from_space = fromXr(info.poseInReferenceSpace);
+        created->reference = info.referenceSpaceType;
+        output = handleOf(adopt(owner, std::move(created)));
+        return successOf(owner);
+    });
+}
+
+XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* createInfo, XrSpace* space) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const XrActionSpaceCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_SPACE_CREATE_INFO);
+        XrSpace& output = checkedOutput(space);
+        const Action& action = getAction(owner.instance, info.action);
+        require(action.type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "not a pose action");
+        checkSubactionPath(owner.instance, action.subaction_paths, info.subactionPath);
+        const bool is_left_out = owner.attachment && owner.attachment->find(action.number) == nullptr;
+        require(!is_left_out, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action is not among those attached");
+        checkPose(info.poseInActionSpace);
+        auto created = std::make_unique<Space>(owner);
+        created->origin_from_space = fromXr(info.poseInActionSpace);
+        created->action = action.number;
+        created->subaction_path = info.subactionPath;
+        output = handleOf(adopt(owner, std::move(created)));
+        return successOf(owner);
+    });
+}
+
+XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        const bool left_out = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !hasStage(owner);
+        require(!left_out, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
+        // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
+        require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
+        checkedOutput(bounds) = {0, 0};
+        if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
+        *bounds = {3, 2};
+        return successOf(owner);
+    });
+}
+
+XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLocation* location) {
+    return answer(__func__, [&] {
+        const Space& located = get<Space>(space);
+        checkNotLost(located.session);
+        const Space& base = getSpace(located.session, baseSpace);
+        XrSpaceLocation& output = checked(location, XR_TYPE_SPACE_LOCATION);
+        checkTime(time);
+        const auto [flags, pose] = locate(located, base, time);
+        output.locationFlags = flags;
+        output.pose = pose;
+        const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
+        if (velocity != nullptr)
+            differentiate(located, base, time, *const_cast<XrSpaceVelocity*>(reinterpret_cast<const XrSpaceVelocity*>(velocity)));
+        return successOf(located.session);
+    });
+}
+
+XrResult xrLocateSpaces(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
+    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
+}
+
+XrResult xrLocateSpacesKHR(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
+    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
+}
+
+XrResult xrDestroySpace(XrSpace space) {
+    return answer(__func__, [&] {
+        destroyObject(get<Space>(space));
+        return XR_SUCCESS;
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,81 @@
+// What holds for every structure and array that an application passes: types, next chains, the two-call idiom, fixed strings.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "xr/simulated/api/answer.h"
+#include "xr/simulated/openxr.h"
+
+namespace simulated {
+
+// Unknown structures of a chain are passed over, as the specification demands; a chain that bites its tail is refused.
+void checkChain(const void* next);
+const XrBaseInStructure* findInChain(const void* next, XrStructureType type);
+
+template <class T>
+void checkType(const T& structure, XrStructureType type) {
+    require(structure.type == type, XR_ERROR_VALIDATION_FAILURE, "a structure has a wrong type");
+    checkChain(structure.next);
+}
+
+template <class T>
+T& checked(T* structure, XrStructureType type) {
+    require(structure != nullptr, XR_ERROR_VALIDATION_FAILURE, "a structure is missing");
+    checkType(*structure, type);
+    return *structure;
+}
+
+// For structures that may be left out altogether.
+template <class T>
+void checkOptional(const T* structure, XrStructureType type) {
+    if (structure != nullptr) checkType(*structure, type);
+}
+
+template <class T>
+T& checkedOutput(T* output) {
+    require(output != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the result is missing");
+    return *output;
+}
+
+// The two-call idiom's first half. True: there is room, copy. False: only the count was asked for.
+inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void* array, std::size_t size) {
+    require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
+    *count = static_cast<std::uint32_t>(size);
+    if (capacity == 0) return false;
+    require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array is too small");
+    require(array != nullptr || size == 0, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
+    return true;
+}
+
+template <class T>
+XrResult fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std::vector<T>& values) {
+    if (wantsArray(capacity, count, array, values.size())) {
+        for (std::size_t i = 0; i < values.size(); ++i) array[i] = values[i];
+    }
+    return XR_SUCCESS;
+}
+
+// With the terminating zero, which counts.
+inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
+    if (wantsArray(capacity, count, buffer, text.size() + 1)) std::memcpy(buffer, text.c_str(), text.size() + 1);
+    return XR_SUCCESS;
+}
+
+// A fixed array's text; XR_ERROR_VALIDATION_FAILURE if nothing ends it or it is not UTF-8.
+std::string textOf(const char* characters, std::size_t size);
+template <std::size_t size>
+std::string textOf(const char (&characters)[size]) {
+    return textOf(characters, size);
+}
+
+template <std::size_t size>
+void copyText(char (&destination)[size], std::string_view text) {
+    const std::size_t length = std::min(text.size(), size - 1);
+    std::memcpy(destination, text.data(), length);
+    destination[length] = '\0';
+}
+
+}  // namespace simulated

@@ -1,0 +1,189 @@
+#include "xr/simulated/api/swapchains.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::size_t kImages = 3;
+constexpr XrSwapchainUsageFlags kKnownUsage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                              XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT |
+                                              XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT |
+                                              XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
+constexpr XrSwapchainCreateFlags kKnownFlags = XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT | XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT;
+
+// What is asked for, and what the runtime itself needs: the attachment layout in which images are handed over, and the read-back.
+VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& format) {
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
+    usage |= is_colour ? VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT : VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if ((asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+    if ((asked & XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT) != 0) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if ((asked & XR_SWAPCHAIN_USAGE_SAMPLED_BIT) != 0) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    return usage;
+}
+
+// A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders.
+VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
+    if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) return 0;
+    return VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT;
+}
+
+const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted) {
+    const auto& formats = session.device->formats();
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) { return format.format == wanted; });
+    require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "a format that was not enumerated");
+    const bool takes_depth = session.instance.simulation->script.depth != Script::Depth::kNoImages;
+    require(takes_depth || found->aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "the script takes no depth");
+    return *found;
+}
+
+ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info) {
+    require((info.createFlags & ~kKnownFlags) == 0 && (info.usageFlags & ~kKnownUsage) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown flags");
+    require((info.createFlags & XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "no protected content");
+    const SwapchainFormat& format = checkedFormat(session, info.format);
+    const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
+    const XrSwapchainUsageFlags foreign =
+        is_colour ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+    require((info.usageFlags & foreign) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "colour formats are no depth attachments, nor the reverse");
+    require(info.width > 0 && info.height > 0 && info.arraySize > 0 && info.mipCount > 0 && info.sampleCount > 0,
+            XR_ERROR_VALIDATION_FAILURE, "a size is 0");
+    require(info.width <= kMostSwapchainPixels && info.height <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE,
+            "larger than maxSwapchainImageWidth and Height");
+    require(info.mipCount <= std::bit_width(std::max(info.width, info.height)), XR_ERROR_VALIDATION_FAILURE, "more mips than the size has");
+    require(info.faceCount == 1 || info.faceCount == 6, XR_ERROR_VALIDATION_FAILURE, "one face, or six");
+    const bool is_cube = info.faceCount == 6;
+    require(!is_cube || session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME), XR_ERROR_FEATURE_UNSUPPORTED,
+            "cube maps are of XR_KHR_composition_layer_cube");
+    require(!is_cube || (info.width == info.height && is_colour), XR_ERROR_VALIDATION_FAILURE, "a cube map's faces are coloured squares");
+    require(info.arraySize <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "too many array layers");
+    require(info.sampleCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "more samples than maxSwapchainSampleCount");
+    const VkImageCreateFlags flags = flagsOf(info.usageFlags) | (is_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0);
+    const ImageInfo image{format,        {info.width, info.height},        info.arraySize * info.faceCount,
+                          info.mipCount, usageOf(info.usageFlags, format), flags,
+                          info.faceCount};
+    session.device->checkImage(image);
+    return image;
+}
+
+}  // namespace
+
+Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
+    Swapchain& found = get<Swapchain>(swapchain);
+    require(&found.session == &session, XR_ERROR_HANDLE_INVALID, "a swapchain of another session");
+    return found;
+}
+
+void fetchTexels(Swapchain& swapchain) {
+    // Depth is looked at by nobody here.
+    if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) return;
+    swapchain.released_texels = swapchain.session.device->read(*swapchain.images[swapchain.released_index]);
+    swapchain.has_texels = true;
+}
+
+XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityInput, uint32_t* formatCountOutput, int64_t* formats) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        std::vector<int64_t> values;
+        if (!owner.isHeadless()) {
+            for (const SwapchainFormat& format : owner.device->formats()) values.push_back(format.format);
+        }
+        fillArray(formatCapacityInput, formatCountOutput, formats, values);
+        return successOf(owner);
+    });
+}
+
+XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* createInfo, XrSwapchain* swapchain) {
+    return answer(__func__, [&] {
+        Session& owner = getSession(session);
+        const XrSwapchainCreateInfo& info = checked(createInfo, XR_TYPE_SWAPCHAIN_CREATE_INFO);
+        XrSwapchain& output = checkedOutput(swapchain);
+        require(!owner.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no swapchains");
+        auto created = std::make_unique<Swapchain>(owner);
+        created->info = checkedImage(owner, info);
+        created->is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
+        created->is_prepared.resize(created->is_static ? 1 : kImages);
+        for (std::size_t i = 0; i < created->is_prepared.size(); ++i) created->images.push_back(owner.device->createImage(created->info));
+        output = handleOf(adopt(owner, std::move(created)));
+        return successOf(owner);
+    });
+}
+
+XrResult xrDestroySwapchain(XrSwapchain swapchain) {
+    return answer(__func__, [&] {
+        destroyObject(get<Swapchain>(swapchain));
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateSwapchainImages(XrSwapchain swapchain, uint32_t imageCapacityInput, uint32_t* imageCountOutput,
+                                    XrSwapchainImageBaseHeader* images) {
+    return answer(__func__, [&] {
+        const Swapchain& owner = get<Swapchain>(swapchain);
+        checkNotLost(owner.session);
+        if (!wantsArray(imageCapacityInput, imageCountOutput, images, owner.images.size())) return successOf(owner.session);
+        auto* const vulkan_images = reinterpret_cast<XrSwapchainImageVulkan2KHR*>(images);
+        for (std::size_t i = 0; i < owner.images.size(); ++i) checkType(vulkan_images[i], XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR);
+        for (std::size_t i = 0; i < owner.images.size(); ++i) vulkan_images[i].image = owner.images[i]->handle();
+        return successOf(owner.session);
+    });
+}
+
+XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAcquireInfo* acquireInfo, uint32_t* index) {
+    return answer(__func__, [&] {
+        Swapchain& owner = get<Swapchain>(swapchain);
+        checkNotLost(owner.session);
+        checkOptional(acquireInfo, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
+        uint32_t& output = checkedOutput(index);
+        require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
+        require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all images are acquired already");
+        const auto next = static_cast<std::uint32_t>(owner.acquisitions % owner.images.size());
+        // The image on show is given away again: the application holds all others.
+        if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);
+        if (!owner.is_prepared[next]) owner.session.device->prepare(*owner.images[next]);
+        owner.is_prepared[next] = true;
+        ++owner.acquisitions;
+        owner.acquired.push_back(next);
+        output = next;
+        return successOf(owner.session);
+    });
+}
+
+XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* waitInfo) {
+    return answer(__func__, [&] {
+        Swapchain& owner = get<Swapchain>(swapchain);
+        checkNotLost(owner.session);
+        const XrSwapchainImageWaitInfo& info = checked(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
+        require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
+        require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
+        // Slow images are late for every wait that has an end.
+        if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION) {
+            --owner.session.slow_images;
+            return successOf(owner.session, XR_TIMEOUT_EXPIRED);
+        }
+        owner.is_oldest_waited = true;
+        return successOf(owner.session);
+    });
+}
+
+XrResult xrReleaseSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageReleaseInfo* releaseInfo) {
+    return answer(__func__, [&] {
+        Swapchain& owner = get<Swapchain>(swapchain);
+        checkNotLost(owner.session);
+        checkOptional(releaseInfo, XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
+        require(owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "no image was waited for");
+        owner.released_index = owner.acquired.front();
+        owner.acquired.pop_front();
+        owner.is_oldest_waited = false;
+        owner.has_released = true;
+        owner.has_texels = false;
+        return successOf(owner.session);
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,43 @@
+// Section 10.1: swapchains of three images on the application's device. Images are acquired in turn, waited for and released oldest first.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "xr/simulated/api/device.h"
+#include "xr/simulated/api/handles.h"
+
+namespace simulated {
+
+struct Session;
+
+struct Swapchain : Object {
+    using Handle = XrSwapchain;
+
+    Session& session;
+    ImageInfo info;
+    bool is_static = false;
+    std::vector<std::unique_ptr<DeviceImage>> images;
+    std::vector<bool> is_prepared;
+    // Acquired and not released, oldest first; whether the oldest was waited for.
+    std::deque<std::uint32_t> acquired;
+    bool is_oldest_waited = false;
+    std::uint64_t acquisitions = 0;
+    // What the compositor sees: the image that was released last, and its texels once somebody wanted them.
+    bool has_released = false;
+    std::uint32_t released_index = 0;
+    bool has_texels = false;
+    std::vector<std::byte> released_texels;
+
+    explicit Swapchain(Session& owner) : session(owner) {}
+};
+
+// XR_ERROR_HANDLE_INVALID also for a swapchain of another session.
+Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain);
+
+// Reads the last released image back, if that was not done since. Only in calls that may use the application's queue.
+void fetchTexels(Swapchain& swapchain);
+
+}  // namespace simulated

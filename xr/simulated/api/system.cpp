@@ -1,0 +1,128 @@
+// Chapters 5 and 8: the headset as a system, its views and blend modes.
+#include <algorithm>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+// Three images of this size fit on small devices; a script may recommend larger ones.
+constexpr std::uint32_t kMostViewPixels = 4096;
+
+// An extension's structure to fill, if it is there and the extension is enabled.
+template <class Structure>
+Structure* chained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
+    if (!instance.extensions.contains(extension)) return nullptr;
+    return reinterpret_cast<Structure*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
+}
+
+}  // namespace
+
+void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
+
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
+    // Values of extensions that this runtime does not have are no view configurations at all.
+    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
+                          (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET && instance.is_1_1);
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
+    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
+}
+
+XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
+        XrSystemId& output = checkedOutput(systemId);
+        require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        require(owner.simulation->script.plugged, XR_ERROR_FORM_FACTOR_UNAVAILABLE,
+                "no headset: the script says that it is not plugged in");
+        std::uint32_t& calls = owner.simulation->calls_without_headset;
+        if (calls < owner.simulation->script.calls_without_headset) {
+            ++calls;
+            throw Refusal{XR_ERROR_FORM_FACTOR_UNAVAILABLE, "the headset is not there yet"};
+        }
+        output = kSystemId;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSystemProperties* properties) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        XrSystemProperties& output = checked(properties, XR_TYPE_SYSTEM_PROPERTIES);
+        output.systemId = kSystemId;
+        output.vendorId = 0;
+        copyText(output.systemName, owner.simulation->script.system_name);
+        output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
+        output.trackingProperties = {XR_TRUE, XR_TRUE};
+        if (auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
+                                                                     XR_EXT_HAND_TRACKING_EXTENSION_NAME))
+            hands->supportsHandTracking = XR_TRUE;
+        if (auto* presence = chained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
+                                                                        XR_EXT_USER_PRESENCE_EXTENSION_NAME))
+            presence->supportsUserPresence = XR_TRUE;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId, uint32_t viewConfigurationTypeCapacityInput,
+                                       uint32_t* viewConfigurationTypeCountOutput, XrViewConfigurationType* viewConfigurationTypes) {
+    return answer(__func__, [&] {
+        getInstance(instance);
+        checkSystem(systemId);
+        return fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes,
+                         {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO});
+    });
+}
+
+XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                          XrViewConfigurationProperties* configurationProperties) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(owner, viewConfigurationType);
+        XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
+        output.viewConfigurationType = viewConfigurationType;
+        // Scripts change the angles in mid-run.
+        output.fovMutable = XR_TRUE;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                           uint32_t viewCapacityInput, uint32_t* viewCountOutput, XrViewConfigurationView* views) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(owner, viewConfigurationType);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return XR_SUCCESS;
+        for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW);
+        const glm::uvec2 size_px = owner.simulation->script.size_px;
+        for (std::size_t eye = 0; eye < kEyes; ++eye) {
+            views[eye].recommendedImageRectWidth = size_px.x;
+            views[eye].recommendedImageRectHeight = size_px.y;
+            views[eye].maxImageRectWidth = std::max(kMostViewPixels, size_px.x);
+            views[eye].maxImageRectHeight = std::max(kMostViewPixels, size_px.y);
+            views[eye].recommendedSwapchainSampleCount = 1;
+            views[eye].maxSwapchainSampleCount = 1;
+        }
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                          uint32_t environmentBlendModeCapacityInput, uint32_t* environmentBlendModeCountOutput,
+                                          XrEnvironmentBlendMode* environmentBlendModes) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(owner, viewConfigurationType);
+        return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes,
+                         {XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,43 @@
+// XR_KHR_convert_timespec_time: between OpenXR's time and CLOCK_MONOTONIC.
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/spaces.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+}  // namespace
+
+XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timespec* timespecTime, XrTime* time) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        require(timespecTime != nullptr, XR_ERROR_VALIDATION_FAILURE, "a time is missing");
+        XrTime& output = checkedOutput(time);
+        const bool is_time = timespecTime->tv_sec >= 0 && timespecTime->tv_sec < INT64_MAX / kSecond - 1 && timespecTime->tv_nsec >= 0 &&
+                             timespecTime->tv_nsec < kSecond;
+        require(is_time, XR_ERROR_TIME_INVALID, "not a time of CLOCK_MONOTONIC");
+        const XrTime converted = timespecTime->tv_sec * kSecond + timespecTime->tv_nsec - owner.simulation->clock.monotonicOffset();
+        checkTime(converted);
+        output = converted;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct timespec* timespecTime) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        struct timespec& output = checkedOutput(timespecTime);
+        checkTime(time);
+        const std::int64_t offset = owner.simulation->clock.monotonicOffset();
+        require(time < INT64_MAX - std::max<std::int64_t>(offset, 0) && time + offset >= 0, XR_ERROR_TIME_INVALID,
+                "CLOCK_MONOTONIC has no such time");
+        output.tv_sec = (time + offset) / kSecond;
+        output.tv_nsec = (time + offset) % kSecond;
+        return XR_SUCCESS;
+    });
+}
+
+}  // namespace simulated

@@ -1,0 +1,49 @@
+// XR_KHR_visibility_mask: what of the picture the lens never shows. Empty unless the script turns it on, as on many runtimes.
+#include <cstdlib>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/session.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+Mesh meshOf(const Fov& fov, XrVisibilityMaskTypeKHR type) {
+    switch (type) {
+        case XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR:
+            return hiddenMesh(fov);
+        case XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR:
+            return visibleMesh(fov);
+        case XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR:
+            return visibleOutline(fov);
+        default:
+            throw Refusal{XR_ERROR_VALIDATION_FAILURE, "no such type of mask"};
+    }
+}
+
+}  // namespace
+
+XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewConfigurationType, uint32_t viewIndex,
+                                XrVisibilityMaskTypeKHR visibilityMaskType, XrVisibilityMaskKHR* visibilityMask) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        checkViewConfiguration(owner.instance, viewConfigurationType);
+        require(viewIndex < kEyes, XR_ERROR_VALIDATION_FAILURE, "no such view");
+        XrVisibilityMaskKHR& output = checked(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
+        const Simulation& simulation = *owner.instance.simulation;
+        Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[viewIndex].fov, visibilityMaskType);
+        if (simulation.script.visibility_mask_is_broken) std::abort();
+        if (!simulation.script.visibility_mask) mesh = {};
+        output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
+        output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
+        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) return successOf(owner);
+        const bool has_room = output.vertexCapacityInput >= mesh.vertices.size() && output.indexCapacityInput >= mesh.indices.size();
+        require(has_room, XR_ERROR_SIZE_INSUFFICIENT, "an array is too small");
+        require(output.vertices != nullptr && output.indices != nullptr, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
+        for (std::size_t i = 0; i < mesh.vertices.size(); ++i) output.vertices[i] = {mesh.vertices[i].x, mesh.vertices[i].y};
+        for (std::size_t i = 0; i < mesh.indices.size(); ++i) output.indices[i] = mesh.indices[i];
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated

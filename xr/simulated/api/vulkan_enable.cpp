@@ -1,0 +1,186 @@
+// XR_KHR_vulkan_enable2 and its elder: the application's Vulkan instance and device are made through the runtime, which needs nothing
+// of them beyond what the application asks for.
+#include <charconv>
+#include <cstring>
+#include <vector>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/device.h"
+#include "xr/simulated/api/instance.h"
+#include "xr/simulated/api/structures.h"
+#include "xr/simulated/environment.h"
+
+namespace simulated {
+namespace {
+
+template <class Function>
+Function resolve(PFN_vkGetInstanceProcAddr loader, VkInstance instance, const char* name) {
+    const auto function = reinterpret_cast<Function>(loader(instance, name));
+    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, name);
+    return function;
+}
+
+PFN_vkGetInstanceProcAddr loaderOf(const Instance& owner, VkInstance instance) {
+    const auto found = owner.vulkan_loaders.find(instance);
+    return found == owner.vulkan_loaders.end() ? systemVulkanLoader() : found->second;
+}
+
+bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDevice device) {
+    const auto getFamilies =
+        resolve<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(loader, instance, "vkGetPhysicalDeviceQueueFamilyProperties");
+    std::uint32_t count = 0;
+    getFamilies(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    getFamilies(device, &count, families.data());
+    for (const auto& family : families) {
+        if ((family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return true;
+    }
+    return false;
+}
+
+// SIMULATED_OPENXR_GPU counts the devices that can draw, from 0.
+std::size_t wantedDevice() {
+    const Setting setting = settingOf("GPU");
+    if (!setting.isSet()) return 0;
+    const char* const text = setting.value;
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text, text + std::strlen(text), index);
+    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, setting.variable + " must be a whole number from 0 on");
+    return index;
+}
+
+VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance instance) {
+    const auto enumerate = resolve<PFN_vkEnumeratePhysicalDevices>(loader, instance, "vkEnumeratePhysicalDevices");
+    std::uint32_t count = 0;
+    require(enumerate(instance, &count, nullptr) == VK_SUCCESS, XR_ERROR_RUNTIME_FAILURE, "Vulkan's devices cannot be listed");
+    std::vector<VkPhysicalDevice> devices(count);
+    require(enumerate(instance, &count, devices.data()) == VK_SUCCESS, XR_ERROR_RUNTIME_FAILURE, "Vulkan's devices cannot be listed");
+    std::erase_if(devices, [&](VkPhysicalDevice device) { return !canDraw(loader, instance, device); });
+    const std::size_t index = wantedDevice();
+    require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE,
+            devices.empty() ? std::string("no GPU: Vulkan has no device that can draw, not even a software one (Mesa's lavapipe)")
+                            : settingOf("GPU").variable + " is more than there are devices that can draw");
+    return devices[index];
+}
+
+template <class Requirements>
+XrResult answerRequirements(const char* function, XrInstance instance, XrSystemId system, Requirements* requirements) {
+    return answer(function, [&] {
+        Instance& owner = getInstance(instance);
+        checkSystem(system);
+        // Both extensions share the structure and its type.
+        Requirements& output = checked(requirements, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
+        output.minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
+        output.maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
+        owner.has_asked_requirements = true;
+        return XR_SUCCESS;
+    });
+}
+
+// No extension is needed, so the string is empty.
+XrResult answerNoExtensions(const char* function, XrInstance instance, XrSystemId system, uint32_t capacity, uint32_t* count,
+                            char* buffer) {
+    return answer(function, [&] {
+        getInstance(instance);
+        checkSystem(system);
+        return fillString(capacity, count, buffer, "");
+    });
+}
+
+}  // namespace
+
+XrResult xrGetVulkanGraphicsRequirements2KHR(XrInstance instance, XrSystemId systemId,
+                                             XrGraphicsRequirementsVulkan2KHR* graphicsRequirements) {
+    return answerRequirements(__func__, instance, systemId, graphicsRequirements);
+}
+
+XrResult xrGetVulkanGraphicsRequirementsKHR(XrInstance instance, XrSystemId systemId,
+                                            XrGraphicsRequirementsVulkanKHR* graphicsRequirements) {
+    return answerRequirements(__func__, instance, systemId, graphicsRequirements);
+}
+
+XrResult xrGetVulkanInstanceExtensionsKHR(XrInstance instance, XrSystemId systemId, uint32_t bufferCapacityInput,
+                                          uint32_t* bufferCountOutput, char* buffer) {
+    return answerNoExtensions(__func__, instance, systemId, bufferCapacityInput, bufferCountOutput, buffer);
+}
+
+XrResult xrGetVulkanDeviceExtensionsKHR(XrInstance instance, XrSystemId systemId, uint32_t bufferCapacityInput, uint32_t* bufferCountOutput,
+                                        char* buffer) {
+    return answerNoExtensions(__func__, instance, systemId, bufferCapacityInput, bufferCountOutput, buffer);
+}
+
+XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCreateInfoKHR* createInfo, VkInstance* vulkanInstance,
+                                   VkResult* vulkanResult) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrVulkanInstanceCreateInfoKHR& info = checked(createInfo, XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
+        VkInstance& output = checkedOutput(vulkanInstance);
+        VkResult& result = checkedOutput(vulkanResult);
+        checkSystem(info.systemId);
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no flags are known");
+        require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
+                "vkGetInstanceProcAddr or the VkInstanceCreateInfo is missing");
+        const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
+        result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
+        if (result == VK_SUCCESS) owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr;
+        // What Vulkan says stands in vulkanResult; this call did what it was asked for. A machine without driver is said all the same.
+        if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+            explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrGetVulkanGraphicsDevice2KHR(XrInstance instance, const XrVulkanGraphicsDeviceGetInfoKHR* getInfo,
+                                       VkPhysicalDevice* vulkanPhysicalDevice) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrVulkanGraphicsDeviceGetInfoKHR& info = checked(getInfo, XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
+        VkPhysicalDevice& output = checkedOutput(vulkanPhysicalDevice);
+        checkSystem(info.systemId);
+        require(info.vulkanInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
+        owner.graphics_device = chooseDevice(loaderOf(owner, info.vulkanInstance), info.vulkanInstance);
+        owner.graphics_instance = info.vulkanInstance;
+        output = owner.graphics_device;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrGetVulkanGraphicsDeviceKHR(XrInstance instance, XrSystemId systemId, VkInstance vkInstance, VkPhysicalDevice* vkPhysicalDevice) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        VkPhysicalDevice& output = checkedOutput(vkPhysicalDevice);
+        require(vkInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
+        owner.graphics_device = chooseDevice(loaderOf(owner, vkInstance), vkInstance);
+        owner.graphics_instance = vkInstance;
+        output = owner.graphics_device;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreateInfoKHR* createInfo, VkDevice* vulkanDevice,
+                                 VkResult* vulkanResult) {
+    return answer(__func__, [&] {
+        Instance& owner = getInstance(instance);
+        const XrVulkanDeviceCreateInfoKHR& info = checked(createInfo, XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
+        VkDevice& output = checkedOutput(vulkanDevice);
+        VkResult& result = checkedOutput(vulkanResult);
+        checkSystem(info.systemId);
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no flags are known");
+        require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
+                "vkGetInstanceProcAddr or the VkDeviceCreateInfo is missing");
+        require(info.vulkanPhysicalDevice != VK_NULL_HANDLE && info.vulkanPhysicalDevice == owner.graphics_device, XR_ERROR_HANDLE_INVALID,
+                "not the device that xrGetVulkanGraphicsDevice2KHR gave");
+        const auto create = resolve<PFN_vkCreateDevice>(info.pfnGetInstanceProcAddr, owner.graphics_instance, "vkCreateDevice");
+        // As Monado does it: a feature of the runtime's own, by its own struct.
+        VkPhysicalDeviceTimelineSemaphoreFeatures timeline{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES,
+                                                           const_cast<void*>(info.vulkanCreateInfo->pNext), VK_TRUE};
+        VkDeviceCreateInfo with_additions = *info.vulkanCreateInfo;
+        with_additions.pNext = &timeline;
+        const bool adds = owner.simulation->script.adds_vulkan_features;
+        result = create(info.vulkanPhysicalDevice, adds ? &with_additions : info.vulkanCreateInfo, info.vulkanAllocator, &output);
+        return XR_SUCCESS;
+    });
+}
+
+}  // namespace simulated

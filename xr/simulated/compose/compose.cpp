@@ -1,0 +1,171 @@
+// The composition of layers: each pixel of an eye looks along its ray through all of them.
+#include "xr/simulated/compose/compose.h"
+
+#include "xr/simulated/compose/seen_shapes.h"
+#include "xr/simulated/compose/texels.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace simulated {
+
+namespace {
+
+// The tangents of a view's edges; u grows to the right and v downwards, both 0 to 1.
+struct Tangents {
+    double left, right, up, down;
+    explicit Tangents(const Fov& fov)
+        : left(std::tan(fov.left_rad)), right(std::tan(fov.right_rad)), up(std::tan(fov.up_rad)), down(std::tan(fov.down_rad)) {}
+
+    [[nodiscard]] glm::dvec3 direction(const glm::dvec2& uv) const { return {left + (right - left) * uv.x, up + (down - up) * uv.y, -1.0}; }
+    // Where a direction meets the view; none behind it.
+    [[nodiscard]] std::optional<glm::dvec2> uvOf(const glm::dvec3& direction) const {
+        if (!(direction.z < 0.0)) { return std::nullopt; }
+        const glm::dvec2 tangent = glm::dvec2(direction) / -direction.z;
+        return glm::dvec2((tangent.x - left) / (right - left), (tangent.y - up) / (down - up));
+    }
+};
+
+bool isInside(const glm::dvec2& uv) { return uv.x >= 0.0 && uv.x <= 1.0 && uv.y >= 0.0 && uv.y <= 1.0; }
+
+glm::dvec2 pixelCentre(const glm::uvec2& size_px, std::uint32_t x, std::uint32_t y) {
+    return glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(size_px);
+}
+
+// A layer as one eye sees it: linear light and alpha where a pixel's ray meets it.
+class SeenView {
+public:
+    SeenView(const EyeView& eye, const ProjectionView& view)
+        : sampler_(view.picture, view.rect),
+          tangents_(view.fov),
+          view_from_eye_(glm::mat3_cast(glm::conjugate(view.stage_from_view.orientation) * eye.stage_from_eye.orientation)) {
+        is_same_grid_ = view.rect.extent == eye.size_px && isNearlyTheEye(eye);
+    }
+
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
+        if (is_same_grid_) { return sampler_.texel(x, y); }
+        const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * direction_eye);
+        if (!uv || !isInside(*uv)) { return std::nullopt; }
+        return sampler_.sample(uv->x, uv->y);
+    }
+
+private:
+    // Poses and angles went to the application and came back in single precision: what moves no corner by 0.02 pixels is the eye's own.
+    [[nodiscard]] bool isNearlyTheEye(const EyeView& eye) const {
+        constexpr double kSameGrid_px = 0.02;
+        const Tangents eye_tangents(eye.fov);
+        for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(1, 1)}) {
+            const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * eye_tangents.direction(corner));
+            if (!uv) { return false; }
+            const glm::dvec2 moved_px = (*uv - corner) * glm::dvec2(eye.size_px);
+            if (!(glm::length(moved_px) < kSameGrid_px)) { return false; }
+        }
+        return true;
+    }
+
+    Sampler sampler_;
+    Tangents tangents_;
+    glm::dmat3 view_from_eye_;
+    bool is_same_grid_ = false;
+};
+
+class SeenQuad {
+public:
+    SeenQuad(const EyeView& eye, const QuadLayer& quad) : sampler_(quad.picture, quad.rect), size_m_(quad.size_m) {
+        const Pose quad_from_eye = compose(inverse(quad.stage_from_quad), eye.stage_from_eye);
+        eye_quad_ = quad_from_eye.position;
+        quad_from_eye_ = glm::mat3_cast(quad_from_eye.orientation);
+    }
+
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
+        const glm::dvec3 direction = quad_from_eye_ * direction_eye;
+        // From the front only, and only ahead: the eye is on the +z side and looks towards -z.
+        if (!(eye_quad_.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
+        if (size_m_.x <= 0.0 || size_m_.y <= 0.0) { return std::nullopt; }
+        const glm::dvec3 hit = eye_quad_ - direction * (eye_quad_.z / direction.z);
+        const glm::dvec2 uv(hit.x / size_m_.x + 0.5, 0.5 - hit.y / size_m_.y);
+        if (!isInside(uv)) { return std::nullopt; }
+        return sampler_.sample(uv.x, uv.y);
+    }
+
+private:
+    Sampler sampler_;
+    glm::dvec2 size_m_;
+    glm::dvec3 eye_quad_;
+    glm::dmat3 quad_from_eye_;
+};
+
+struct SeenLayer {
+    std::variant<SeenView, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
+    Blending blending;
+};
+
+bool isShownTo(Side side, Visibility visibility) {
+    return visibility == Visibility::kBoth || (visibility == Visibility::kLeft) == (side == kLeft);
+}
+
+std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Layer> layers) {
+    std::vector<SeenLayer> seen;
+    for (const Layer& layer : layers) {
+        if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
+            seen.push_back({SeenView(eye, projection->views[side]), projection->blending});
+        } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
+            if (isShownTo(side, quad->visibility)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
+        } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {
+            if (isShownTo(side, cylinder->visibility)) { seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending}); }
+        } else if (const auto* sphere = std::get_if<SphereLayer>(&layer)) {
+            if (isShownTo(side, sphere->visibility)) { seen.push_back({SeenSphere(eye, *sphere), sphere->blending}); }
+        } else if (const auto& cube = std::get<CubeLayer>(layer); isShownTo(side, cube.visibility)) {
+            seen.push_back({SeenCube(eye, cube), cube.blending});
+        }
+    }
+    return seen;
+}
+
+glm::dvec3 blend(const glm::dvec3& below, const glm::dvec4& texel, const Blending& blending) {
+    if (!blending.texture_source_alpha) { return glm::dvec3(texel); }
+    const double alpha = std::clamp(texel.a, 0.0, 1.0);
+    const glm::dvec3 premultiplied = blending.unpremultiplied_alpha ? glm::dvec3(texel) * alpha : glm::dvec3(texel);
+    return premultiplied + below * (1.0 - alpha);
+}
+
+}  // namespace
+
+RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers) {
+    const std::vector<SeenLayer> seen = seenBy(eye, side, layers);
+    const Tangents tangents(eye.fov);
+    RgbPicture picture{eye.size_px, {}};
+    picture.bytes.reserve(std::size_t{3} * eye.size_px.x * eye.size_px.y);
+    for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
+        for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
+            const glm::dvec3 direction_eye = tangents.direction(pixelCentre(eye.size_px, x, y));
+            glm::dvec3 light(0.0);
+            for (const SeenLayer& layer : seen) {
+                const auto texel = std::visit([&](const auto& shape) { return shape.at(x, y, direction_eye); }, layer.shape);
+                if (texel) { light = blend(light, *texel, layer.blending); }
+            }
+            for (const double value : {light.r, light.g, light.b}) { picture.bytes.push_back(srgbByte(value)); }
+        }
+    }
+    return picture;
+}
+
+RgbPicture sideBySide(const RgbPicture& left, const RgbPicture& right) {
+    RgbPicture both{{left.size_px.x + right.size_px.x, std::max(left.size_px.y, right.size_px.y)}, {}};
+    both.bytes.resize(std::size_t{3} * both.size_px.x * both.size_px.y);
+    std::size_t first_column = 0;
+    for (const RgbPicture* picture : {&left, &right}) {
+        const std::size_t row_bytes = std::size_t{3} * picture->size_px.x;
+        for (std::size_t y = 0; y < picture->size_px.y; ++y) {
+            std::copy_n(picture->bytes.data() + y * row_bytes, row_bytes, both.bytes.data() + 3 * (y * both.size_px.x + first_column));
+        }
+        first_column += picture->size_px.x;
+    }
+    return both;
+}
+
+}  // namespace simulated

@@ -1,0 +1,125 @@
+// What the wearer sees: layers over one another in linear light, one eye at a time, as 8-bit sRGB. On the CPU and the same on every run.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace simulated {
+
+enum class Texels {
+    kRgba8,    // four bytes
+    kBgra8,    // four bytes
+    kRgba16f,  // four IEEE halves, little endian
+};
+enum class Transfer {
+    kLinear,  // values are light: *_UNORM and *_SFLOAT swapchains
+    kSrgb,    // values are sRGB-encoded: *_SRGB swapchains
+};
+
+// One array layer of a swapchain image, rows from the top, tightly packed. The texels stay the caller's.
+struct Picture {
+    glm::uvec2 size_px{0, 0};
+    Texels texels = Texels::kRgba8;
+    Transfer transfer = Transfer::kSrgb;
+    std::span<const std::byte> bytes;
+};
+[[nodiscard]] std::size_t bytesPerTexel(Texels texels);
+
+// A rectangle of a picture in pixels from its top left corner; it must lie inside the picture.
+struct Rect {
+    glm::uvec2 offset{0, 0};
+    glm::uvec2 extent{0, 0};
+};
+
+// Both false: the layer covers what is below it. XrCompositionLayerFlagBits of the same names.
+struct Blending {
+    bool texture_source_alpha = false;
+    bool unpremultiplied_alpha = false;
+};
+
+struct ProjectionView {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_view;
+    Fov fov;  // upside down or mirrored views (up < down, right < left) are read as they say
+};
+struct ProjectionLayer {
+    std::array<ProjectionView, 2> views;  // by Side
+    Blending blending;
+};
+
+enum class Visibility { kBoth, kLeft, kRight };
+struct QuadLayer {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_quad;  // its centre; it is seen from its +z side only
+    glm::dvec2 size_m{0.0, 0.0};
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+// The inside of a cylinder about the y axis of its pose, the middle of its picture at -z. A radius of 0 or infinity: it is infinitely far.
+struct CylinderLayer {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_cylinder;
+    double radius_m = 0.0;
+    double central_angle_rad = 0.0;
+    double aspect_ratio = 1.0;  // of the picture: width on the arc to height
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+// The inside of a sphere, or of a piece of it between two latitudes and of a span of longitudes about -z. Radii as of cylinders.
+struct SphereLayer {
+    Picture picture;
+    Rect rect;
+    Pose stage_from_sphere;
+    double radius_m = 0.0;
+    double horizontal_angle_rad = 0.0;
+    double upper_angle_rad = 0.0, lower_angle_rad = 0.0;
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+// A cube map infinitely far: faces +x, -x, +y, -y, +z, -z, laid out as Vulkan reads them.
+struct CubeLayer {
+    std::array<Picture, 6> faces;
+    glm::dquat stage_from_cube{1.0, 0.0, 0.0, 0.0};
+    Visibility visibility = Visibility::kBoth;
+    Blending blending;
+};
+
+using Layer = std::variant<ProjectionLayer, QuadLayer, CylinderLayer, SphereLayer, CubeLayer>;
+
+// 8-bit sRGB, three bytes per pixel, rows from the top.
+struct RgbPicture {
+    glm::uvec2 size_px{0, 0};
+    std::vector<std::uint8_t> bytes;
+    bool operator==(const RgbPicture&) const = default;
+};
+
+struct EyeView {
+    glm::uvec2 size_px{0, 0};
+    Pose stage_from_eye;
+    Fov fov;
+};
+
+// Layers in submission order over black. A projection layer is turned from its own view's orientation to the eye's, through directions;
+// nothing is drawn where the view had no picture. With equal orientation, angles and size an sRGB picture comes through byte for byte.
+[[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers);
+
+// Left and right eye beside one another, at the top of a picture as high as the higher one.
+[[nodiscard]] RgbPicture sideBySide(const RgbPicture& left, const RgbPicture& right);
+
+// IEC 61966-2-1, both on 0 to 1; a byte decoded and encoded is the same byte.
+[[nodiscard]] double decodeSrgb(double encoded);
+[[nodiscard]] double encodeSrgb(double linear);
+
+}  // namespace simulated

@@ -1,0 +1,54 @@
+#include "xr/simulated/compose/show.h"
+
+#include <cstdio>
+
+#include "xr/simulated/api/layers.h"
+#include "xr/simulated/compose/picture_file.h"
+#include "xr/simulated/names.h"
+
+namespace simulated {
+namespace {
+
+FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& state) {
+    const Simulation& simulation = *session.instance.simulation;
+    FrameRecord record;
+    record.frame = simulation.frames_shown;
+    record.display_time_ns = info.displayTime;
+    record.period_ns = simulation.clock.period();
+    record.should_render = session.frames.should_render;
+    record.session_state = wordOf(session.state);
+    record.stage_from_head = state.stage_from_head;
+    for (std::size_t eye = 0; eye < kEyes; ++eye) record.eyes[eye] = {state.eyes[eye].stage_from_eye, state.eyes[eye].fov};
+    record.layers = loggedLayers(session, info, state);
+    record.events = std::exchange(session.log_events, {});
+    return record;
+}
+
+void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& folder) {
+    const Simulation& simulation = *session.instance.simulation;
+    const std::vector<Layer> layers = composableLayers(session, info, state);
+    std::array<RgbPicture, kEyes> pictures;
+    for (const Side side : kSides) {
+        const EyeState& eye = state.eyes[side];
+        pictures[side] = composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers);
+    }
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(simulation.frames_shown));
+    writePng(folder / name, sideBySide(pictures[kLeft], pictures[kRight]));
+}
+
+}  // namespace
+
+void showFrame(Session& session, const XrFrameEndInfo& info, const State& state) {
+    Simulation& simulation = *session.instance.simulation;
+    if (!simulation.output) {
+        session.log_events.clear();
+        return;
+    }
+    const bool wants_picture = simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown);
+    if (wants_picture && info.layerCount > 0) writePicture(session, info, state, simulation.output->folder);
+    simulation.output->log.write(recordOf(session, info, state));
+    ++simulation.frames_shown;
+}
+
+}  // namespace simulated

@@ -1,0 +1,11 @@
+// What the wearer sees of a frame: composed, written and logged, if SIMULATED_OPENXR_OUT names a folder.
+#pragma once
+
+#include "xr/simulated/api/session.h"
+
+namespace simulated {
+
+// For a frame that passed every check.
+void showFrame(Session& session, const XrFrameEndInfo& info, const State& state);
+
+}  // namespace simulated

@@ -1,0 +1,79 @@
+// The log of frames. nlohmann-json writes the shortest digits that read back as the same double.
+#include "xr/simulated/log/frame_log.h"
+
+#include <nlohmann/json.hpp>
+
+#include <stdexcept>
+
+namespace simulated {
+
+namespace {
+
+// Keys stay in the order written here, the order of a reader's questions.
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const Pose& pose) {
+    const glm::dvec3& p = pose.position;
+    const glm::dquat& q = pose.orientation;
+    return {{"position", {p.x, p.y, p.z}}, {"orientation", {q.x, q.y, q.z, q.w}}};
+}
+
+Json jsonOf(const Fov& fov) { return {{"left", fov.left_rad}, {"right", fov.right_rad}, {"up", fov.up_rad}, {"down", fov.down_rad}}; }
+
+Json jsonOf(const LoggedView& view) {
+    Json json{{"swapchain", view.swapchain},
+              {"image", view.image_index},
+              {"array_layer", view.array_index},
+              {"format", view.format},
+              {"rect", {view.x, view.y, view.width, view.height}}};
+    if (view.pose) { json["pose"] = jsonOf(*view.pose); }
+    if (view.fov) { json["fov"] = jsonOf(*view.fov); }
+    if (view.depth) {
+        json["depth"] = {{"format", view.depth->format},
+                         {"min", view.depth->min_depth},
+                         {"max", view.depth->max_depth},
+                         {"near", view.depth->near_z},
+                         {"far", view.depth->far_z}};
+    }
+    return json;
+}
+
+Json jsonOf(const LoggedLayer& layer) {
+    Json json{{"type", layer.type}, {"flags", layer.flags}, {"space", layer.space}, {"stage_from_space", jsonOf(layer.stage_from_space)}};
+    if (layer.pose) { json["pose"] = jsonOf(*layer.pose); }
+    if (layer.size_m) { json["size"] = {layer.size_m->x, layer.size_m->y}; }
+    for (const auto& [name, value] : layer.numbers) { json[name] = value; }
+    if (!layer.eye_visibility.empty()) { json["eye_visibility"] = layer.eye_visibility; }
+    json["views"] = Json::array();
+    for (const LoggedView& view : layer.views) { json["views"].push_back(jsonOf(view)); }
+    return json;
+}
+
+}  // namespace
+
+std::string frameLine(const FrameRecord& record) {
+    Json json{{"frame", record.frame},
+              {"display_time_ns", record.display_time_ns},
+              {"period_ns", record.period_ns},
+              {"should_render", record.should_render},
+              {"session_state", record.session_state},
+              {"head", jsonOf(record.stage_from_head)}};
+    json["eyes"] = Json::array();
+    for (const LoggedEye& eye : record.eyes) { json["eyes"].push_back({{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}}); }
+    json["layers"] = Json::array();
+    for (const LoggedLayer& layer : record.layers) { json["layers"].push_back(jsonOf(layer)); }
+    json["events"] = record.events;
+    // Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary | std::ios::trunc) {
+    if (!stream_) { throw std::runtime_error(path_.string() + ": cannot be written, must be a file in a folder that exists"); }
+}
+
+void FrameLog::write(const FrameRecord& record) {
+    stream_ << frameLine(record) + '\n' << std::flush;
+    if (!stream_) { throw std::runtime_error(path_.string() + ": cannot be written (disk full?)"); }
+}
+
+}  // namespace simulated

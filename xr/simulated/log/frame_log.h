@@ -1,0 +1,78 @@
+// A line of JSON per frame: what the application submitted, when, and what the runtime told it meanwhile.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace simulated {
+
+struct LoggedDepth {
+    std::string format;  // as swapchain formats: "VK_FORMAT_D32_SFLOAT"
+    double min_depth = 0.0, max_depth = 1.0, near_z = 0.0, far_z = 0.0;
+};
+
+// An XrSwapchainSubImage, and for projection views where and how it was seen.
+struct LoggedView {
+    std::uint64_t swapchain = 0;
+    std::uint32_t image_index = 0;  // the image last released
+    std::uint32_t array_index = 0;
+    std::string format;
+    std::int32_t x = 0, y = 0, width = 0, height = 0;
+    std::optional<Pose> pose;  // in the layer's space, as submitted
+    std::optional<Fov> fov;
+    std::optional<LoggedDepth> depth;
+};
+
+struct LoggedLayer {
+    std::string type;                                          // "projection", "quad", "cylinder", "equirect2", "cube"
+    std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
+    std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
+    Pose stage_from_space;                                     // at the display time
+    std::vector<LoggedView> views;                             // two of a projection layer, one of others
+    std::optional<Pose> pose;                                  // quads: in the layer's space
+    std::optional<glm::dvec2> size_m;                          // quads
+    std::string eye_visibility;                                // quads and all that surrounds: "both", "left", "right"
+    std::vector<std::pair<std::string, double>> numbers = {};  // of cylinders and spheres: "radius", "central_angle" ...
+};
+
+struct LoggedEye {
+    Pose stage_from_eye;
+    Fov fov;
+};
+
+struct FrameRecord {
+    std::uint64_t frame = 0;
+    std::int64_t display_time_ns = 0;
+    std::int64_t period_ns = 0;
+    bool should_render = true;
+    std::string session_state;  // "FOCUSED" ...
+    Pose stage_from_head;
+    std::array<LoggedEye, 2> eyes;  // by Side
+    std::vector<LoggedLayer> layers;
+    std::vector<std::string> events;  // since the frame before: "state VISIBLE", "exit", "slow-images 3" ...
+};
+
+// One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
+[[nodiscard]] std::string frameLine(const FrameRecord& record);
+
+// Lines are there as soon as they are written, so that a program that dies leaves a log of all frames before.
+class FrameLog {
+public:
+    // Begins the file anew. Throws std::runtime_error naming it.
+    explicit FrameLog(const std::filesystem::path& path);
+    void write(const FrameRecord& record);
+
+private:
+    std::filesystem::path path_;
+    std::ofstream stream_;
+};
+
+}  // namespace simulated

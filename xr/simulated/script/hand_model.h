@@ -1,0 +1,20 @@
+// The joints of a hand that holds what a controller's grip pose says, by XR_EXT_hand_tracking's names and axes.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+
+#include <array>
+
+namespace simulated {
+
+struct HandJoint {
+    Pose stage_from_joint;  // -z towards the fingertips, y out of the back of the hand
+    double radius_m = 0.0;
+};
+
+inline constexpr std::size_t kHandJoints = 26;
+
+// Curls are from 0, the finger is straight, to 1: the index finger's own, and that of the other three; the thumb stays.
+[[nodiscard]] std::array<HandJoint, kHandJoints> handJoints(Side side, const Pose& stage_from_grip, double index_curl, double others_curl);
+
+}  // namespace simulated

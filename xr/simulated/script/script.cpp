@@ -1,0 +1,139 @@
+// A script as a function of time.
+#include "xr/simulated/script/script.h"
+
+#include "xr/simulated/script/script_inputs.h"
+
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+
+namespace simulated {
+
+namespace {
+
+// What an axis or a press means for the components of its input.
+void setAxis(ControllerState& state, const std::string& name, InputKind kind, const glm::dvec2& value) {
+    if (kind == InputKind::kStick) {
+        state.inputs[name + "/x"] = value.x;
+        state.inputs[name + "/y"] = value.y;
+        state.inputs[name + "/touch"] = value != glm::dvec2(0.0) ? 1.0 : 0.0;
+        return;
+    }
+    constexpr double kClicksFrom = 0.9;
+    state.inputs[name + "/value"] = value.x;
+    state.inputs[name + "/force"] = value.x;
+    state.inputs[name + "/click"] = value.x >= kClicksFrom ? 1.0 : 0.0;
+    state.inputs[name + "/touch"] = value.x > 0.0 ? 1.0 : 0.0;
+}
+
+void setPress(ControllerState& state, const Script::Hand::Press& press) {
+    state.inputs[press.input + "/touch"] = 1.0;
+    if (press.touch_only) { return; }
+    state.inputs[press.input + "/click"] = 1.0;
+    const InputKind kind = *kindOfInput(press.input);
+    if (kind == InputKind::kAnalog) { state.inputs[press.input + "/value"] = 1.0; }
+    if (kind != InputKind::kButton) { state.inputs[press.input + "/force"] = 1.0; }
+}
+
+ControllerState controllerAt(const Script::Hand& hand, double time_s) {
+    ControllerState state;
+    state.tracked = hand.tracked.at(time_s);
+    state.stage_from_grip = hand.stage_from_grip.at(time_s);
+    state.stage_from_aim = compose(state.stage_from_grip, hand.grip_from_aim);
+    if (!state.tracked) { return state; }
+    for (const auto& [name, track] : hand.axes) { setAxis(state, name, *kindOfInput(name), track.at(time_s)); }
+    for (const Script::Hand::Press& press : hand.presses) {
+        if (press.from_s <= time_s && time_s < press.to_s) { setPress(state, press); }
+    }
+    return state;
+}
+
+}  // namespace
+
+std::optional<InputKind> kindOfInput(std::string_view name) {
+    for (const auto& [known, kind] : kInputs) {
+        if (known == name) { return kind; }
+    }
+    return std::nullopt;
+}
+
+double ControllerState::input(std::string_view identifier_and_component) const {
+    const auto found = inputs.find(identifier_and_component);
+    return found == inputs.end() ? 0.0 : found->second;
+}
+
+const char* nameOf(ScriptEvent::Kind kind) {
+    switch (kind) {
+        case ScriptEvent::Kind::kSlowImages:
+            return "slow-images";
+        case ScriptEvent::Kind::kRecentre:
+            return "recentre";
+        case ScriptEvent::Kind::kLoseSession:
+            return "lose-session";
+        case ScriptEvent::Kind::kLoseInstance:
+            return "lose-instance";
+        case ScriptEvent::Kind::kExit:
+            return "exit";
+    }
+    return "unknown";
+}
+
+Script::Script() {
+    stage_from_head = Track<Pose>(Pose{{1.0, 0.0, 0.0, 0.0}, {0.0, 1.6, 0.0}});
+    for (const Side side : kSides) {
+        // Forearms ahead, a little below the shoulders.
+        const double x = side == kLeft ? -0.2 : 0.2;
+        hands[side].stage_from_grip = Track<Pose>(Pose{{1.0, 0.0, 0.0, 0.0}, {x, 1.2, -0.35}});
+        const double angle = glm::radians(45.0);
+        fovs[side].setInitial({-angle, angle, angle, -angle});
+    }
+}
+
+State Script::at(double time_s) const {
+    State state;
+    state.time_s = time_s;
+    state.stage_from_head = stage_from_head.at(time_s);
+    for (const Side side : kSides) {
+        state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])), fovs[side].at(time_s)};
+        state.controllers[side] = controllerAt(hands[side], time_s);
+    }
+    state.head_turn_known = head_turn_known.at(time_s);
+    state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
+    for (ControllerState& other : state.others) { other.tracked = false; }
+    state.should_render = should_render.at(time_s);
+    state.worn = worn.at(time_s);
+    state.visible = visible.at(time_s);
+    state.focused = focused.at(time_s);
+    state.present = present.at(time_s);
+    return state;
+}
+
+std::vector<ScriptEvent> Script::eventsIn(double from_s, double to_s) const {
+    std::vector<ScriptEvent> chosen;
+    for (const ScriptEvent& event : events) {
+        if (event.time_s > from_s && event.time_s <= to_s) { chosen.push_back(event); }
+    }
+    return chosen;
+}
+
+Pose Script::stageFromLocal(double time_s) const {
+    const auto next = std::ranges::upper_bound(recentres_s, time_s);
+    if (next != recentres_s.begin()) { return levelled(stage_from_head.at(*std::prev(next))); }
+    return stage_from_local ? *stage_from_local : levelled(stage_from_head.at(0.0));
+}
+
+Pose Script::stageFromLocalFloor(double time_s) const {
+    Pose floor = stageFromLocal(time_s);
+    floor.position.y = 0.0;
+    return floor;
+}
+
+std::optional<InputPath> parseInputPath(std::string_view path) {
+    for (const Side side : kSides) {
+        const std::string_view prefix = side == kLeft ? "/user/hand/left/input/" : "/user/hand/right/input/";
+        if (path.starts_with(prefix) && path.size() > prefix.size()) { return InputPath{side, path.substr(prefix.size())}; }
+    }
+    return std::nullopt;
+}
+
+}  // namespace simulated

@@ -1,0 +1,172 @@
+// What happens to the simulated headset: poses, angles, controllers and misbehaviour, a pure function of display time that is read from
+// a text file. docs/simulated_script.md has the commands.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+#include "xr/simulated/script/track.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace simulated {
+
+// One line: file:line: what is wrong, what was expected.
+class ScriptError : public std::runtime_error {
+public:
+    explicit ScriptError(std::string message) : std::runtime_error(oneLine(std::move(message))) {}
+
+private:
+    // What a message quotes comes from a file and may hold anything.
+    static std::string oneLine(std::string message) {
+        for (char& letter : message) {
+            if (static_cast<unsigned char>(letter) < ' ') { letter = ' '; }
+        }
+        return message;
+    }
+};
+
+// One controller at a time.
+struct ControllerState {
+    bool tracked = true;  // else poses are neither valid nor tracked and all inputs rest
+    Pose stage_from_grip;
+    Pose stage_from_aim;
+    // By what follows /input/ in a binding path: "trigger/value", "thumbstick/x", "a/click", "squeeze/force" ... An input that is not
+    // here rests at 0. Booleans are 0 or 1; a trigger or squeeze clicks from 0.9 on and counts as touched above 0.
+    std::map<std::string, double, std::less<>> inputs;
+
+    [[nodiscard]] double input(std::string_view identifier_and_component) const;
+};
+
+// Whatever has buttons; the hands by Side.
+enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3 };
+inline constexpr std::size_t kDevices = 4;
+
+struct EyeState {
+    Pose stage_from_eye;
+    Fov fov;
+};
+
+// All that is a function of the display time.
+struct State {
+    double time_s = 0.0;
+    Pose stage_from_head;
+    std::array<EyeState, 2> eyes;                          // by Side
+    std::array<ControllerState, 2> controllers;            // by Side
+    bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
+    // What the head's and a gamepad's buttons say: nothing, unless a program's own test moves them (XR_EXT_conformance_automation).
+    std::array<ControllerState, 2> others;
+    // By InputDevice.
+    [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
+    [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
+    bool should_render = true;
+    bool worn = true;     // else the session stops, and is IDLE until the headset is put on again
+    bool visible = true;  // else the session is at most SYNCHRONIZED
+    bool focused = true;  // else the session is at most VISIBLE
+    bool present = true;  // whether somebody wears the headset
+};
+
+// What happens once, when the display time first reaches `time_s`.
+struct ScriptEvent {
+    enum class Kind {
+        kSlowImages,    // the next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED
+        kRecentre,      // kNoticeSeconds later LOCAL's origin is where the head is then
+        kLoseSession,   // LOSS_PENDING, then XR_ERROR_SESSION_LOST from every call
+        kLoseInstance,  // XrEventDataInstanceLossPending, then XR_ERROR_INSTANCE_LOST
+        kExit,          // STOPPING, then EXITING, as if the wearer left the program
+    };
+    static constexpr double kNoticeSeconds = 0.05;
+    double time_s = 0.0;
+    Kind kind = Kind::kExit;
+    std::uint32_t count = 1;
+};
+[[nodiscard]] const char* nameOf(ScriptEvent::Kind kind);  // the script's word for it
+
+// Which frames' composed pictures are written; frames count from 0 at the first xrEndFrame.
+struct FrameChoice {
+    std::uint64_t first = 0;
+    std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t every = 1;
+
+    [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
+};
+
+class Script {
+public:
+    // The headset without a script: the head at rest at (0, 1.6, 0) looking along -z, eyes 0.063 m apart with 90 degree views, controllers
+    // held in front, 90 Hz, 1024 x 1024, no mask, every frame written.
+    Script();
+
+    // `name` is for messages, and files that the script names are found relative to its folder. Throws ScriptError.
+    static Script parse(std::string_view text, const std::string& name);
+    static Script load(const std::filesystem::path& path);
+
+    // Times are seconds of display time since the first frame; any finite time is allowed, also before 0.
+    [[nodiscard]] State at(double time_s) const;
+    // Events with from_s < time <= to_s, in order; pass -infinity as `from_s` for the first frame.
+    [[nodiscard]] std::vector<ScriptEvent> eventsIn(double from_s, double to_s) const;
+    // LOCAL's origin is the head at time 0 without tilt, or where the script says, or the head at the last recentring before `time_s`.
+    // STAGE's is on the floor.
+    [[nodiscard]] Pose stageFromLocal(double time_s = 0.0) const;
+    // LOCAL's, brought down to the floor.
+    [[nodiscard]] Pose stageFromLocalFloor(double time_s = 0.0) const;
+
+    [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
+
+    double rate_hz = 90.0;
+    glm::uvec2 size_px{1024, 1024};  // recommended, per eye
+    double eye_distance_m = 0.063;
+    std::array<double, 2> cant_rad{0.0, 0.0};
+    std::string system_name = "Simulated headset";  // or the headset file's name
+    bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
+    bool visibility_mask_is_broken = false;         // the function is there and ends the program
+    bool adds_vulkan_features = false;              // the runtime adds a feature of its own to the application's device
+    bool has_stage = true;                          // whether there is a reference space STAGE
+    enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
+    std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
+    std::optional<Pose> stage_from_local;
+    std::vector<double> recentres_s;
+    bool plugged = true;  // else there is a runtime, but no headset
+    bool writes_pictures = true;
+    FrameChoice frames;
+    std::set<std::string, std::less<>> extensions_off;
+    std::string profile;  // "valve/index_controller": the controllers to play; none: whatever the program knows
+
+    struct Hand {
+        Track<Pose> stage_from_grip;
+        Pose grip_from_aim;
+        Steps<bool> tracked{true};
+        std::map<std::string, Track<glm::dvec2>, std::less<>> axes;  // trigger and squeeze use x alone
+        struct Press {
+            std::string input;
+            double from_s, to_s;  // from <= time < to
+            bool touch_only;
+        };
+        std::vector<Press> presses;
+        std::map<std::string, std::string> input_places;  // each input that moves, and the line that names it first
+    };
+    Track<Pose> stage_from_head;
+    std::array<Hand, 2> hands;
+    std::array<Steps<Fov>, 2> fovs;
+    Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true}, head_turn_known{true}, head_place_known{true};
+    std::vector<ScriptEvent> events;  // by time
+};
+
+// A binding path such as /user/hand/right/input/trigger/value at a state: the side and what follows /input/. None if the path is not of
+// that form. Identifiers without component ("/input/trigger") are returned as they are.
+struct InputPath {
+    Side side;
+    std::string_view input;
+};
+[[nodiscard]] std::optional<InputPath> parseInputPath(std::string_view path);
+
+}  // namespace simulated

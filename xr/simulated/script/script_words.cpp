@@ -1,0 +1,126 @@
+// Words of a script's line.
+#include "xr/simulated/script/script_words.h"
+
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace simulated {
+
+std::string shown(std::string_view word) {
+    constexpr std::size_t kMost = 60;
+    std::string result;
+    for (const char c : word.substr(0, kMost)) { result += c >= ' ' && c <= '~' ? c : '?'; }
+    return word.size() > kMost ? result + "..." : result;
+}
+
+std::optional<double> parseNumber(std::string_view word) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) { return std::nullopt; }
+    return value;
+}
+
+std::string listed(std::initializer_list<std::string_view> choices) {
+    std::string result;
+    for (const std::string_view& choice : choices) {
+        const bool is_first = &choice == choices.begin(), is_last = &choice + 1 == choices.end();
+        result += std::string(is_first ? "" : is_last ? " or " : ", ") + std::string(choice);
+    }
+    return result;
+}
+
+Words::Words(std::string_view line, std::string place) : place_(std::move(place)) {
+    const auto isBlank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    for (std::size_t i = 0; i < line.size();) {
+        if (isBlank(line[i])) {
+            ++i;
+        } else if (line[i] == '#') {
+            break;
+        } else if (line[i] == '"') {
+            const std::size_t end = line.find('"', i + 1);
+            if (end == std::string_view::npos) { fail("a quote is not closed, must be \"...\" on one line"); }
+            words_.emplace_back(line.substr(i + 1, end - i - 1));
+            i = end + 1;
+        } else {
+            const std::size_t begin = i;
+            while (i < line.size() && !isBlank(line[i]) && line[i] != '#') { ++i; }
+            words_.emplace_back(line.substr(begin, i - begin));
+        }
+    }
+}
+
+bool Words::takeIf(std::string_view word) {
+    const bool is_next = !isAtEnd() && words_[next_] == word;
+    if (is_next) { ++next_; }
+    return is_next;
+}
+
+std::string Words::text(std::string_view meaning) {
+    if (isAtEnd()) { fail("{} is missing", meaning); }
+    if (words_[next_].empty()) { fail("{} is empty, must be a word", meaning); }
+    return words_[next_++];
+}
+
+double Words::number(std::string_view meaning, double least, double most) {
+    if (isAtEnd()) { fail("{} is missing, must be a number from {} to {}", meaning, least, most); }
+    const std::string& word = words_[next_++];
+    const std::optional<double> value = parseNumber(word);
+    if (!value || *value < least || *value > most) { fail("{} is {}, must be a number from {} to {}", meaning, shown(word), least, most); }
+    return *value;
+}
+
+std::uint64_t Words::count(std::string_view meaning, std::uint64_t least, std::uint64_t most) {
+    if (isAtEnd()) { fail("{} is missing, must be a whole number from {} to {}", meaning, least, most); }
+    const std::string& word = words_[next_++];
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size() || value < least || value > most) {
+        fail("{} is {}, must be a whole number from {} to {}", meaning, shown(word), least, most);
+    }
+    return value;
+}
+
+std::size_t Words::choice(std::string_view meaning, std::initializer_list<std::string_view> choices) {
+    if (isAtEnd()) { fail("{} is missing, must be {}", meaning, listed(choices)); }
+    const std::string& word = words_[next_++];
+    const auto* const found = std::ranges::find(choices, word);
+    if (found == choices.end()) { fail("{} is {}, must be {}", meaning, shown(word), listed(choices)); }
+    return static_cast<std::size_t>(found - choices.begin());
+}
+
+glm::dvec3 Words::position() {
+    constexpr double kFarthest = 1e5;
+    const double x = number("position x", -kFarthest, kFarthest);
+    const double y = number("position y", -kFarthest, kFarthest);
+    return {x, y, number("position z", -kFarthest, kFarthest)};
+}
+
+glm::dquat Words::rotation() {
+    std::array<double, 4> parts{};  // x, y, z, w
+    for (std::size_t i = 0; i < parts.size(); ++i) { parts[i] = number(fmt::format("rotation {}", "xyzw"[i]), -1e6, 1e6); }
+    const glm::dquat quaternion(parts[3], parts[0], parts[1], parts[2]);
+    const double length = glm::length(quaternion);
+    if (length < 1e-3) { fail("the rotation's length is {}, must be 1 (or at least 0.001 to be made so)", length); }
+    return quaternion / length;
+}
+
+Fov Words::angles() {
+    constexpr double kWidest = 85.0;
+    const double left = number("the angle to the left in degrees", -kWidest, kWidest);
+    const double right = number("the angle to the right in degrees", -kWidest, kWidest);
+    const double up = number("the angle up in degrees", -kWidest, kWidest);
+    const double down = number("the angle down in degrees", -kWidest, kWidest);
+    if (left >= right) { fail("the angles are {} to the left and {} to the right, left must be less", left, right); }
+    if (down >= up) { fail("the angles are {} up and {} down, down must be less", up, down); }
+    return {glm::radians(left), glm::radians(right), glm::radians(up), glm::radians(down)};
+}
+
+void Words::requireEnd() const {
+    if (!isAtEnd()) { fail("{} is too much, the line must end before it", shown(words_[next_])); }
+}
+
+}  // namespace simulated

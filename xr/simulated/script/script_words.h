@@ -1,0 +1,67 @@
+// A line of a script as words, taken one after the other; every mistake is a ScriptError with file and line.
+#pragma once
+
+#include "xr/simulated/compose/geometry.h"
+#include "xr/simulated/script/script.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace simulated {
+
+template <typename... Args>
+[[noreturn]] void failAt(const std::string& place, fmt::format_string<Args...> format, Args&&... args) {
+    throw ScriptError(fmt::format("{}: {}", place, fmt::format(format, std::forward<Args>(args)...)));
+}
+
+// A word as a message shows it: short and printable.
+[[nodiscard]] std::string shown(std::string_view word);
+
+// The whole word as a number; none if it is anything else, or not finite.
+[[nodiscard]] std::optional<double> parseNumber(std::string_view word);
+
+// Blanks divide words, # begins a comment, "double quotes" hold a word with blanks.
+class Words {
+public:
+    Words(std::string_view line, std::string place);
+
+    [[nodiscard]] const std::string& place() const { return place_; }
+    [[nodiscard]] bool isAtEnd() const { return next_ == words_.size(); }
+    // The next word if it is `word`; it is taken then.
+    bool takeIf(std::string_view word);
+
+    // `meaning` is what a message calls the word.
+    std::string text(std::string_view meaning);
+    double number(std::string_view meaning, double least, double most);
+    std::uint64_t count(std::string_view meaning, std::uint64_t least, std::uint64_t most);
+    // The index of the next word in `choices`.
+    std::size_t choice(std::string_view meaning, std::initializer_list<std::string_view> choices);
+    bool onOff(std::string_view meaning) { return choice(meaning, {"on", "off"}) == 0; }
+    Side side() { return choice("the side", {"left", "right"}) == 0 ? kLeft : kRight; }
+    double time(std::string_view meaning = "the time in seconds") { return number(meaning, -1e6, 1e6); }
+    glm::dvec3 position();
+    glm::dquat rotation();
+    // left right up down in degrees, within 85 degrees.
+    Fov angles();
+
+    template <typename... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
+        failAt(place_, format, std::forward<Args>(args)...);
+    }
+    void requireEnd() const;
+
+private:
+    std::string place_;
+    std::vector<std::string> words_;
+    std::size_t next_ = 0;
+};
+
+// "one, two or three"
+[[nodiscard]] std::string listed(std::initializer_list<std::string_view> choices);
+
+}  // namespace simulated
