@@ -77,8 +77,11 @@ void main() {
     placeDigits(block);
     barrier();
 
-    for (uint step_begin = run_begin; step_begin < run_end; step_begin += lanes) {
-        const uint item = step_begin + gl_SubgroupInvocationID;
+    // As many steps for every subgroup, though the runs of a list's last block may be shorter: a device may make whole workgroups wait
+    // at a subgroup's barrier, as Mesa 25's software device does. The first run is the longest.
+    const uint steps_end = min(run_keys, count - block_begin);
+    for (uint step_begin = 0; step_begin < steps_end; step_begin += lanes) {
+        const uint item = run_begin + step_begin + gl_SubgroupInvocationID;
         const bool valid = item < run_end;
         const uint key = valid ? pass.keys_in.at[item] : 0;
         const uint value = valid ? pass.values_in.at[item] : 0;
