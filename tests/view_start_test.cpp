@@ -110,7 +110,8 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
     };
     CHECK(compare(run.eye(5, kLeft), rendered("1.2")).psnrDb() > 45.0);
     CHECK(compare(run.eye(5, kLeft), rendered("0.3")).psnrDb() < kOtherPictureDb);
-    for (const auto& view : run.layers(5, "projection").at(0).at("views")) {
+    const auto layers = run.layers(5, "projection");
+    for (const auto& view : layers.at(0).at("views")) {
         CHECK(view.at("depth").at("near").get<double>() == doctest::Approx(0.3));
     }
 }
