@@ -112,6 +112,7 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
     CHECK(compare(run.eye(5, kLeft), rendered("0.3")).psnrDb() < kOtherPictureDb);
     const auto layers = run.layers(5, "projection");
     for (const auto& view : layers.at(0).at("views")) {
-        CHECK(view.at("depth").at("near").get<double>() == doctest::Approx(0.3));
+        // Depth 0 is infinitely far, so that 1, the far end to OpenXR, is the near plane.
+        CHECK(view.at("depth").at("far").get<double>() == doctest::Approx(0.3));
     }
 }
