@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/view/canvas.h"
+#include "app/view/window_input.h"
 
 #include <glm/glm.hpp>
 
@@ -26,19 +27,6 @@ public:
 
 private:
     WindowSystem() = default;
-};
-
-// What came from mouse and keyboard since the last time.
-struct WindowInput {
-    CanvasPointer pointer;   // on the panel
-    glm::dvec3 walk{0.0};    // right, down, forward; -1 to 1
-    double turn_rad = 0.0;   // to the right
-    double turn_rate = 0.0;  // by keys, -1 to 1
-    bool toggle_panel = false;
-    bool reload_shaders = false;
-    bool recentre = false;
-    bool quit = false;
-    std::string dropped;  // a file let fall on the window; empty: none
 };
 
 class MirrorWindow {

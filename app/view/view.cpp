@@ -6,6 +6,7 @@
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
+#include "engine/platform.h"
 
 #include <chrono>
 #include <cstdlib>

@@ -20,6 +20,9 @@ struct ViewSettings {
     bool tilt = false;                          // whether two hands may tilt the scene
     Quality quality = Quality::kOff;            // how the frame rate is held
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
+
+    // Both eyes are shown the dominant one's picture.
+    [[nodiscard]] bool showsOneEye() const { return stereo.mode == "mono"; }
 };
 
 // The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, scene-position,

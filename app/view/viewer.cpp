@@ -2,14 +2,11 @@
 #include "app/view/viewer.h"
 
 #include "app/interrupt.h"
-#include "app/options/modes.h"
+#include "app/view/picture_pair.h"
 #include "app/view/shader_reload.h"
 #include "app/view/view_eyes.h"
 #include "app/view/view_files.h"
-#include "app/view/view_scenes.h"
 #include "engine/error.h"
-#include "engine/picture/image_io.h"
-#include "engine/setup/output_files.h"
 
 #include <thread>
 
@@ -22,38 +19,10 @@ constexpr double kPanelWidthMetres = 0.6;
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr std::size_t kPlottedFrames = 120;
-// By keys of the window.
-constexpr double kTurnRadiansPerSecond = 1.2, kWalkMetresPerSecond = 1.5;
 // How often to look whether the session has begun to run, and how often the window is drawn meanwhile.
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
 // So many sessions lost in a row before one has shown a frame are too many.
 constexpr int kMostLosses = 3;
-
-Image besideOneAnother(const Image& left, const Image& right) {
-    Image both{{left.size_px.x + right.size_px.x, left.size_px.y}, left.channels, {}};
-    both.values.reserve(left.values.size() + right.values.size());
-    const std::size_t row = std::size_t{left.size_px.x} * static_cast<std::size_t>(left.channels);
-    for (std::size_t at = 0; at < left.values.size(); at += row) {
-        for (const Image* eye : {&left, &right}) {
-            const auto begin = eye->values.begin() + static_cast<std::ptrdiff_t>(at);
-            both.values.insert(both.values.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
-        }
-    }
-    return both;
-}
-
-// Without its extension; pictures are never overwritten.
-std::string freePictureName(const std::filesystem::path& folder) {
-    for (int number = 1;; ++number) {
-        const std::string name = fmt::format("binosplat-{:04}", number);
-        if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)))) { return name; }
-    }
-}
-
-glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
-    const glm::dvec2 wanted = glm::round(scale * glm::dvec2(instance.recommendedSizePx()));
-    return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
-}
 
 }  // namespace
 
@@ -62,18 +31,17 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
     : options_(options),
       instance_(instance),
       context_(context),
+      settings_(settings),
       stay_(std::make_unique<HeadsetStay>(instance, context, kCanvasPx)),
       format_(stay_->format),
-      presenter_(context_, format_),
+      renderer_(instance, context, options_.run, log_, format_),
       canvas_(context_, kCanvasPx, format_),
       panel_(kCanvasPx, kPanelWidthMetres),
       commands_(context_),
-      settings_(settings),
-      loader_(std::make_unique<SceneLoader>(context_, options.scene, options.run)) {
-    status_.scene = asked_scene_ = options.scene;
+      scenes_(context_, options_, log_) {
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (mirrored) { openWindow(); }
-    fitResolution();
+    renderer_.fitImages(*stay_, settings_);
     if (options.load_first) { takeScene(); }
 }
 
@@ -81,7 +49,7 @@ void Viewer::run() {
     const Interrupt interrupt;
     try {
         for (bool goes_on = true; goes_on;) {
-            if (!leaving_ && (interrupt.came() || (options_.frames != 0 && frames_ >= options_.frames))) { leave(); }
+            if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
                 goes_on = step();
             } catch (const xr::Lost& lost) {
@@ -90,11 +58,11 @@ void Viewer::run() {
             }
         }
     } catch (const xr::InstanceLost& lost) {
-        fmt::print("{} frames; {}\n", frames_, lost.what());
+        fmt::print("{} frames; {}\n", log_.frame, lost.what());
         throw;
     }
     const std::string& why = stay_->session.whyEnded();
-    fmt::print("{} frames; {}\n", frames_, why.empty() ? "the session was lost as it ended" : why);
+    fmt::print("{} frames; {}\n", log_.frame, why.empty() ? "the session was lost as it ended" : why);
 }
 
 bool Viewer::step() {
@@ -114,7 +82,7 @@ bool Viewer::step() {
             stay_->session.endFrame({});
             break;
     }
-    ++frames_;
+    ++log_.frame;
     return true;
 }
 
@@ -127,13 +95,13 @@ void Viewer::renewStay(const std::string& why) {
     if (++losses_ > kMostLosses) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
     }
-    fmt::print("frame {}: {}; another one begins\n", frames_, why);
+    log_.say(why + "; another one begins");
     waitForQueue();
     panel_now_ = nullptr;
     stay_.reset();
     stay_ = std::make_unique<HeadsetStay>(instance_, context_, kCanvasPx);
     if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why + ": the next one has other formats of images"); }
-    fitResolution();
+    renderer_.fitImages(*stay_, settings_);
 }
 
 void Viewer::settle() {
@@ -141,56 +109,59 @@ void Viewer::settle() {
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
     const std::optional<double> floor_m = session.floorBelowMetres();
-    fmt::print("frame {}: the wearer's place is the room's{}\n", frames_,
-               floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : "");
+    log_.say("the wearer's place is the room's" + (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
     panel_.hangBefore({});
 }
 
 void Viewer::drawFrame() {
     settle();
-    const std::optional<std::array<xr::EyeView, 2>> views = stay_->session.locateEyes();
-    if (!views) {
+    const std::optional<std::array<xr::EyeView, 2>> eyes = stay_->session.locateEyes();
+    if (!eyes) {
         drawWindowAlone("The headset does not know where it is");
         stay_->session.endFrame({});
         return;
     }
-    if (loader_ && loader_->isDone()) { takeScene(); }
-    const std::array<Pose, 2> room_from_eyes = roomFromEyes(*views);
-    room_from_head_ = roomFromHead(room_from_eyes);
+    if (scenes_.isNextReady()) { takeScene(); }
+    const std::array<Pose, 2> room_from_eyes = roomFromEyes(*eyes);
+    const FrameViews views{*eyes, room_from_eyes, roomFromHead(room_from_eyes)};
+    room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
-    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scene_from_room_);
+    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scenes_.scene_from_room);
     if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
-    obeyWindow(room_from_head_, step_seconds);
-    govern();
+    obeyWindow(step_seconds);
+    renderer_.govern(*stay_, settings_);
 
     status_.state.clear();
     if (settings_.panel || window_) { layOutPanel(settings_.panel); }
     if (window_) { window_->acquire(); }
-    if (scene_) {
-        renderScene(*views, room_from_eyes);
+    if (LoadedScene* scene = scenes_.get()) {
+        renderer_.render(*stay_, *scene, scenes_.scene_from_room, settings_, views, window_.get(),
+                         [this](Commands& commands) { recordPanel(commands); });
     } else {
         renderWaiting();
     }
     if (window_) { window_->show(); }
-    showFrame(*views, room_from_head_);
+    showFrame(views);
+    sayChange(before);
+    keepFrameTime();
+}
 
-    const std::string change = describeChange(before, settings_);
-    if (!change.empty()) { fmt::print("frame {}: {}\n", frames_, change); }
+void Viewer::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
-    if (frames_ > 0) { status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count()); }
+    if (log_.frame > 0) { status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count()); }
     if (status_.frame_ms.size() > kPlottedFrames) { status_.frame_ms.erase(status_.frame_ms.begin()); }
     last_end_ = now;
 }
 
-void Viewer::showFrame(const std::array<xr::EyeView, 2>& views, const Pose& room_from_head) {
+void Viewer::showFrame(const FrameViews& views) {
     stay_->images->release();
     const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
     if (has_panel) { stay_->panel_images.release(); }
     const auto submit = [&] {
         xr::Layers layers(stay_->session);
         addEyes(layers, views);
-        if (has_panel) { addPanel(layers, room_from_head); }
+        if (has_panel) { addPanel(layers, views.room_from_head); }
         stay_->session.endFrame(layers.list());
     };
     try {
@@ -199,8 +170,8 @@ void Viewer::showFrame(const std::array<xr::EyeView, 2>& views, const Pose& room
         throw;
     } catch (const Error&) {
         if (!std::exchange(takes_depth_, false)) { throw; }
-        fmt::print("frame {}: the runtime refuses depth; on without depth\n", frames_);
-        stay_->images->dropDepth();
+        log_.say("the runtime refuses depth; on without depth");
+        renderer_.dropDepth(*stay_);
         submit();
     }
 }
@@ -210,9 +181,9 @@ void Viewer::drawWindowAlone(const std::string& why) {
     if (!window_ || now - last_alone_ < kWindowAlone) { return; }
     const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
     last_alone_ = now;
-    if (loader_ && loader_->isDone()) { takeScene(); }
+    if (scenes_.isNextReady()) { takeScene(); }
     const ViewSettings before = settings_;
-    obeyWindow(room_from_head_, step_seconds);
+    obeyWindow(step_seconds);
     status_.state = why;
     layOutPanel(false);
     window_->acquire();
@@ -220,41 +191,14 @@ void Viewer::drawWindowAlone(const std::string& why) {
     recordPanel(commands_);
     commands_.submitAndWait();
     window_->show();
-    const std::string change = describeChange(before, settings_);
-    if (!change.empty()) { fmt::print("frame {}: {}\n", frames_, change); }
+    sayChange(before);
 }
 
 void Viewer::takeScene() {
-    const std::unique_ptr<SceneLoader> loader = std::move(loader_);
-    try {
-        std::unique_ptr<LoadedScene> taken = loader->take();
-        waitForQueue();
-        scene_ = std::move(taken);
-    } catch (const Error& error) {
-        if (!scene_) { throw; }  // nothing to show instead
-        say(error.what());
-        return;
-    }
-    status_.scene = scene_->name;
-    fmt::print("frame {}: shows {}\n", frames_, scene_->name);
-    last_ = {};
-    place();
-    for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
-}
-
-// A place that the options or the config name wins over one that is remembered.
-void Viewer::place() {
-    const CameraOptions& camera = options_.run.camera;
-    const bool is_asked_for = camera.eye || camera.look || camera.up || settings_.scene_from_room;
-    scene_from_room_ = settings_.scene_from_room.value_or(scene_->start);
-    settings_.scene_from_room.reset();  // of the first scene alone
-    if (is_asked_for) { return; }
-    try {
-        const std::optional<Similarity> remembered = rememberedPlacement(scene_->name);
-        if (!remembered) { return; }
-        scene_from_room_ = *remembered;
-        fmt::print("frame {}: the wearer stands where this scene was saved\n", frames_);
-    } catch (const Error& error) { say(error.what()); }
+    const LoadedScene* before = scenes_.get();
+    const std::string complaint = scenes_.take(settings_);
+    if (scenes_.get() != before) { renderer_.forgetLastFrame(); }
+    if (!complaint.empty()) { say(complaint); }
 }
 
 void Viewer::openWindow() {
@@ -263,28 +207,6 @@ void Viewer::openWindow() {
     } catch (const Error& error) { fmt::print("no window: {}\n", error.what()); } catch (const vk::SystemError& error) {
         fmt::print("no window: {}\n", error.what());
     }
-}
-
-void Viewer::fitResolution() {
-    const glm::uvec2 size_px = scaledSize(instance_, settings_.resolution_scale);
-    std::unique_ptr<EyeImages>& images = stay_->images;
-    if (images && images->sizePx() == size_px) { return; }
-    images.reset();
-    images = std::make_unique<EyeImages>(stay_->session, presenter_, format_, size_px);
-    if (!takes_depth_) { images->dropDepth(); }
-}
-
-void Viewer::govern() {
-    governor_.wish(settings_.quality, {settings_.stereo.mode, settings_.stereo.budget, settings_.resolution_scale});
-    fitResolution();
-    stay_->images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
-}
-
-StereoOptions Viewer::governedStereo() const {
-    StereoOptions stereo = settings_.stereo;
-    stereo.mode = governor_.settings().mode;
-    stereo.budget = governor_.settings().budget;
-    return stereo;
 }
 
 void Viewer::renderWaiting() {
@@ -297,72 +219,22 @@ void Viewer::renderWaiting() {
     commands_.submitAndWait();
 }
 
-void Viewer::renderScene(const std::array<xr::EyeView, 2>& views, const std::array<Pose, 2>& room_from_eyes) {
-    std::array<Eye, 2> eyes;
-    for (std::size_t e = 0; e < 2; ++e) {
-        eyes[e] = eyeInScene(scene_from_room_, room_from_eyes[e], views[e].fov, stay_->images->partPx());
-    }
-    FrameSettings frame = frameSettings(options_.run.camera, governedStereo());
-    frame.near = options_.run.camera.near * scene_from_room_.scale;  // of the wearer, however large the scene is
-    frame.dominant = settings_.stereo.dominant;
-    frame.keep_depth = frame.keep_both_depths = stay_->images->takesDepth();
-    frame.half_floats = true;
-    frame.keep_classes = settings_.tint;
-    // One eye's picture for both is seen through either lens.
-    if (!showsOneEye() && settings_.visibility_mask) {
-        frame.hidden_tiles = stay_->lens_mask.update(stay_->session, views, stay_->images->partPx());
-    }
-    for (const int e : {kLeft, kRight}) {
-        if (!showsOneEye() || e == frame.dominant) { stay_->images->acquire(e, true); }
-    }
-    last_ = scene_->frame.render(showsOneEye() ? std::span<const Eye>(&eyes[frame.dominant], 1) : std::span<const Eye>(eyes), frame,
-                                 [&](Commands& commands) {
-                                     recordEyes(commands, frame);
-                                     recordPanel(commands);
-                                 });
-    const GovernedSettings before = governor_.settings();
-    governor_.measure({last_.gpu_total_ms, stay_->session.periodMs()});
-    if (governor_.settings() != before) { fmt::print("frame {}: {}\n", frames_, governor_.sentence()); }
-    sayHidden();
-}
-
-void Viewer::recordEyes(Commands& commands, const FrameSettings& frame) {
-    for (const int e : {kLeft, kRight}) {
-        const bool dominant = e == frame.dominant;
-        if (frame.mode == Mode::kMono && !dominant) { continue; }
-        const bool tinted = settings_.tint && reprojects(frame.mode) && !dominant;
-        const EyeImage& image = scene_->frame.image(frame.mode == Mode::kMono ? 0 : e);
-        stay_->images->present(commands, e, image, tinted ? &scene_->frame.stereoBuffers() : nullptr, frame.near);
-        // The window shows the dominant eye, or what is made of it where that is the point.
-        const bool shown = frame.mode == Mode::kMono || dominant != settings_.tint;
-        if (window_ && shown) { window_->keepEye(commands, presenter_.pixels(), stay_->images->partPx(), format_); }
-    }
-}
-
-void Viewer::sayHidden() {
-    const auto count = [&](const char* name) {
-        const auto found = last_.counters.find(name);
-        return found == last_.counters.end() ? 0 : found->second;
-    };
-    const std::array<std::uint64_t, 2> hidden{count("tiles_hidden_left"), count("tiles_hidden_right")};
-    if (showsOneEye() || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
-    fmt::print("frame {}: the lenses hide {} and {} of {} tiles\n", frames_, hidden[kLeft], hidden[kRight], count("tiles_left"));
-}
-
-void Viewer::addEyes(xr::Layers& layers, const std::array<xr::EyeView, 2>& views) const {
+void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
-        const int e = scene_ && showsOneEye() ? settings_.stereo.dominant : shown_to;
-        return stay_->images->layerEye(e, views[static_cast<std::size_t>(e)], options_.run.camera.near);
+        const int e = scenes_.get() != nullptr && settings_.showsOneEye() ? settings_.stereo.dominant : shown_to;
+        return stay_->images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
     layers.addEyes({layerEye(kLeft), layerEye(kRight)});
 }
 
 void Viewer::layOutPanel(bool hung) {
-    status_.loading = loader_ ? std::optional(loader_->progress()) : std::nullopt;
-    status_.has_scene = scene_ != nullptr;
-    status_.governor = governor_.sentence();
-    status_.frame = last_.counters.empty() ? nullptr : &last_;
+    const FrameResult& last = renderer_.lastFrame();
+    status_.scene = scenes_.name();
+    status_.loading = scenes_.loading();
+    status_.has_scene = scenes_.get() != nullptr;
+    status_.governor = renderer_.governorSentence();
+    status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
     canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
     obey(drawOverlay(kCanvasPx, settings_, status_));
@@ -376,22 +248,18 @@ void Viewer::recordPanel(Commands& commands) {
     if (window_) { window_->record(commands); }
 }
 
-void Viewer::obeyWindow(const Pose& room_from_head, double step_seconds) {
+void Viewer::obeyWindow(double step_seconds) {
     if (!window_) { return; }
     window_input_ = window_->poll();
     if (window_input_.quit) { leave(); }
     recentre_asked_ = recentre_asked_ || window_input_.recentre;
-    if (!window_input_.dropped.empty()) { beginScene(window_input_.dropped); }
+    if (!window_input_.dropped.empty()) { scenes_.begin(window_input_.dropped); }
     if (window_input_.reload_shaders) { reloadShaders(); }
     if (window_input_.toggle_panel) {
         settings_.panel = !settings_.panel;
-        panel_.hangBefore(room_from_head);
+        panel_.hangBefore(room_from_head_);
     }
-    const double turn_rad = window_input_.turn_rad + step_seconds * window_input_.turn_rate * kTurnRadiansPerSecond;
-    if (turn_rad != 0.0) { scene_from_room_ = turnedBy(scene_from_room_, turn_rad, room_from_head.position); }
-    const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0)), down(0.0, 1.0, 0.0);
-    const glm::dvec3 walk = window_input_.walk.x * glm::cross(down, forward) + window_input_.walk.y * down + window_input_.walk.z * forward;
-    if (walk != glm::dvec3(0.0)) { scene_from_room_ = movedBy(scene_from_room_, step_seconds * kWalkMetresPerSecond * walk); }
+    scenes_.scene_from_room = movedByWindow(scenes_.scene_from_room, window_input_, room_from_head_, step_seconds);
 }
 
 void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
@@ -400,50 +268,44 @@ void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
 }
 
 void Viewer::obey(const OverlayActions& actions) {
-    if (actions.save) {
-        settings_.scene_from_room = scene_from_room_;
-        status_.message = saveViewSettings(status_.scene, settings_);
-        settings_.scene_from_room.reset();
-    }
-    if (actions.load) {
-        status_.message = loadViewSettings(status_.scene, settings_);
-        scene_from_room_ = settings_.scene_from_room.value_or(scene_from_room_);
-        settings_.scene_from_room.reset();
-        settings_.panel = true;  // it was just pressed
-    }
     if (actions.reload_shaders) { reloadShaders(); }
-    if (actions.reset_scene) { scene_from_room_ = scene_->start; }
-    if (actions.level_scene) { scene_from_room_ = levelledLike(scene_from_room_, scene_->start, room_from_head_.position); }
-    if (actions.save || actions.load) { fmt::print("frame {}: {}\n", frames_, status_.message); }
+    Similarity& placement = scenes_.scene_from_room;
+    if (actions.reset_scene) { placement = scenes_.get()->start; }
+    if (actions.level_scene) { placement = levelledLike(placement, scenes_.get()->start, room_from_head_.position); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
-    if (actions.scene_step != 0) { beginScene(sceneBeside(asked_scene_, actions.scene_step)); }
-    if (actions.take_picture) { takePicture(); }
+    obeyFiles(actions);
     if (actions.quit) { leave(); }
 }
 
-void Viewer::reloadShaders() {
-    if (!scene_ || !status_.can_reload_shaders) { return; }  // without a scene kernels are being made elsewhere
-    status_.message = binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
-        scene_->frame.rebuildKernels();
-        presenter_.rebuildKernels();
-    });
-    fmt::print("frame {}: {}\n", frames_, status_.message);
+void Viewer::obeyFiles(const OverlayActions& actions) {
+    if (actions.save) {
+        settings_.scene_from_room = scenes_.scene_from_room;
+        say(saveViewSettings(scenes_.name(), settings_));
+        settings_.scene_from_room.reset();
+    }
+    if (actions.load) {
+        say(loadViewSettings(scenes_.name(), settings_));
+        scenes_.scene_from_room = settings_.scene_from_room.value_or(scenes_.scene_from_room);
+        settings_.scene_from_room.reset();
+        settings_.panel = true;  // it was just pressed
+    }
+    if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step); }
+    if (actions.take_picture) { takePicture(); }
 }
 
-void Viewer::beginScene(const std::string& scene) {
-    asked_scene_ = scene;
-    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run);
+void Viewer::reloadShaders() {
+    LoadedScene* scene = scenes_.get();
+    if (scene == nullptr || !status_.can_reload_shaders) { return; }  // without a scene kernels are being made elsewhere
+    say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
+        scene->frame.rebuildKernels();
+        renderer_.presenter().rebuildKernels();
+    }));
 }
 
 void Viewer::takePicture() {
-    if (last_.counters.empty()) { return; }
+    if (renderer_.lastFrame().counters.empty()) { return; }
     try {
-        Image both = scene_->frame.readPicture(0);
-        if (!showsOneEye()) { both = besideOneAnother(both, scene_->frame.readPicture(1)); }
-        const std::filesystem::path folder = std::filesystem::current_path();
-        OutputFiles files(folder);
-        say("picture " + writePicture(files.staging() / freePictureName(folder), PictureKind::kDisplay, both).front().filename().string());
-        files.publish();
+        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), std::filesystem::current_path()));
     } catch (const Error& error) { say(error.what()); }
 }
 
@@ -454,7 +316,12 @@ void Viewer::waitForQueue() const {
 
 void Viewer::say(const std::string& message) {
     status_.message = message;
-    fmt::print("frame {}: {}\n", frames_, message);
+    log_.say(message);
+}
+
+void Viewer::sayChange(const ViewSettings& before) const {
+    const std::string change = describeChange(before, settings_);
+    if (!change.empty()) { log_.say(change); }
 }
 
 }  // namespace binosplat

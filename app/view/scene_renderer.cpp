@@ -1,0 +1,107 @@
+// A frame of the scene for the headset.
+#include "app/view/scene_renderer.h"
+
+#include "app/options/modes.h"
+#include "app/view/view_eyes.h"
+
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
+    const glm::dvec2 wanted = glm::round(scale * glm::dvec2(instance.recommendedSizePx()));
+    return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
+}
+
+}  // namespace
+
+SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
+                             vk::Format format)
+    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format) {}
+
+void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
+    const glm::uvec2 size_px = scaledSize(instance_, settings.resolution_scale);
+    std::unique_ptr<EyeImages>& images = stay.images;
+    if (images && images->sizePx() == size_px) { return; }
+    images.reset();
+    images = std::make_unique<EyeImages>(stay.session, presenter_, format_, size_px);
+    if (!takes_depth_) { images->dropDepth(); }
+}
+
+void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
+    governor_.wish(settings.quality, {settings.stereo.mode, settings.stereo.budget, settings.resolution_scale});
+    fitImages(stay, settings);
+    stay.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
+}
+
+void SceneRenderer::dropDepth(HeadsetStay& stay) {
+    takes_depth_ = false;
+    stay.images->dropDepth();
+}
+
+FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views) {
+    StereoOptions stereo = settings.stereo;
+    stereo.mode = governor_.settings().mode;
+    stereo.budget = governor_.settings().budget;
+    FrameSettings frame = frameSettings(options_.camera, stereo);
+    frame.near = options_.camera.near * scale;  // of the wearer, however large the scene is
+    frame.dominant = settings.stereo.dominant;
+    frame.keep_depth = frame.keep_both_depths = stay.images->takesDepth();
+    frame.half_floats = true;
+    frame.keep_classes = settings.tint;
+    // One eye's picture for both is seen through either lens.
+    if (!settings.showsOneEye() && settings.visibility_mask) {
+        frame.hidden_tiles = stay.lens_mask.update(stay.session, views.eyes, stay.images->partPx());
+    }
+    return frame;
+}
+
+void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+                           const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel) {
+    const bool one_eye = settings.showsOneEye();
+    const FrameSettings frame = settingsOfFrame(stay, settings, scene_from_room.scale, views);
+    std::array<Eye, 2> eyes;
+    for (const int e : {kLeft, kRight}) {
+        const auto at = static_cast<std::size_t>(e);
+        eyes[at] = eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, stay.images->partPx());
+        if (!one_eye || e == frame.dominant) { stay.images->acquire(e, true); }
+    }
+    last_ =
+        scene.frame.render(one_eye ? std::span<const Eye>(&eyes[static_cast<std::size_t>(frame.dominant)], 1) : std::span<const Eye>(eyes),
+                           frame, [&](Commands& commands) {
+                               recordEyes(commands, stay, scene, frame, settings.tint, window);
+                               record_panel(commands);
+                           });
+    const GovernedSettings before = governor_.settings();
+    governor_.measure({last_.gpu_total_ms, stay.session.periodMs()});
+    if (governor_.settings() != before) { log_.say(governor_.sentence()); }
+    sayHidden(one_eye);
+}
+
+void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint,
+                               MirrorWindow* window) {
+    for (const int e : {kLeft, kRight}) {
+        const bool dominant = e == frame.dominant;
+        if (frame.mode == Mode::kMono && !dominant) { continue; }
+        const bool tinted = tint && reprojects(frame.mode) && !dominant;
+        const EyeImage& image = scene.frame.image(frame.mode == Mode::kMono ? 0 : e);
+        stay.images->present(commands, e, image, tinted ? &scene.frame.stereoBuffers() : nullptr, frame.near);
+        // The window shows the dominant eye, or what is made of it where that is the point.
+        const bool shown = frame.mode == Mode::kMono || dominant != tint;
+        if (window != nullptr && shown) { window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_); }
+    }
+}
+
+void SceneRenderer::sayHidden(bool one_eye) {
+    const auto count = [&](const char* name) {
+        const auto found = last_.counters.find(name);
+        return found == last_.counters.end() ? 0 : found->second;
+    };
+    const std::array<std::uint64_t, 2> hidden{count("tiles_hidden_left"), count("tiles_hidden_right")};
+    if (one_eye || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
+    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], count("tiles_left")));
+}
+
+}  // namespace binosplat

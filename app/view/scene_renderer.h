@@ -1,0 +1,60 @@
+// From the scene to the headset's images: resolution, method, both eyes' pictures.
+#pragma once
+
+#include "app/view/frame_log.h"
+#include "app/view/headset_stay.h"
+#include "app/view/mirror_window.h"
+#include "app/view/scene_loader.h"
+#include "app/view/view_settings.h"
+
+#include <array>
+#include <functional>
+
+namespace binosplat {
+
+// What a headset's frame looks from.
+struct FrameViews {
+    std::array<xr::EyeView, 2> eyes;
+    std::array<Pose, 2> room_from_eyes;
+    Pose room_from_head;
+};
+
+class SceneRenderer {
+public:
+    // `format` is that of every session's images; the rest outlives this.
+    SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
+
+    // Images of the stay as large as the wearer wants them.
+    void fitImages(HeadsetStay& stay, const ViewSettings& settings);
+    // What the governor makes of the wearer's settings, in images as large as that.
+    void govern(HeadsetStay& stay, const ViewSettings& settings);
+    // The runtime refuses depth after all.
+    void dropDepth(HeadsetStay& stay);
+
+    // Renders and presents, in one submission with what `record_panel` records. With a `window` it keeps an eye for that.
+    void render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+                const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
+
+    // No counters before the first frame of a scene.
+    [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
+    void forgetLastFrame() { last_ = {}; }
+    [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
+    [[nodiscard]] Presenter& presenter() { return presenter_; }
+
+private:
+    [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views);
+    void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
+    void sayHidden(bool one_eye);
+
+    const xr::Instance& instance_;
+    const RunOptions& options_;
+    const FrameLog& log_;
+    vk::Format format_;
+    Presenter presenter_;
+    Governor governor_;
+    FrameResult last_;
+    std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
+    bool takes_depth_ = true;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,60 @@
+// One scene after another.
+#include "app/view/shown_scene.h"
+
+#include "app/view/view_files.h"
+#include "app/view/view_scenes.h"
+#include "engine/error.h"
+
+#include <utility>
+
+namespace binosplat {
+
+ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log)
+    : context_(context), options_(options), log_(log) {
+    begin(options.scene);
+}
+
+std::optional<double> ShownScene::loading() const { return loader_ ? std::optional(loader_->progress()) : std::nullopt; }
+
+void ShownScene::begin(const std::string& scene) {
+    asked_ = scene;
+    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run);
+}
+
+void ShownScene::beginBeside(int step) { begin(sceneBeside(asked_, step)); }
+
+std::string ShownScene::take(ViewSettings& settings) {
+    const std::unique_ptr<SceneLoader> loader = std::move(loader_);
+    try {
+        std::unique_ptr<LoadedScene> taken = loader->take();
+        {
+            const std::lock_guard lock(context_.queueMutex());
+            context_.queue().waitIdle();
+        }
+        scene_ = std::move(taken);
+    } catch (const Error& error) {
+        if (!scene_) { throw; }  // nothing to show instead
+        return error.what();
+    }
+    log_.say("shows " + scene_->name);
+    const std::string complaint = place(settings);
+    for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
+    return complaint;
+}
+
+std::string ShownScene::place(ViewSettings& settings) {
+    const CameraOptions& camera = options_.run.camera;
+    const bool is_asked_for = camera.eye || camera.look || camera.up || settings.scene_from_room;
+    scene_from_room = settings.scene_from_room.value_or(scene_->start);
+    settings.scene_from_room.reset();
+    if (is_asked_for) { return {}; }
+    try {
+        const std::optional<Similarity> remembered = rememberedPlacement(scene_->name);
+        if (!remembered) { return {}; }
+        scene_from_room = *remembered;
+        log_.say("the wearer stands where this scene was saved");
+    } catch (const Error& error) { return error.what(); }
+    return {};
+}
+
+}  // namespace binosplat
