@@ -42,7 +42,7 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
 
 void runRender(const RenderOptions& options) {
     const StereoOptions& stereo = options.run.stereo;
-    const Mode mode = frameMode(stereo.mode);
+    const Mode mode = stereo.mode;
     // Whatever can be known to fail is found out before the scene is loaded.
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);

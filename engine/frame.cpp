@@ -16,8 +16,6 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     return stereo;
 }
 
-bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
-
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       passes_(context, options.threads_per_cell),

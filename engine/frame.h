@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
+#include "engine/mode.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/stereo_passes.h"
 #include "engine/passes/stereo_traffic.h"
@@ -17,24 +18,11 @@
 
 namespace binosplat {
 
-// DESIGN, "the stereo methods".
-enum class Mode {
-    kMono,       // one eye
-    kTwoPass,    // both eyes in full, nothing shared: the paper's reference
-    kShared,     // both eyes in full, culled once and sorted by depth once
-    kReproject,  // the affiliated eye from the dominant one's picture alone
-    kPaper,      // and its borders, on request also its holes, rendered again (the paper)
-    kPredicted,  // and the tiles with the greatest expected error rendered again
-};
-
 // What splats are blended by, front to back.
 enum class Order {
     kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
     kDistance,  // distance of their centres from the middle between the eyes: one order for both eyes, however they turn
 };
-
-// Whether the affiliated eye is made from the dominant one.
-bool reprojects(Mode mode);
 
 struct FrameSettings {
     Mode mode = Mode::kPredicted;

@@ -13,7 +13,7 @@ using namespace binosplat;
 namespace {
 
 constexpr double kPeriodMs = 1000.0 / 90.0;
-const GovernedSettings kWish{"predicted", 0.22, 1.0};
+const GovernedSettings kWish{Mode::kPredicted, 0.22, 1.0};
 
 // Milliseconds of a frame; time counts from the start of the run.
 using Load = std::function<double(double time_s, const GovernedSettings&)>;
@@ -22,7 +22,7 @@ using Load = std::function<double(double time_s, const GovernedSettings&)>;
 // and less with a smaller budget.
 double cost(double ms, double lossy, const GovernedSettings& settings) {
     const double pixels = settings.resolution_scale * settings.resolution_scale;
-    const double method = settings.mode == "shared" ? 1.0 : lossy + 0.3 * (settings.budget - kWish.budget);
+    const double method = settings.mode == Mode::kShared ? 1.0 : lossy + 0.3 * (settings.budget - kWish.budget);
     return ms * method * (1.0 / 3.0 + 2.0 / 3.0 * pixels);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("off, the settings are the wearer's, whatever they cost") {
 TEST_CASE("where everything fits, nothing is lost and nothing changes") {
     const Run run = govern(Quality::kBalanced, 20.0, [](double, const GovernedSettings& s) { return cost(6.0, 0.8, s); });
     CHECK(run.changes().empty());
-    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.last().settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
     CHECK(run.last().sentence.find("shared at 100 %: 6.") == 0);
 }
 
@@ -144,12 +144,12 @@ TEST_CASE("a load that comes and goes: quality is given up at once and given bac
     const Run run = govern(Quality::kFast, 60.0, [&](double t, const GovernedSettings& s) { return cost(ms(t), 0.8, s); });
     CHECK(run.longestOver() <= 10);
     checkCalm(run, {5.0});
-    CHECK(run.frames[400].settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.frames[400].settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
     const auto at = [&](double time_s) {
         return *std::find_if(run.frames.begin(), run.frames.end(), [&](const auto& frame) { return frame.time_s >= time_s; });
     };
     CHECK(at(15.0).settings.resolution_scale < 1.0);
-    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.last().settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
     CHECK(at(6.0).sentence.find("took 16.") != std::string::npos);
     CHECK(changesAfter(run, 40.0) == 0);
 }
@@ -158,28 +158,28 @@ TEST_CASE("a lossy method that is slower than what loses nothing is found out in
     const Run run = govern(Quality::kFast, 40.0, [](double, const GovernedSettings& s) { return cost(14.0, 1.15, s); });
     checkCalm(run, {0.0});
     CHECK(run.longestOver() <= 10);
-    CHECK(run.last().settings.mode == "shared");
+    CHECK(run.last().settings.mode == Mode::kShared);
     std::size_t lossy = 0;
-    for (const Run::Frame& frame : run.frames) { lossy += frame.settings.mode == "shared" ? 0 : 1; }
+    for (const Run::Frame& frame : run.frames) { lossy += frame.settings.mode == Mode::kShared ? 0 : 1; }
     CHECK(lossy < run.frames.size() / 8);
 }
 
 TEST_CASE("a lossy method that becomes slower than what loses nothing is left") {
     const auto lossy = [](double t) { return t < 15.0 ? 0.7 : 1.4; };
     const Run run = govern(Quality::kFast, 60.0, [&](double t, const GovernedSettings& s) { return cost(12.5, lossy(t), s); });
-    CHECK(run.frames[1200].settings.mode == "predicted");
+    CHECK(run.frames[1200].settings.mode == Mode::kPredicted);
     CHECK(run.longestOver() <= 10);
     checkCalm(run, {0.0, 15.0});
-    CHECK(run.last().settings.mode == "shared");
+    CHECK(run.last().settings.mode == Mode::kShared);
 }
 
 TEST_CASE("what the wearer chose that loses nothing is not replaced by what does") {
-    for (const char* mode : {"shared", "two-pass", "mono"}) {
+    for (const Mode mode : {Mode::kShared, Mode::kTwoPass, Mode::kMono}) {
         const GovernedSettings wish{mode, 0.22, 1.2};
         const Run run = govern(
             Quality::kFast, 20.0,
             [](double, const GovernedSettings& s) {
-                return cost(20.0, 1.0, {"shared", 0, s.resolution_scale});
+                return cost(20.0, 1.0, {Mode::kShared, 0, s.resolution_scale});
             },
             {}, wish);
         for (const Run::Frame& frame : run.frames) { CHECK(frame.settings.mode == mode); }
@@ -193,8 +193,8 @@ TEST_CASE("another period is another budget") {
         Quality::kFast, 60.0, [](double, const GovernedSettings& s) { return cost(11.0, 0.8, s); }, period);
     checkCalm(run, {8.0});
     CHECK(run.longestOver() <= 10);
-    CHECK(run.frames[500].settings == GovernedSettings{"shared", 0.22, 1.0});
-    CHECK(run.last().settings == GovernedSettings{"shared", 0.22, 1.0});
+    CHECK(run.frames[500].settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
+    CHECK(run.last().settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
 }
 
 TEST_CASE("where not even the least settings fit, it says so and stays with them") {

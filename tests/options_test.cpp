@@ -44,7 +44,7 @@ Scene makeBox() {
     return scene;
 }
 
-BenchResult makeResult(const std::string& scene, const std::string& mode, std::uint64_t splats, double total_ms) {
+BenchResult makeResult(const std::string& scene, Mode mode, std::uint64_t splats, double total_ms) {
     BenchResult result;
     result.series = std::string("s");
     result.scene = scene;
@@ -78,7 +78,7 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.stereo.newcomer_error == none.stereo.newcomer_error);
     CHECK(file.metres_per_unit == none.metres_per_unit);
     CHECK(none.camera.near == 0.2);
-    CHECK(none.stereo.mode == "predicted");
+    CHECK(none.stereo.mode == Mode::kPredicted);
 }
 
 TEST_CASE("commandLineWinsOverConfig") {
@@ -222,9 +222,9 @@ TEST_CASE("medianIsTheMiddleOrTheMeanOfTwo") {
 }
 
 TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
-    std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 4.0), makeResult("a", "shared", 1, 2.0),
-                                     makeResult("a", "shared", 2, 3.0), makeResult("b,c", "mono", 1, 3.0),
-                                     makeResult("a", "shared", 1, 5.0)};
+    std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 4.0), makeResult("a", Mode::kShared, 1, 2.0),
+                                     makeResult("a", Mode::kShared, 2, 3.0), makeResult("b,c", Mode::kMono, 1, 3.0),
+                                     makeResult("a", Mode::kShared, 1, 5.0)};
     results[4].backbone = "3DGS";  // the same scene as discs is another point
     compareModes(results);
     CHECK(!results[4].ratio_to_two_pass.has_value());
@@ -252,13 +252,13 @@ TEST_CASE("stagesAddUpPasses") {
                             {"affiliated 8i_select", 128.0},
                             {"affiliated 8f_resample", 256.0},
                             {"affiliated 7_rasterize", 512.0}};
-    CHECK(stagesOf("predicted", passes) ==
+    CHECK(stagesOf(Mode::kPredicted, passes) ==
           NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
-    CHECK(stagesOf("shared", {{"affiliated 7_rasterize", 1.0}}) == NamedTimes{{"affiliated", 1.0}});
+    CHECK(stagesOf(Mode::kShared, {{"affiliated 7_rasterize", 1.0}}) == NamedTimes{{"affiliated", 1.0}});
 }
 
 TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
-    BenchResult predicted = makeResult("a", "predicted", 1, 9.0), shared = makeResult("a", "shared", 1, 10.0);
+    BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0), shared = makeResult("a", Mode::kShared, 1, 10.0);
     predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8e_newcomers", 5.0}, {"affiliated 8f_resample", 2.0}};
     predicted.counters = {{"tiles_weighed_as_moved", 300}};
     shared.pass_ms = {{"dominant 7_rasterize", 7.0}, {"affiliated 4_project", 1.5}, {"affiliated 7_rasterize", 2.5}};
@@ -275,13 +275,13 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
 
 TEST_CASE("theFrontHoldsWhatIsWorthItsTime") {
     const auto withError = [](double total_ms, double mean_square) {
-        BenchResult result = makeResult("a", "paper", 1, total_ms);
+        BenchResult result = makeResult("a", Mode::kPaper, 1, total_ms);
         result.quality = {{"all", 64, mean_square, {}, {}, {}}};
         return result;
     };
-    std::vector<BenchResult> results{makeResult("a", "two-pass", 1, 9.0),
-                                     makeResult("a", "shared", 1, 8.0),
-                                     makeResult("a", "mono", 1, 1.0),
+    std::vector<BenchResult> results{makeResult("a", Mode::kTwoPass, 1, 9.0),
+                                     makeResult("a", Mode::kShared, 1, 8.0),
+                                     makeResult("a", Mode::kMono, 1, 1.0),
                                      withError(4.0, 0.1),
                                      withError(5.0, 0.1),
                                      withError(6.0, 0.01),
@@ -355,7 +355,7 @@ TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralW
 }
 
 TEST_CASE("plotsOfFewOrBadPointsStayFinite") {
-    BenchResult result = makeResult("a&b", "shared", 1, 0.0);
+    BenchResult result = makeResult("a&b", Mode::kShared, 1, 0.0);
     result.pass_ms = {{"1_cull", 0.0}};
     for (const double ms : {0.0, 1.0, 2.5}) {
         result.total_ms = ms;

@@ -168,7 +168,7 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
 
 TEST_CASE("what the panel is set to survives its file") {
     ViewSettings settings;
-    settings.stereo.mode = "paper";
+    settings.stereo.mode = Mode::kPaper;
     settings.stereo.dominant = kRight;
     settings.stereo.center_roi = true;
     settings.stereo.margin_px = 48;

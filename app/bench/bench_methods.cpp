@@ -50,8 +50,8 @@ std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOption
     return methods;
 }
 
-BenchMethod plainMethod(const std::string& mode, const RunOptions& base) {
-    BenchMethod method{mode, base.stereo};
+BenchMethod plainMethod(Mode mode, const RunOptions& base) {
+    BenchMethod method{std::string(nameOf(mode)), base.stereo};
     method.stereo.mode = mode;
     return method;
 }

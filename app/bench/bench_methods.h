@@ -19,6 +19,6 @@ struct BenchMethod {
 std::vector<BenchMethod> readMethods(const SettingsTable& table, const RunOptions& base);
 
 // A mode with the settings of `base`, named as the mode.
-BenchMethod plainMethod(const std::string& mode, const RunOptions& base);
+BenchMethod plainMethod(Mode mode, const RunOptions& base);
 
 }  // namespace binosplat

@@ -68,9 +68,9 @@ Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {
 class MotionPoint {
 public:
     MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name)
-        : camera_(run.camera), shared_(plainMethod("shared", run)), frames_(context, scene), name_(std::move(name)) {
+        : camera_(run.camera), shared_(plainMethod(Mode::kShared, run)), frames_(context, scene), name_(std::move(name)) {
         for (const BenchMethod& method : plan.methods) {
-            if (method.stereo.mode != "mono") { sequences_.push_back({method, {}}); }
+            if (method.stereo.mode != Mode::kMono) { sequences_.push_back({method, {}}); }
         }
     }
 
@@ -88,11 +88,11 @@ public:
             Image& full = full_by_order[shared_.stereo.order];
             if (full.values.empty()) { full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated); }
             const double full_change = meanChange(full, full_before_[shared_.stereo.order]);
-            const std::string& mode = sequence.method.stereo.mode;
+            const Mode mode = sequence.method.stereo.mode;
             const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
             MotionFrame row{name_, sequence.method.name, mode, time_s, rendered.gpu_total_ms, stagesOf(mode, rendered.gpu_ms), 0.0,
                             0.0,   full_change};
-            if (reprojects(frameMode(mode))) {
+            if (reprojects(mode)) {
                 const Image picture = frame->readPicture(affiliated);
                 Image error = subtract(picture, full);
                 row.mean_square = compare(picture, full).mean_square;

@@ -27,7 +27,8 @@ using Json = nlohmann::ordered_json;
 
 // One method at one camera.
 struct PhotoRow {
-    std::string scene, camera, method, mode;
+    std::string scene, camera, method;
+    Mode mode;
     double total_ms = 0.0;
     double psnr_db = 0.0, ssim = 0.0;  // against the photograph, both clamped to 0 to 1
     double mean_square_to_full = 0.0;  // against the full render of the same eye
@@ -54,7 +55,8 @@ Cameras besidePhoto(const Eye& photo, double eye_distance, int affiliated) {
 }
 
 struct Means {
-    std::string scene, method, mode;
+    std::string scene, method;
+    Mode mode;
     std::size_t cameras = 0;
     double psnr_db = 0.0, ssim = 0.0;
     std::vector<double> total_ms, lpips;  // of each camera; no LPIPS without its weights
@@ -91,7 +93,7 @@ bool anyLpips(const std::vector<PhotoRow>& rows) {
 }
 
 const Means& fullOf(const std::vector<Means>& means, const Means& like) {
-    return *std::ranges::find_if(means, [&](const Means& one) { return one.scene == like.scene && one.mode == "shared"; });
+    return *std::ranges::find_if(means, [&](const Means& one) { return one.scene == like.scene && one.mode == Mode::kShared; });
 }
 
 std::string photosCsv(const std::string& device, const std::vector<PhotoRow>& rows) {
@@ -100,7 +102,7 @@ std::string photosCsv(const std::string& device, const std::vector<PhotoRow>& ro
     csv += with_lpips ? ",lpips_to_photo\n" : "\n";
     for (const PhotoRow& row : rows) {
         csv += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}", csvCell(device), csvCell(row.scene), csvCell(row.camera),
-                           csvCell(row.method), row.mode, row.total_ms, row.psnr_db, row.ssim, psnrOf(row.mean_square_to_full));
+                           csvCell(row.method), nameOf(row.mode), row.total_ms, row.psnr_db, row.ssim, psnrOf(row.mean_square_to_full));
         if (with_lpips) { csv += row.lpips ? fmt::format(",{:.6g}", *row.lpips) : ","; }
         csv += "\n";
     }
@@ -113,7 +115,7 @@ std::string photosJson(const std::string& device, const std::vector<Means>& mean
         const Means& full = fullOf(means, one);
         results.push_back({{"scene", one.scene},
                            {"method", one.method},
-                           {"mode", one.mode},
+                           {"mode", nameOf(one.mode)},
                            {"cameras", one.cameras},
                            {"gpu_total_ms", median(one.total_ms)},
                            {"psnr_db_to_photo", one.psnr_db},
@@ -154,7 +156,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
     const Context context(contextOptions(options.run));
     const double eye_distance = options.run.stereo.ipd_m.value_or(kDefaultIpdMetres) / options.run.metres_per_unit;
     const int affiliated = 1 - options.run.stereo.dominant;
-    const BenchMethod shared = plainMethod("shared", options.run);
+    const BenchMethod shared = plainMethod(Mode::kShared, options.run);
 
     std::vector<PhotoRow> rows;
     for (const std::string& source : plan.scenes) {
@@ -167,7 +169,7 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
             const Cameras eyes = besidePhoto(resize(camera.eye, photo.size_px), eye_distance, affiliated);
             const Image full = frames.render(eyes, options.run.camera, shared.stereo).frame->readPicture(affiliated);
             for (const BenchMethod& method : plan.methods) {
-                if (method.stereo.mode == "mono") { continue; }
+                if (method.stereo.mode == Mode::kMono) { continue; }
                 for (std::uint32_t warm_up = 0; i == 0 && warm_up < plan.warm_up; ++warm_up) {
                     frames.render(eyes, options.run.camera, method.stereo);
                 }

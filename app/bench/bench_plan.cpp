@@ -1,6 +1,7 @@
 // What `bench` measures.
 #include "app/bench/bench_plan.h"
 
+#include "app/options/modes.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/values.h"
@@ -27,10 +28,6 @@ auto readEach(const Setting& setting, Read&& read) {
     for (const std::string& item : setting.items) { values.push_back(read(Setting{setting.origin, {item}})); }
     check(!values.empty(), "{} is empty, must hold at least one value", setting.origin);
     return values;
-}
-
-std::string readMode(const Setting& setting) {
-    return readChoice(setting, {"mono", "two-pass", "shared", "reproject", "paper", "predicted"});
 }
 
 void readScores(const Setting& setting, BenchPlan& plan) {
@@ -61,9 +58,9 @@ std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options
 }
 
 // Returns the modes, which become methods.
-std::vector<std::string> readBench(const SettingsTable& table, BenchPlan& plan) {
+std::vector<Mode> readBench(const SettingsTable& table, BenchPlan& plan) {
     refuseUnknown(table, {"scenes", "modes", "repeats", "warm-up", "headsets", "scores", "lpips", "twin"});
-    std::vector<std::string> modes;
+    std::vector<Mode> modes;
     for (const auto& [key, setting] : table.settings) {
         if (key == "scenes") { plan.scenes = readEach(setting, readText); }
         if (key == "modes") { modes = readEach(setting, readMode); }
@@ -104,13 +101,13 @@ BenchView readView(const SettingsTable& table, const RunOptions& base) {
 // The two that all others are compared with come first and once.
 void addReferences(BenchPlan& plan, const RunOptions& run) {
     std::vector<BenchMethod> methods;
-    for (const char* mode : {"two-pass", "shared"}) {
+    for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
         const auto there = std::ranges::find(plan.methods, mode, [](const BenchMethod& method) { return method.stereo.mode; });
         if (there == plan.methods.end()) { methods.push_back(plainMethod(mode, run)); }
     }
     plan.methods.insert(plan.methods.begin(), methods.begin(), methods.end());
-    const bool mono = std::ranges::any_of(plan.methods, [](const BenchMethod& method) { return method.stereo.mode == "mono"; });
-    if (plan.twin && !mono) { plan.methods.push_back(plainMethod("mono", run)); }
+    const bool mono = std::ranges::any_of(plan.methods, [](const BenchMethod& method) { return method.stereo.mode == Mode::kMono; });
+    if (plan.twin && !mono) { plan.methods.push_back(plainMethod(Mode::kMono, run)); }
     std::set<std::string> names;
     for (const BenchMethod& method : plan.methods) {
         check(names.insert(method.name).second, "method {} is named twice, names must differ", method.name);
@@ -122,7 +119,7 @@ void addReferences(BenchPlan& plan, const RunOptions& run) {
 BenchPlan planBench(const BenchOptions& options) {
     const glm::uvec2 default_size_px = options.run.camera.size_px.value_or(glm::uvec2(0));
     BenchPlan plan;
-    std::vector<std::string> modes;
+    std::vector<Mode> modes;
     SettingsTable bench;
     for (const SettingsTable& table : options.tables) {
         if (table.name == "bench") {
@@ -133,9 +130,11 @@ BenchPlan planBench(const BenchOptions& options) {
         if (table.name == "views") { plan.views.push_back(readView(table, options.run)); }
         if (table.name == "methods") { std::ranges::move(readMethods(table, options.run), std::back_inserter(plan.methods)); }
     }
-    if (modes.empty() && plan.methods.empty()) { modes = {"two-pass", "shared", "reproject", "paper", "predicted"}; }
+    if (modes.empty() && plan.methods.empty()) {
+        modes = {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
+    }
     std::vector<BenchMethod> plain;
-    for (const std::string& mode : modes) { plain.push_back(plainMethod(mode, options.run)); }
+    for (const Mode mode : modes) { plain.push_back(plainMethod(mode, options.run)); }
     plan.methods.insert(plan.methods.begin(), plain.begin(), plain.end());
     addReferences(plan, options.run);
 

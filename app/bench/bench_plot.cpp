@@ -24,16 +24,14 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run) {
         PlotPanel panel{.title = namePoint(first), .x_label = "GPU time of the pair, ms", .y_label = "PSNR of the affiliated eye, dB"};
         panel.x_scale = panel.y_scale = Scale::kLinear;
         std::vector<const BenchResult*> front;
-        std::map<std::string, std::size_t> methods;  // by mode
+        std::map<std::optional<Mode>, std::size_t> methods;  // by mode
         for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) { ++methods[run.results[end].mode]; }
         for (std::size_t i = begin; i < end; ++i) {
             const BenchResult& result = run.results[i];
             const OriginScores* all = scoresOf(result, "all");
-            if (result.mode == "two-pass" || result.mode == "shared") {
-                panel.marks.push_back({result.method + " (no error)", result.total_ms});
-            }
+            if (result.mode && rendersBothInFull(*result.mode)) { panel.marks.push_back({result.method + " (no error)", result.total_ms}); }
             if (all == nullptr) { continue; }
-            PlotLine& line = lineOf(panel, result.mode);
+            PlotLine& line = lineOf(panel, modeNameOf(result));
             line.joined = false;
             line.points.emplace_back(result.total_ms, all->psnrDb());
             // In a crowd only the front is named.
@@ -84,7 +82,7 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
         if (groupOf(result) != group) { continue; }
         const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);
         lineOf(totals, result.method).points.emplace_back(x, result.total_ms);
-        if (result.mode != "shared") { continue; }
+        if (result.mode != Mode::kShared) { continue; }
         for (const auto& [name, ms] : byPass(result)) { lineOf(passes, name).points.emplace_back(x, ms); }
     }
     return {totals, passes};

@@ -21,6 +21,7 @@ struct Runner {
     FrameResult last;
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;
+    bool is_twin = false;
 
     void count(const FrameResult& result) {
         last = result;
@@ -39,7 +40,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
-    result.mode = runner.method.stereo.mode;
+    if (!runner.is_twin) { result.mode = runner.method.stereo.mode; }
     result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
     for (const auto& [name, ms] : runner.last.gpu_ms) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
     result.total_ms = median(runner.total_ms);
@@ -73,7 +74,7 @@ FrameResult renderTwin(const BenchPoint& point) {
 
 // The affiliated eye in full, as `stereo` orders its splats.
 Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFrames& frames) {
-    BenchMethod shared = plainMethod("shared", point.run);
+    BenchMethod shared = plainMethod(Mode::kShared, point.run);
     shared.stereo.order = stereo.order;
     return frames.render(point.cameras, point.run.camera, shared.stereo, true).frame->readPicture(1 - shared.stereo.dominant);
 }
@@ -83,7 +84,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
     Runner runner{method, {}, {}, {}, 0, {}};
     const auto [result, frame] = frames.renderAlone(point.cameras, point.run.camera, method.stereo);
     runner.peak_gpu_bytes = result.peak_gpu_bytes;
-    if (plan.psnr && reprojects(frameMode(method.stereo.mode))) {
+    if (plan.psnr && reprojects(method.stereo.mode)) {
         const int affiliated = 1 - method.stereo.dominant;
         const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
         runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
@@ -133,8 +134,9 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
     for (std::uint32_t i = 0; i < plan.warm_up; ++i) {
         for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method.stereo); }
     }
-    Runner twin{{"float64 twin, one eye", {}}, {}, {}, {}, 0, {}};
-    twin.method.stereo.mode = "twin";
+    Runner twin;
+    twin.method.name = "float64 twin, one eye";
+    twin.is_twin = true;
     for (std::uint32_t i = 0; i < plan.repeats; ++i) {
         for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
         if (plan.twin) { twin.count(renderTwin(point)); }

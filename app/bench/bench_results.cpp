@@ -12,7 +12,7 @@ namespace binosplat {
 
 namespace {
 
-const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, const std::string& mode) {
+const BenchResult* findMode(const std::vector<BenchResult>& results, const BenchResult& like, std::optional<Mode> mode) {
     const auto found =
         std::ranges::find_if(results, [&](const BenchResult& other) { return other.mode == mode && samePoint(other, like); });
     return found == results.end() ? nullptr : &*found;
@@ -26,13 +26,13 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
 // Bare pass: without the eyes in front.
 std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' ') + 1); }
 
-std::string stageOf(const std::string& mode, const std::string& pass) {
+std::string stageOf(std::optional<Mode> mode, const std::string& pass) {
     const std::string bare = bareName(pass);
     if (bare.starts_with("8d") || bare.starts_with("8f")) { return "reprojection"; }
     if (bare.starts_with("8")) { return "ROI choice"; }
     if (bare < "4") { return "cull+sort"; }
     if (!pass.starts_with("affiliated ")) { return "dominant"; }
-    return mode == "two-pass" || mode == "shared" ? "affiliated" : "patch";
+    return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
 }
 
 double sumOf(const NamedTimes& times, const std::string& name) {
@@ -49,23 +49,25 @@ std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
 // What the reprojection of a tile took, in the time that rendering the affiliated eye takes a pair of tile and splat.
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
-    if (predicted.mode != "predicted" || shared == nullptr || moved == 0) { return std::nullopt; }
+    if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
     const double pairs = 0.5 * static_cast<double>(counterOf(*shared, "tile_pairs_left") + counterOf(*shared, "tile_pairs_right"));
-    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf("shared", shared->pass_ms), "affiliated") / pairs : 0.0;
+    const double pair_ms = pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated") / pairs : 0.0;
     if (!(pair_ms > 0.0)) { return std::nullopt; }
-    return sumOf(stagesOf("predicted", predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
+    return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
 }
 
 // Whether a result takes part in the comparison of error and time.
-bool isPair(const BenchResult& result) { return result.mode != "mono" && result.mode != "twin"; }
+bool isPair(const BenchResult& result) { return result.mode && result.mode != Mode::kMono; }
 
 std::optional<double> meanSquareOf(const BenchResult& result) {
-    if (result.mode == "two-pass" || result.mode == "shared") { return 0.0; }
+    if (result.mode && rendersBothInFull(*result.mode)) { return 0.0; }
     const OriginScores* all = scoresOf(result, "all");
     return isPair(result) && all != nullptr ? std::optional(all->mean_square) : std::nullopt;
 }
 
 }  // namespace
+
+std::string modeNameOf(const BenchResult& result) { return result.mode ? std::string(nameOf(*result.mode)) : "twin"; }
 
 double median(std::vector<double> values) {
     if (values.empty()) { return 0.0; }
@@ -104,7 +106,7 @@ NamedTimes byPass(const BenchResult& result) {
     return {sums.begin(), sums.end()};
 }
 
-NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms) {
+NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms) {
     NamedTimes stages;
     for (const char* stage : {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"}) {
         double sum = 0.0;
@@ -121,10 +123,10 @@ NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms) {
 
 void compareModes(std::vector<BenchResult>& results) {
     for (BenchResult& result : results) {
-        if (result.mode == "mono") { result.ratio_to_twin = ratioTo(result, findMode(results, result, "twin")); }
-        if (result.mode == "twin") { continue; }  // another clock
-        result.ratio_to_two_pass = ratioTo(result, findMode(results, result, "two-pass"));
-        const BenchResult* shared = findMode(results, result, "shared");
+        if (result.mode == Mode::kMono) { result.ratio_to_twin = ratioTo(result, findMode(results, result, std::nullopt)); }
+        if (!result.mode) { continue; }  // another clock
+        result.ratio_to_two_pass = ratioTo(result, findMode(results, result, Mode::kTwoPass));
+        const BenchResult* shared = findMode(results, result, Mode::kShared);
         result.ratio_to_shared = ratioTo(result, shared);
         result.move_cost = moveCost(result, shared);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/bench/bench_quality.h"
+#include "engine/mode.h"
 
 #include <glm/glm.hpp>
 
@@ -20,11 +21,12 @@ inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated",
 
 using NamedTimes = std::vector<std::pair<std::string, double>>;
 
-// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those of the mode "twin" are
+// One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those without a mode are
 // wall-clock milliseconds of the float64 twin for one eye.
 struct BenchResult {
-    std::string series, scene, view, headset, method, mode;
-    std::string backbone;  // what the splats are drawn as: 2DGS or 3DGS
+    std::string series, scene, view, headset, method;
+    std::optional<Mode> mode;  // empty: the twin
+    std::string backbone;      // what the splats are drawn as: 2DGS or 3DGS
     std::uint64_t splats = 0;
     glm::uvec2 size_px{0, 0};  // per eye
     std::uint32_t frames = 0;
@@ -52,6 +54,8 @@ double percentile(std::vector<double> values, double share);
 
 // Whether both were measured at the same point: same series, scene, view, headset, backbone, splats and size.
 bool samePoint(const BenchResult& a, const BenchResult& b);
+// As the tables write it; "twin" where there is no mode.
+std::string modeNameOf(const BenchResult& result);
 // "atelier, near, quest2, 1000 splats (2DGS), 512x512 per eye".
 std::string namePoint(const BenchResult& result);
 
@@ -60,7 +64,7 @@ NamedTimes byPass(const BenchResult& result);
 
 // The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8f), "ROI choice" (the rest of 8), and of the
 // affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
-NamedTimes stagesOf(const std::string& mode, const NamedTimes& pass_ms);
+NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms);
 
 // Fills in the ratios and what moving cost, where both modes were measured at the same point.
 void compareModes(std::vector<BenchResult>& results);

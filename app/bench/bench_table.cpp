@@ -44,7 +44,7 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
         for (const double ms : {r->total_ms, r->least_ms, r->most_ms}) { row.push_back(fmt::format("{:.3f}", ms)); }
         row.push_back(ratioText(r->ratio_to_two_pass));
         row.push_back(ratioText(r->ratio_to_shared));
-        row.push_back(r->mode == "twin" ? "-" : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
+        row.push_back(!r->mode ? "-" : fmt::format("{:.1f}", static_cast<double>(r->peak_gpu_bytes) / (1024.0 * 1024.0)));
         for (const char* origin : kOrigins) { row.push_back(psnrText(scoresOf(*r, origin))); }
         const OriginScores* all = scoresOf(*r, "all");
         row.push_back(scoreText(all != nullptr ? all->ssim : std::nullopt));
@@ -54,11 +54,11 @@ std::string methodsTable(const std::vector<const BenchResult*>& point, bool with
         row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, "tiles_patched")) : "-");
         row.push_back(r->counters.contains("work_full") ? fmt::format("{:.1f}", 100.0 * r->work_rendered) : "-");
         row.push_back(reprojects ? fmt::format("{:.1f}", r->stereo_bytes_per_pixel) : "-");
-        row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "commands")));
+        row.push_back(!r->mode ? "-" : fmt::format("{}", ofBothEyes(*r, "commands")));
         for (const char* name : {"pixels_hole", "pixels_gap"}) {
             row.push_back(reprojects ? fmt::format("{}", ofBothEyes(*r, name)) : "-");
         }
-        row.push_back(r->mode == "twin" ? "-" : fmt::format("{}", ofBothEyes(*r, "tile_pairs")));
+        row.push_back(!r->mode ? "-" : fmt::format("{}", ofBothEyes(*r, "tile_pairs")));
         columns.addRow(std::move(row));
     }
     return columns.text();

@@ -55,7 +55,7 @@ std::vector<double> flickerOf(const Sequence& sequence) {
     return values;
 }
 
-bool isLossy(const Sequence& sequence) { return sequence.frames[0]->mode != "two-pass" && sequence.frames[0]->mode != "shared"; }
+bool isLossy(const Sequence& sequence) { return !rendersBothInFull(sequence.frames[0]->mode); }
 
 Json statisticsJson(const std::vector<double>& values) {
     return {{"median", median(values)}, {"p95", percentile(values, 0.95)}, {"p99", percentile(values, 0.99)}};
@@ -74,7 +74,7 @@ std::string motionCsv(const MotionRun& run) {
     csv += ",mean_square,psnr_db,flicker,full_change\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
-                           csvCell(frame.method), frame.mode, frame.time_s, frame.total_ms);
+                           csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
         for (const char* stage : kStages) { csv += fmt::format(",{:.6g}", stageMs(frame, stage)); }
         csv +=
             fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}\n", frame.mean_square, psnrOf(frame.mean_square), frame.flicker, frame.full_change);
@@ -92,7 +92,7 @@ std::string motionJson(const MotionRun& run) {
         }
         Json json{{"point", sequence.point},
                   {"method", sequence.method},
-                  {"mode", sequence.frames[0]->mode},
+                  {"mode", nameOf(sequence.frames[0]->mode)},
                   {"frames", sequence.frames.size()},
                   {"gpu_total_ms", statisticsJson(valuesOf(sequence, totalMs))},
                   {"stage_ms", stages}};
@@ -149,7 +149,7 @@ std::string motionPlot(const MotionRun& run) {
     };
     for (const MotionFrame& frame : run.frames) {
         add(frame.point + ": time", "GPU time of the pair, ms", frame, frame.total_ms);
-        if (frame.mode == "two-pass" || frame.mode == "shared") { continue; }
+        if (rendersBothInFull(frame.mode)) { continue; }
         add(frame.point + ": error", "PSNR of the affiliated eye, dB", frame, psnrOf(frame.mean_square));
     }
     return drawPlot("Measured on " + run.device + " with " + run.motion, panels);

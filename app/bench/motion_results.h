@@ -11,7 +11,8 @@ namespace binosplat {
 // One method at one pose.
 struct MotionFrame {
     std::string point;  // scene and view
-    std::string method, mode;
+    std::string method;
+    Mode mode;
     double time_s = 0.0;  // of the recording
     double total_ms = 0.0;
     NamedTimes stage_ms;

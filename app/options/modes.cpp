@@ -1,31 +1,20 @@
 // From the options to a frame's mode and settings.
 #include "app/options/modes.h"
 
-#include "engine/error.h"
+#include "engine/setup/values.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace binosplat {
 
-namespace {
-
-constexpr std::pair<const char*, Mode> kModes[] = {
-    {"mono", Mode::kMono},           {"two-pass", Mode::kTwoPass}, {"shared", Mode::kShared},
-    {"reproject", Mode::kReproject}, {"paper", Mode::kPaper},      {"predicted", Mode::kPredicted},
-};
-
-}  // namespace
-
-Mode frameMode(const std::string& name) {
-    const auto* found = std::ranges::find(kModes, name, [](const auto& entry) { return entry.first; });
-    check(found != std::end(kModes), "mode is {}, must be mono, two-pass, shared, reproject, paper or predicted", name);
-    return found->second;
+Mode readMode(const Setting& setting) {
+    const std::string name = readChoice(setting, {kModeNames.begin(), kModeNames.end()});
+    return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
 }
 
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo) {
     FrameSettings settings;
-    settings.mode = frameMode(stereo.mode);
+    settings.mode = stereo.mode;
     settings.dominant = stereo.dominant;
     settings.near = camera.near;
     settings.background = camera.background;

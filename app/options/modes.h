@@ -9,7 +9,7 @@
 namespace binosplat {
 
 // Throws Error (bad input) for a name that is no mode.
-Mode frameMode(const std::string& name);
+Mode readMode(const Setting& setting);
 
 // The settings of a frame as the options say.
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo);

@@ -2,10 +2,12 @@
 // writing and the documents follow.
 #pragma once
 
+#include "app/options/modes.h"
 #include "app/options/options.h"
 #include "engine/setup/values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <functional>
 #include <limits>
@@ -88,6 +90,8 @@ OptionValue toValue(const Value& value) {
         return static_cast<double>(value);
     } else if constexpr (std::is_same_v<Value, Side>) {
         return std::string(value == kLeft ? "left" : "right");
+    } else if constexpr (std::is_same_v<Value, Mode>) {
+        return std::string(nameOf(value));
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
         return fmt::format("{}x{}", value.x, value.y);
     } else if constexpr (std::is_convertible_v<Value, std::filesystem::path>) {
@@ -169,6 +173,13 @@ auto choice(std::initializer_list<std::string_view> names) {
     std::string range;
     for (const std::string_view name : names) { range += fmt::format("{}{}", range.empty() ? "" : ", ", name); }
     return make<Members...>(range, [all](const Setting& s) { return readChoice(s, all); });
+}
+
+// By the table of the modes' names.
+template <auto... Members>
+auto mode() {
+    const std::vector<std::string_view> names(kModeNames.begin(), kModeNames.end());
+    return make<Members...>(fmt::format("{}", fmt::join(names, ", ")), readMode);
 }
 
 template <auto... Members>

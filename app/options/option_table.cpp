@@ -65,8 +65,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"}, field::colour<kCamera, &CameraOptions::background>()},
 
         // Stereo.
-        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made"},
-         field::choice<kStereo, &StereoOptions::mode>({"mono", "two-pass", "shared", "reproject", "paper", "predicted"})},
+        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made"}, field::mode<kStereo, &StereoOptions::mode>()},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"}, field::side<kStereo, &StereoOptions::dominant>()},
         {{"ipd", "stereo", kPictures, "METRES", "distance of the eyes", "0.063, or the headset's"},
          field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},

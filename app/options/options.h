@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
+#include "engine/mode.h"
 #include "engine/setup/settings.h"
 
 #include <cstdint>
@@ -29,7 +30,7 @@ struct CameraOptions {
 inline constexpr std::uint32_t kDefaultMoveCost = 32;
 
 struct StereoOptions {
-    std::string mode = "predicted";
+    Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
     std::optional<double> ipd_m;
     bool center_roi = false;

@@ -82,7 +82,7 @@ std::string reportJson(const FrameReport& report) {
     for (const auto& [name, count] : report.frame.counters) { counters[name] = count; }
     for (const auto& [name, count] : report.frame.stereo_bytes_per_pixel) { bytes[name] = count; }
     Json eyes = Json::object();
-    if (report.options.run.stereo.mode == "mono") {
+    if (report.options.run.stereo.mode == Mode::kMono) {
         eyes["mono"] = eyeJson(report.cameras.middle);
     } else {
         eyes["left"] = eyeJson(report.cameras.eyes[kLeft]);
@@ -103,7 +103,7 @@ std::string reportJson(const FrameReport& report) {
 }
 
 std::string reportTable(const FrameReport& report) {
-    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, report.options.run.stereo.mode,
+    std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, nameOf(report.options.run.stereo.mode),
                                     report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
     const double percent = report.frame.gpu_total_ms > 0.0 ? 100.0 / report.frame.gpu_total_ms : 0.0;
     for (const auto& [name, ms] : addUp(report.frame.gpu_ms)) {

@@ -34,7 +34,7 @@ double greatest(const CaseScore& score, Value&& value) {
 std::string casesTable(const StabilityRun& run) {
     TextColumns columns;
     std::vector<std::string> head{"case"};
-    for (const Mode mode : kModes) { head.emplace_back(stability::nameOf(mode)); }
+    for (const Mode mode : kModes) { head.emplace_back(nameOf(mode)); }
     for (const char* name :
          {"largest", "off, full", "off, moved", "other tiles", "not finite", "repeats", "bound, full", "bound, moved", ""}) {
         head.emplace_back(name);
@@ -116,8 +116,8 @@ std::string stabilityCsv(const StabilityRun& run) {
         const Case& one = run.cases[i];
         for (const PictureScore& p : run.scores[i].pictures) {
             csv += fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{:d}\n", one.family, one.parameter,
-                               one.value, stability::nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles,
-                               p.not_finite, p.repeats, boundCells(p.moved ? one.moved : one.rendered), p.passes);
+                               one.value, nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles, p.not_finite,
+                               p.repeats, boundCells(p.moved ? one.moved : one.rendered), p.passes);
         }
     }
     return csv;
@@ -138,7 +138,7 @@ std::string stabilityPlot(const StabilityRun& run) {
             line.dots = dots;
             line.points.emplace_back(one.value, std::min(psnr_db, kEqualDb));
         };
-        for (const Mode mode : kModes) { add(stability::nameOf(mode), run.scores[i].worstOf(mode).psnr_db, true); }
+        for (const Mode mode : kModes) { add(std::string(nameOf(mode)), run.scores[i].worstOf(mode).psnr_db, true); }
         add("bound, rendered eyes", one.rendered.psnr_db, false);
         add("bound, moved eye", one.moved.psnr_db, false);
     }

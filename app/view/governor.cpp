@@ -38,12 +38,10 @@ double leastScale(Quality quality) {
 }
 
 // What a method may be thinned to: shares of the wearer's budget.
-std::vector<double> sharesOf(const std::string& mode, Quality quality) {
-    if (mode != "predicted") { return {1.0}; }
+std::vector<double> sharesOf(Mode mode, Quality quality) {
+    if (mode != Mode::kPredicted) { return {1.0}; }
     return quality == Quality::kSharp ? std::vector{1.0, 0.5} : std::vector{1.0, 0.5, 0.25};
 }
-
-bool isLossy(const std::string& mode) { return mode == "predicted" || mode == "paper" || mode == "reproject"; }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
@@ -73,7 +71,7 @@ void Governor::buildLadder() {
         levels_.push_back({best_, 0});
         return;
     }
-    const bool lossy = isLossy(best_.mode);
+    const bool lossy = reprojects(best_.mode);
     const std::vector<double> shares = lossy ? sharesOf(best_.mode, quality_) : std::vector<double>{};
     for (std::size_t i = 0; i < shares.size(); ++i) { ratios_.push_back({kGuessedRatio, {}}); }
     const int steps = static_cast<int>(std::round((1.0 - leastScale(quality_)) / kScaleStep));
@@ -81,7 +79,7 @@ void Governor::buildLadder() {
         // As many digits as are shown.
         const double scale = std::round(100.0 * best_.resolution_scale * (1.0 - kScaleStep * step)) / 100.0;
         // What loses nothing comes first at each resolution. Methods that the wearer chose for themselves are not replaced by another.
-        levels_.push_back({{lossy ? "shared" : best_.mode, best_.budget, scale}, 0});
+        levels_.push_back({{lossy ? Mode::kShared : best_.mode, best_.budget, scale}, 0});
         for (std::size_t i = 0; i < shares.size(); ++i) { levels_.push_back({{best_.mode, best_.budget * shares[i], scale}, i + 1}); }
     }
 }
@@ -210,8 +208,8 @@ void Governor::measure(const GovernedFrame& frame) {
             ++downs_;
             left_.reset();
             step(next, now_ms,
-                 fmt::format("{} at {} took {:.1f} of {:.1f} ms", level.settings.mode, percent(level.settings.resolution_scale), now_ms,
-                             period_ms_));
+                 fmt::format("{} at {} took {:.1f} of {:.1f} ms", nameOf(level.settings.mode), percent(level.settings.resolution_scale),
+                             now_ms, period_ms_));
             return;
         }
         describe(now_ms, "not even that fits");
@@ -224,7 +222,7 @@ void Governor::measure(const GovernedFrame& frame) {
     // A lossy method that turned out slower than what loses nothing is left, over the period or not.
     const bool is_slower = level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving;
     if (is_slower && now_s_ - changed_s_ >= kBetweenChangesSeconds) {
-        const std::string why = fmt::format("{} saves nothing here", level.settings.mode);
+        const std::string why = fmt::format("{} saves nothing here", nameOf(level.settings.mode));
         left_.reset();
         step(bestWithin(kTarget * period_ms_, now_ms), now_ms, why);
         return;
@@ -263,8 +261,8 @@ void Governor::step(std::size_t level, double now_ms, const std::string& why) {
 
 void Governor::describe(double now_ms, const std::string& why) {
     const GovernedSettings& now = settings();
-    std::string what = fmt::format("{} at {}", now.mode, percent(now.resolution_scale));
-    if (now.mode == "predicted") { what += fmt::format(", {} of an eye", percent(now.budget)); }
+    std::string what = fmt::format("{} at {}", nameOf(now.mode), percent(now.resolution_scale));
+    if (now.mode == Mode::kPredicted) { what += fmt::format(", {} of an eye", percent(now.budget)); }
     sentence_ = fmt::format("{}: {:.1f} of {:.1f} ms{}{}", what, now_ms, period_ms_, why.empty() ? "" : "; ", why);
 }
 

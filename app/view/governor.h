@@ -2,6 +2,8 @@
 // clock, no device; a frame goes in, the settings of the next come out.
 #pragma once
 
+#include "engine/mode.h"
+
 #include <deque>
 #include <optional>
 #include <string>
@@ -15,7 +17,7 @@ inline constexpr const char* kQualityNames[] = {"off", "sharp", "balanced", "fas
 
 // What is chosen; and what the wearer would have if every frame fitted.
 struct GovernedSettings {
-    std::string mode;
+    Mode mode = Mode::kPredicted;
     double budget = 0.0;            // of `predicted`: the share of an eye's work that is rendered again
     double resolution_scale = 1.0;  // each way
     bool operator==(const GovernedSettings&) const = default;

@@ -34,9 +34,19 @@ void chooseFrom(const char* label, const std::array<const char*, N>& names, std:
     }
 }
 
+// By the table of names; one eye last.
+void chooseMode(Mode& mode) {
+    std::string chosen(nameOf(mode));
+    std::array<const char*, kModeNames.size()> names{};
+    std::ranges::transform(kModeNames, names.begin(), [](std::string_view name) { return name.data(); });
+    std::ranges::rotate(names, names.begin() + 1);
+    chooseFrom("Method", names, chosen, 3);
+    mode = static_cast<Mode>(std::ranges::find(kModeNames, chosen) - kModeNames.begin());
+}
+
 void drawMethod(ViewSettings& settings) {
     StereoOptions& stereo = settings.stereo;
-    chooseFrom("Method", std::array{"two-pass", "shared", "reproject", "paper", "predicted", "mono"}, stereo.mode, 3);
+    chooseMode(stereo.mode);
     std::string side = stereo.dominant == kLeft ? "left" : "right";
     chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
     stereo.dominant = side == "left" ? kLeft : kRight;

@@ -22,7 +22,7 @@ struct ViewSettings {
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
     // Both eyes are shown the dominant one's picture.
-    [[nodiscard]] bool showsOneEye() const { return stereo.mode == "mono"; }
+    [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };
 
 // The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, scene-position,

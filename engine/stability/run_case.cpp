@@ -154,11 +154,6 @@ const PictureScore& CaseScore::worstOf(Mode mode) const {
     return *worst;
 }
 
-const char* nameOf(Mode mode) {
-    constexpr const char* kNames[] = {"mono", "two-pass", "shared", "reproject", "paper", "predicted"};
-    return kNames[static_cast<int>(mode)];
-}
-
 StereoFrame& CaseRunner::show(const Stage& stage) {
     scene_.emplace(context_, stage.scene);
     if (frame_) {

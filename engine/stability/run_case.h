@@ -33,7 +33,6 @@ struct CaseScore {
 };
 
 inline constexpr Mode kModes[] = {Mode::kMono, Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted};
-const char* nameOf(Mode mode);
 
 // The greatest change of any value from one frame to the next, on the device and in the twin, along a path.
 struct PathScore {

@@ -1,0 +1,30 @@
+// The ways to make two eyes' pictures, and their names.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace binosplat {
+
+// DESIGN, "the stereo methods".
+enum class Mode {
+    kMono,       // one eye
+    kTwoPass,    // both eyes in full, nothing shared: the paper's reference
+    kShared,     // both eyes in full, culled once and sorted by depth once
+    kReproject,  // the affiliated eye from the dominant one's picture alone
+    kPaper,      // and its borders, on request also its holes, rendered again (the paper)
+    kPredicted,  // and the tiles with the greatest expected error rendered again
+};
+
+// By Mode, as options, reports and panels write them.
+inline constexpr std::array<std::string_view, 6> kModeNames{"mono", "two-pass", "shared", "reproject", "paper", "predicted"};
+
+constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std::size_t>(mode)]; }
+
+// Whether the affiliated eye is made from the dominant one.
+constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
+// Whether each eye is rendered in full.
+constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
+
+}  // namespace binosplat
