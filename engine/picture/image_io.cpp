@@ -1,4 +1,4 @@
-// Image files; this and webp.cpp alone know OpenImageIO.
+// Image files; this alone knows OpenImageIO.
 #include "engine/picture/image_io.h"
 
 #include "engine/error.h"

@@ -17,14 +17,14 @@ struct Pixels {
     std::vector<std::uint8_t> rgba;
 };
 
-// Whether this build can decode WebP: it needs OpenImageIO.
+// Whether this build can decode WebP: it needs libwebp.
 bool canDecodeWebp();
 
 // The size that the header of a lossless WebP file states, so that it can be judged before anything is decoded. Throws Error naming `name`
 // if there is no lossless picture in `file`.
 glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name);
 
-// Without alpha the fourth byte is 255, and decoding takes half the time. Throws Error naming `name`.
-Pixels decodeWebp(std::span<const std::byte> file, bool with_alpha, const std::string& name);
+// Throws Error naming `name`.
+Pixels decodeWebp(std::span<const std::byte> file, const std::string& name);
 
 }  // namespace binosplat

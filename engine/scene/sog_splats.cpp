@@ -71,20 +71,20 @@ SogPictures decodePictures(SogFiles& files, SogMeta& meta) {
         check(packed->pixels() <= mostPixels(total_bytes), "{}: {} pixels in a scene of {} bytes, expected fewer than 256 per byte",
               packed->place, packed->pixels(), total_bytes);
     }
-    const auto decode = [](Packed& packed, bool with_alpha) {
-        Pixels pixels = decodeWebp(packed.bytes, with_alpha, packed.place);
+    const auto decode = [](Packed& packed) {
+        Pixels pixels = decodeWebp(packed.bytes, packed.place);
         packed.bytes = {};
         return pixels;
     };
     SogPictures pictures;
-    pictures.means_low = decode(means_low, false);
-    pictures.means_high = decode(means_high, false);
-    pictures.scales = decode(scales, false);
-    pictures.quats = decode(quats, true);
-    pictures.sh0 = decode(sh0, true);
+    pictures.means_low = decode(means_low);
+    pictures.means_high = decode(means_high);
+    pictures.scales = decode(scales);
+    pictures.quats = decode(quats);
+    pictures.sh0 = decode(sh0);
     if (meta.palette) {
-        pictures.centroids = decode(centroids, false);
-        pictures.labels = decode(labels, false);
+        pictures.centroids = decode(centroids);
+        pictures.labels = decode(labels);
     }
     return pictures;
 }
