@@ -56,9 +56,6 @@ std::multimap<std::string, std::string> makeSeeds() {
                   "at 0.1 should-render off\nat 0.2 visible off\nat 0.3 focused off\nat 0.4 slow-images 3\nat 0.5 lose-session\n"
                   "at 0.6 lose-instance\nat 0.7 eye left angles -40 40 40 -40\nat 0.8 controller right off\n");
     seeds.emplace("script", "head 0 rotation 0 0.6 0 0.8\nhead 1 position 1 2 3\ncontroller left -1 turn 350 -80\nframes none\n");
-    seeds.emplace("script_headset", settingsText("headsets/quest3.toml"));
-    seeds.emplace("script_motion", "time_ms,x,y,z,qw,qx,qy,qz\n0,0.1,1.5,-0.25,1,0,0,0\n# a remark\n16.5,0.11,1.5,-0.25,1,0,0,0\n");
-    seeds.emplace("script_motion", "638500000000000000,0,1,0,0,0,0,1\n638500000000166667,0,1,0.1,0,0.6,0,0.8\n");
 #endif
     return seeds;
 }

@@ -99,7 +99,7 @@ TEST_CASE("badHeadsetsNameFileAndLine") {
     };
     CHECK(message(top + sides).find("[right] is missing") != std::string::npos);
     CHECK(message(top + "[left]\nleft = -50\n").find("left.right is missing") != std::string::npos);
-    CHECK(message(top + "[left]\nleft = 95\nright = 40\nup = 45\ndown = -45\n").find("h.toml:7: left is 95") != std::string::npos);
+    CHECK(message(top + "[left]\nleft = 95\nright = 40\nup = 45\ndown = -45\n").find("h.toml:7: left.left is 95") != std::string::npos);
     CHECK(message(top + "[left]\nleft = 45\nright = 40\nup = 45\ndown = -45\n").find("must be less than") != std::string::npos);
     CHECK(message("colour = 1\n").find("h.toml:1: colour is not a key") != std::string::npos);
 }
@@ -108,7 +108,9 @@ TEST_CASE("numbersAreReadWhole") {
     CHECK(parseNumber("1.5") == 1.5);
     CHECK(parseNumber("+2e-3") == 2e-3);
     CHECK(parseNumber("-0.25") == -0.25);
-    for (const char* text : {"", "1.5x", "x", "nan", "inf", "1,5", "0x10", "1e999", "--1"}) { CHECK(!parseNumber(text).has_value()); }
+    for (const char* text : {"", "1.5x", "x", "nan", "inf", "1,5", "0x10", "1e999", "--1", "+-1"}) {
+        CHECK(!parseNumber(text).has_value());
+    }
 }
 
 TEST_CASE("outputFilesAppearTogetherOrNotAtAll") {

@@ -1,4 +1,4 @@
 // It lies with the simulated runtime, whose folder builds alone.
 #pragma once
 
-#include "xr/simulated/script/toml_guard.h"
+#include "xr/simulated/files/toml_guard.h"

@@ -3,7 +3,9 @@
 
 #include "engine/error.h"
 #include "engine/setup/data_folders.h"
-#include "engine/setup/values.h"
+#include "engine/setup/text_file.h"
+#include "xr/simulated/files/file_words.h"
+#include "xr/simulated/files/headset_file.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -16,29 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const Setting& require(const SettingsTable& table, const std::string& key) {
-    const auto found = table.settings.find(key);
-    check(found != table.settings.end(), "{}: {}{} is missing, must be given", table.origin, table.name.empty() ? "" : table.name + ".",
-          key);
-    return found->second;
-}
-
-void refuseUnknown(const SettingsTable& table, const std::set<std::string>& known) {
-    for (const auto& [key, setting] : table.settings) {
-        check(known.contains(key), "{} is not a key of a headset{}", setting.origin, table.name.empty() ? "" : "'s [" + table.name + "]");
-    }
-}
-
-double angle(const SettingsTable& table, const std::string& key) { return glm::radians(readNumber(require(table, key), -85.0, 85.0)); }
-
-ViewAngles anglesOf(const SettingsTable& table) {
-    refuseUnknown(table, {"left", "right", "up", "down"});
-    const ViewAngles angles{angle(table, "left"), angle(table, "right"), angle(table, "up"), angle(table, "down")};
-    check(angles.left_rad < angles.right_rad, "{}: {}.left must be less than {}.right", table.origin, table.name, table.name);
-    check(angles.down_rad < angles.up_rad, "{}: {}.down must be less than {}.up", table.origin, table.name, table.name);
-    return angles;
-}
-
 // Outwards is to the left for the left eye; y points down, so a positive turn about it carries z towards x.
 glm::dquat outwardTurn(int side, double canting_rad) {
     return glm::angleAxis(side == kLeft ? -canting_rad : canting_rad, glm::dvec3(0.0, 1.0, 0.0));
@@ -47,26 +26,18 @@ glm::dquat outwardTurn(int side, double canting_rad) {
 }  // namespace
 
 Headset readHeadset(const fs::path& path) {
-    Headset headset;
-    std::array<bool, 2> given{};
-    for (const SettingsTable& table : readSettingsFile(path)) {
-        if (table.name.empty()) {
-            refuseUnknown(table, {"name", "source", "size", "canting-deg", "eye-distance-m"});
-            headset.name = readText(require(table, "name"));
-            headset.source = readText(require(table, "source"));
-            headset.size_px = readSize(require(table, "size"));
-            headset.canting_rad = glm::radians(readNumber(require(table, "canting-deg"), 0.0, 45.0));
-            headset.eye_distance_m = readNumber(require(table, "eye-distance-m"), 0.0, 1.0);
-        } else {
-            check(table.name == "left" || table.name == "right", "{}: [{}] is not a table of a headset, must be [left] or [right]",
-                  table.origin, table.name);
-            const int side = table.name == "left" ? kLeft : kRight;
-            headset.angles[static_cast<std::size_t>(side)] = anglesOf(table);
-            given[static_cast<std::size_t>(side)] = true;
+    const std::string text = readTextFile(path, "a TOML file of a headset");
+    try {
+        const files::HeadsetFile file = files::parseHeadset(text, path.string());
+        Headset headset{.name = file.name, .source = file.source, .size_px = {file.size_px[0], file.size_px[1]}};
+        headset.canting_rad = file.canting_rad;
+        headset.eye_distance_m = file.eye_distance_m;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const files::HeadsetAngles& angles = file.angles[side];
+            headset.angles[side] = {angles.left_rad, angles.right_rad, angles.up_rad, angles.down_rad};
         }
-    }
-    check(given[kLeft] && given[kRight], "{}: [{}] is missing, must be given", path.string(), given[kLeft] ? "right" : "left");
-    return headset;
+        return headset;
+    } catch (const files::Error& error) { throw Error(error.what()); }
 }
 
 fs::path findHeadset(const std::string& name) {

@@ -22,8 +22,8 @@ struct Headset {
 // down negative for a usual eye). Throws Error with file and line.
 Headset readHeadset(const std::filesystem::path& path);
 
-// The file of a headset: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first of dataFolders() that has
-// it. Throws Error with the names that there are.
+// The file of a headset: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first of dataFolders() that
+// has it. Throws Error with the names that there are.
 std::filesystem::path findHeadset(const std::string& name);
 
 // Both eyes of a wearer whose mid-eye is at `world_from_middle`.

@@ -2,6 +2,7 @@
 #include "engine/setup/values.h"
 
 #include "engine/error.h"
+#include "xr/simulated/files/file_words.h"
 
 #include <charconv>
 #include <cmath>
@@ -39,15 +40,7 @@ std::optional<glm::dvec3> parseVector(std::string_view text) {
 
 }  // namespace
 
-std::optional<double> parseNumber(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') { text.remove_prefix(1); }
-    while (!text.empty() && text.back() == ' ') { text.remove_suffix(1); }
-    if (text.starts_with('+')) { text.remove_prefix(1); }
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) { return std::nullopt; }
-    return value;
-}
+std::optional<double> parseNumber(std::string_view text) { return files::parseNumber(files::trim(text)); }
 
 double readNumber(const Setting& setting, double least, double most) {
     const std::optional<double> value = parseNumber(setting.text());

@@ -111,11 +111,6 @@ void readScript(Bytes input) {
     }
     if (script.eventsIn(-1e7, 1e7).size() != script.events.size()) { std::abort(); }
 }
-void readScriptHeadset(Bytes input) { (void)simulated::parseHeadset({input.begin(), input.end()}, "headset.toml"); }
-void readScriptMotion(Bytes input) {
-    const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-    (void)simulated::parseHeadMotion(text, "motion.csv", simulated::MotionAxes::kUnity);
-}
 #endif
 
 // "scene" takes any file: .splat, gzip, and what tells the formats apart.
@@ -134,8 +129,6 @@ constexpr auto kTargets = std::to_array<Target>({
     {"motion", readMotion},
 #ifdef BINOSPLAT_OPENXR
     {"script", readScript},
-    {"script_headset", readScriptHeadset},
-    {"script_motion", readScriptMotion},
 #endif
 });
 

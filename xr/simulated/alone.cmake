@@ -35,7 +35,7 @@ target_compile_definitions(third_party_glm INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM
 target_link_libraries(third_party_fmt INTERFACE fmt::fmt-header-only)
 target_link_libraries(third_party_json INTERFACE nlohmann_json::nlohmann_json)
 target_link_libraries(third_party_png INTERFACE PNG::PNG)
-add_library(third_party_toml STATIC script/toml_guard.cpp)
+add_library(third_party_toml STATIC files/toml_guard.cpp)
 set_target_properties(third_party_toml PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_link_libraries(third_party_toml PRIVATE binosplat_flags)
 target_compile_definitions(third_party_toml INTERFACE TOML_ASSERT=static_cast<void>)

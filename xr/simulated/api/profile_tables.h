@@ -7,8 +7,8 @@
 namespace simulated {
 
 inline constexpr std::string_view kHands[] = {"/user/hand/left", "/user/hand/right"};
-inline constexpr std::string_view kHead[] = {"/user/head"};
-inline constexpr std::string_view kGamepad[] = {"/user/gamepad"};
+inline constexpr std::string_view kHeadPaths[] = {"/user/head"};
+inline constexpr std::string_view kGamepadPaths[] = {"/user/gamepad"};
 
 inline constexpr std::string_view kSimple[] = {"/input/select/click", "/input/menu/click", "/input/grip/pose", "/input/aim/pose",
                                                "/output/haptic"};
@@ -241,8 +241,8 @@ inline constexpr Profile kProfiles[] = {
      {},
      Since::k1_1,
      "XR_ML_ml2_controller_interaction"},
-    {"/interaction_profiles/htc/vive_pro", "Vive Pro headset", kHead, kVivePro, {}, {}},
-    {"/interaction_profiles/microsoft/xbox_controller", "Xbox controller", kGamepad, kXbox, {}, {}},
+    {"/interaction_profiles/htc/vive_pro", "Vive Pro headset", kHeadPaths, kVivePro, {}, {}},
+    {"/interaction_profiles/microsoft/xbox_controller", "Xbox controller", kGamepadPaths, kXbox, {}, {}},
 };
 
 }  // namespace simulated

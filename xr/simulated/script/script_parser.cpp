@@ -120,12 +120,15 @@ private:
         }
         requireFirst(words, "headset");
         const fs::path path = folder_ / words.text("the headset's file");
-        const HeadsetFile headset = parseHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
+        const files::HeadsetFile headset = readHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
         script_.system_name = headset.name;
-        script_.size_px = headset.size_px;
+        script_.size_px = {headset.size_px[0], headset.size_px[1]};
         script_.eye_distance_m = headset.eye_distance_m;
-        script_.cant_rad = {headset.cant_rad, headset.cant_rad};
-        for (const Side side : kSides) { script_.fovs[side].setInitial(headset.fovs[side]); }
+        script_.cant_rad = {headset.canting_rad, headset.canting_rad};
+        for (const Side side : kSides) {
+            const auto& [left_rad, right_rad, up_rad, down_rad] = headset.angles[side];
+            script_.fovs[side].setInitial({left_rad, right_rad, up_rad, down_rad});
+        }
     }
 
     // [position x y z] [rotation x y z w | turn YAW PITCH | look x y z]; what is left out stays as it was.
@@ -181,7 +184,7 @@ private:
         if (words.takeIf("start")) { motion_start_s_ = words.time("the time at which the motion starts"); }
         if (words.takeIf("skip")) { motion_skip_s_ = words.number("the seconds to skip", 0.0, 1e6); }
         words.requireEnd();
-        head_motion_ = parseHeadMotion(readText(path, words.place() + ": ", "a CSV file of head motion"), path.string(), axes);
+        head_motion_ = headTrack(readText(path, words.place() + ": ", "a CSV file of head motion"), path.string(), axes);
         if (motion_skip_s_ > head_motion_->lastTime()) {
             words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_, head_motion_->lastTime());
         }

@@ -10,20 +10,6 @@
 
 namespace simulated {
 
-std::string shown(std::string_view word) {
-    constexpr std::size_t kMost = 60;
-    std::string result;
-    for (const char c : word.substr(0, kMost)) { result += c >= ' ' && c <= '~' ? c : '?'; }
-    return word.size() > kMost ? result + "..." : result;
-}
-
-std::optional<double> parseNumber(std::string_view word) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) { return std::nullopt; }
-    return value;
-}
-
 std::string listed(std::initializer_list<std::string_view> choices) {
     std::string result;
     for (const std::string_view& choice : choices) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
+#include "xr/simulated/files/file_words.h"
 #include "xr/simulated/script/script.h"
 
 #include <fmt/format.h>
@@ -19,11 +20,8 @@ template <typename... Args>
     throw ScriptError(fmt::format("{}: {}", place, fmt::format(format, std::forward<Args>(args)...)));
 }
 
-// A word as a message shows it: short and printable.
-[[nodiscard]] std::string shown(std::string_view word);
-
-// The whole word as a number; none if it is anything else, or not finite.
-[[nodiscard]] std::optional<double> parseNumber(std::string_view word);
+using files::parseNumber;
+using files::shown;
 
 // Blanks divide words, # begins a comment, "double quotes" hold a word with blanks.
 class Words {

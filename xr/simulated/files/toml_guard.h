@@ -1,4 +1,4 @@
-// What TOML allows and the library that reads it, toml++ 3.1, does not survive. Everybody who parses with it looks here first.
+// What TOML allows and the library that reads it, toml++ 3.1 to 3.4, does not survive. Everybody who parses with it looks here first.
 #pragma once
 
 #include <optional>

@@ -1,0 +1,35 @@
+// What the readers of headsets and head motion have in common: numbers, and errors that name file and line.
+#pragma once
+
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace files {
+
+// One line: file, place, what is wrong, what it must be.
+class Error : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+template <typename... Parts>
+[[noreturn]] void failAt(std::string_view file, std::size_t line, const Parts&... parts) {
+    std::ostringstream text;
+    text << file << ':' << line << ": ";
+    (text << ... << parts);
+    throw Error(text.str());
+}
+
+// A word as a message shows it: short and printable.
+[[nodiscard]] std::string shown(std::string_view word);
+
+// The whole word as a number of the C locale; none if it is anything else, or not finite.
+[[nodiscard]] std::optional<double> parseNumber(std::string_view word);
+
+// Without blanks around it.
+[[nodiscard]] std::string_view trim(std::string_view text);
+
+}  // namespace files

@@ -1,0 +1,26 @@
+// Recorded head motion from CSV, as it was recorded.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace files {
+
+struct MotionSample {
+    double time_s = 0.0;  // since the first sample
+    std::array<double, 3> position_m{};
+    std::array<double, 4> orientation_xyzw{};  // of length 1
+};
+
+// Lines of eight comma-separated numbers: time, position x, y, z in metres, orientation x, y, z, w; blanks around numbers, empty lines
+// and lines that begin with # do not count. The first line may be a header; then it says what it can:
+//   - time_s, time_ms, time_us, time_ns or time_ticks (of 100 ns), or timestamp_..., is the unit of time. Without one, numbers
+//     under 1e12 are seconds and those from 1e16 to 1e18 ticks, as Windows counts them; between and beyond, the unit must be said;
+//   - a fifth column called w or qw means that the orientation is w, x, y, z.
+// At least one sample, times strictly increasing from 0. Throws Error with file and line: other numbers of columns, numbers that are not
+// finite, times that do not increase, orientations whose length is not 1 to 5 %, texts without a pose.
+[[nodiscard]] std::vector<MotionSample> parseMotion(std::string_view text, const std::string& file);
+
+}  // namespace files
