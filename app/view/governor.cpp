@@ -180,54 +180,60 @@ void Governor::measure(const GovernedFrame& frame) {
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
     const bool is_over = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
     const double now_ms = median(is_over ? at_once : kWindow);
-    const Level& level = levels_[current_];
     learn(now_ms);
-
     if (is_over) {
-        // A step upwards that failed is not tried again soon.
-        if (left_ && now_s_ - changed_s_ < kProvenSeconds) {
-            Level& failed = levels_[current_];
-            failed.block_length_s = std::min(std::max(2.0 * failed.block_length_s, kFirstBlockSeconds), kLongestBlockSeconds);
-            failed.blocked_s = now_s_ + failed.block_length_s;
+        makeItFit(now_ms);
+    } else {
+        giveBack(now_ms);
+    }
+}
+
+void Governor::makeItFit(double now_ms) {
+    const Level& level = levels_[current_];
+    // A step upwards that failed is not tried again soon.
+    if (left_ && now_s_ - changed_s_ < kProvenSeconds) {
+        Level& failed = levels_[current_];
+        failed.block_length_s = std::min(std::max(2.0 * failed.block_length_s, kFirstBlockSeconds), kLongestBlockSeconds);
+        failed.blocked_s = now_s_ + failed.block_length_s;
+    }
+    // What a lossy method saves is no longer known once its cost has changed: what loses nothing is asked first.
+    if (level.method != 0 && ratios_[level.method].measured_s) {
+        const double before_ms = ratios_[level.method].own_ms;
+        const double full_ms = now_ms / std::pow(level.settings.resolution_scale / best_.resolution_scale, kPowerDown);
+        if (std::abs(full_ms - before_ms) > kDrift * before_ms && full_ms > lossless_ms_) { ratios_[level.method].value = 1.0; }
+    }
+    std::size_t next = bestWithin((downs_ == 0 ? kTarget : kAgain) * period_ms_, now_ms);
+    if (downs_ >= 2) {
+        next = current_;
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            if (pays(levels_[i].method) && expectedMs(i, now_ms) < expectedMs(next, now_ms)) { next = i; }
         }
-        // What a lossy method saves is no longer known once its cost has changed: what loses nothing is asked first.
-        if (level.method != 0 && ratios_[level.method].measured_s) {
-            const double before_ms = ratios_[level.method].own_ms;
-            const double full_ms = now_ms / std::pow(level.settings.resolution_scale / best_.resolution_scale, kPowerDown);
-            if (std::abs(full_ms - before_ms) > kDrift * before_ms && full_ms > lossless_ms_) { ratios_[level.method].value = 1.0; }
-        }
-        std::size_t next = bestWithin((downs_ == 0 ? kTarget : kAgain) * period_ms_, now_ms);
-        if (downs_ >= 2) {
-            next = current_;
-            for (std::size_t i = 0; i < levels_.size(); ++i) {
-                if (pays(levels_[i].method) && expectedMs(i, now_ms) < expectedMs(next, now_ms)) { next = i; }
-            }
-        }
-        beaten_ = next == current_ || expectedMs(next, now_ms) >= now_ms;
-        if (!beaten_) {
-            ++downs_;
-            left_.reset();
-            step(next, now_ms,
-                 fmt::format("{} at {} took {:.1f} of {:.1f} ms", nameOf(level.settings.mode), percent(level.settings.resolution_scale),
-                             now_ms, period_ms_));
-            return;
-        }
+    }
+    beaten_ = next == current_ || expectedMs(next, now_ms) >= now_ms;
+    if (beaten_) {
         describe(now_ms, "not even that fits");
         return;
     }
+    ++downs_;
+    left_.reset();
+    step(next, now_ms,
+         fmt::format("{} at {} took {:.1f} of {:.1f} ms", nameOf(level.settings.mode), percent(level.settings.resolution_scale), now_ms,
+                     period_ms_));
+}
 
+void Governor::giveBack(double now_ms) {
+    const Level& level = levels_[current_];
     beaten_ = false;
     if (recent_ms_.size() >= kTrialFrames) { downs_ = 0; }
-    const bool is_steady = recent_ms_.size() >= kWindow && now_s_ - changed_s_ >= kBetweenChangesSeconds;
+    const bool is_calm = now_s_ - changed_s_ >= kBetweenChangesSeconds;
     // A lossy method that turned out slower than what loses nothing is left, over the period or not.
-    const bool is_slower = level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving;
-    if (is_slower && now_s_ - changed_s_ >= kBetweenChangesSeconds) {
+    if (is_calm && level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving) {
         const std::string why = fmt::format("{} saves nothing here", nameOf(level.settings.mode));
         left_.reset();
         step(bestWithin(kTarget * period_ms_, now_ms), now_ms, why);
         return;
     }
-    if (is_steady) {
+    if (is_calm && recent_ms_.size() >= kWindow) {
         const std::size_t next = bestWithin(kUpwards * period_ms_, now_ms);
         if (next < current_) {
             left_ = current_;

@@ -72,6 +72,9 @@ private:
     // A method that nobody has measured yet, at a resolution where it cannot do harm: if what is guessed of it would allow better settings
     // than the present ones.
     [[nodiscard]] std::optional<std::size_t> worthTrying(double now_ms) const;
+    // What to do about frames that took too long, and about those that did not.
+    void makeItFit(double now_ms);
+    void giveBack(double now_ms);
     void step(std::size_t level, double now_ms, const std::string& why);
     void describe(double now_ms, const std::string& why);
 

@@ -1,7 +1,5 @@
-// GLFW and a Vulkan swapchain.
+// GLFW, and what is drawn on its window.
 #include "app/view/mirror_window.h"
-
-#include "app/view/window_surface.h"
 
 #include "engine/error.h"
 
@@ -83,48 +81,17 @@ MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : conte
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
     check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
-    surface_ = vk::raii::SurfaceKHR(context.instance(), surface);
-    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
-          context.deviceName());
-    acquired_fence_ = context.device().createFence({});
-    makeSwapchain();
+    pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), surface), [this] {
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(window_, &width, &height);
+        return glm::uvec2(width, height);
+    });
 }
 
 MirrorWindow::~MirrorWindow() {
     context_.device().waitIdle();
-    swapchain_ = vk::raii::SwapchainKHR(nullptr);
-    surface_ = vk::raii::SurfaceKHR(nullptr);
+    pictures_.reset();
     glfwDestroyWindow(window_);
-}
-
-void MirrorWindow::makeSwapchain() {
-    const vk::raii::PhysicalDevice& device = context_.physicalDevice();
-    const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
-    check(format.has_value(), "the display takes no pictures of eight bits as they are");
-    // The headset sets the pace.
-    const auto modes = device.getSurfacePresentModesKHR(*surface_);
-    vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
-    for (const auto better : {vk::PresentModeKHR::eImmediate, vk::PresentModeKHR::eMailbox}) {
-        if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
-    }
-    const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
-    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window_, &width, &height);
-    const auto extent = windowExtent(able, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
-    is_stale_ = !extent;
-    if (!extent) { return; }
-    extent_ = *extent;
-    const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
-    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, extent_, 1,
-                                    vk::ImageUsageFlagBits::eTransferDst);
-    info.preTransform = able.currentTransform;
-    info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
-    info.presentMode = mode;
-    info.oldSwapchain = *swapchain_;
-    swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
-    images_.clear();
-    for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
 }
 
 WindowInput MirrorWindow::poll() {
@@ -183,33 +150,10 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
     changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
 }
 
-void MirrorWindow::acquire() {
-    acquired_ = false;
-    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
-    if (is_stale_) {
-        const std::lock_guard lock(context_.queueMutex());
-        context_.queue().waitIdle();
-        makeSwapchain();
-    }
-    if (is_stale_) { return; }  // put away
-    try {
-        const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
-        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free: the headset does not wait
-        index_ = index;
-    } catch (const vk::OutOfDateKHRError&) {
-        is_stale_ = true;
-        return;
-    }
-    const auto waited = context_.device().waitForFences(*acquired_fence_, VK_TRUE, UINT64_MAX);
-    check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
-    context_.device().resetFences(*acquired_fence_);
-    acquired_ = true;
-}
-
 void MirrorWindow::record(Commands& commands) {
-    if (!acquired_) { return; }
-    const vk::Image target = images_[index_];
-    const int width = static_cast<int>(extent_.width), height = static_cast<int>(extent_.height);
+    const vk::Image target = pictures_->current();
+    if (!target) { return; }
+    const int width = static_cast<int>(pictures_->sizePx().x), height = static_cast<int>(pictures_->sizePx().y);
     changeLayout(commands, target, Layout::eUndefined, Layout::eTransferDstOptimal);
     const vk::ClearColorValue black(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f});
     commands.buffer().clearColorImage(target, Layout::eTransferDstOptimal, black,
@@ -219,16 +163,6 @@ void MirrorWindow::record(Commands& commands) {
     if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, split, height); }
     if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
-}
-
-void MirrorWindow::show() {
-    if (!acquired_) { return; }
-    acquired_ = false;
-    const vk::SwapchainKHR swapchain = *swapchain_;
-    try {
-        const std::lock_guard lock(context_.queueMutex());
-        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
-    } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
 }
 
 }  // namespace binosplat

@@ -3,6 +3,7 @@
 
 #include "app/view/canvas.h"
 #include "app/view/window_input.h"
+#include "app/view/window_pictures.h"
 
 #include <glm/glm.hpp>
 
@@ -39,32 +40,24 @@ public:
 
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
-    void acquire();
+    void acquire() { pictures_->acquire(); }
     // Between begin and submitAndWait: keeps an eye's presented pixels, of an image of `format`.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
     // Between begin and submitAndWait, once the canvas is drawn; also more than once.
     void record(Commands& commands);
     // After submitAndWait.
-    void show();
+    void show() { pictures_->show(); }
 
 private:
-    void makeSwapchain();
     void makeEyeImage(glm::uvec2 size_px, vk::Format format);
 
     const Context& context_;
     const Canvas& canvas_;
     GLFWwindow* window_ = nullptr;
-    vk::raii::SurfaceKHR surface_{nullptr};
-    vk::raii::SwapchainKHR swapchain_{nullptr};
-    vk::raii::Fence acquired_fence_{nullptr};
-    std::vector<vk::Image> images_;
-    vk::Extent2D extent_;
+    std::unique_ptr<WindowPictures> pictures_;
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
-    bool acquired_ = false;
-    bool is_stale_ = false;  // the pictures are not as the display wants them any more
-    std::uint32_t index_ = 0;
     glm::dvec2 cursor_{0.0};
     std::vector<int> pressed_;  // GLFW's keys, since the last poll
     std::string dropped_;       // likewise

@@ -225,7 +225,10 @@ void Context::createDevice(const ContextOptions& options) {
                                   : vk::raii::Device(physical_device_, info);
     queue_ = device_.getQueue(queue_family_, 0);
     pipeline_cache_ = PipelineCache(physical_device_, device_);
+    readLimits();
+}
 
+void Context::readLimits() {
     const auto properties = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
     const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();

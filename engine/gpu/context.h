@@ -112,6 +112,7 @@ private:
     void choosePhysicalDevice(const std::string& wanted);
     void takePhysicalDevice(const DeviceMaker& maker);
     void createDevice(const ContextOptions& options);
+    void readLimits();
     void nameObject(vk::ObjectType type, std::uint64_t handle, const std::string& object_name) const;
 
     std::function<void(const char*)> sink_;  // where the messenger writes; it holds this address

@@ -1,0 +1,83 @@
+// A Vulkan swapchain that nobody waits for.
+#include "app/view/window_pictures.h"
+
+#include "app/view/window_surface.h"
+#include "engine/error.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px)
+    : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)) {
+    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
+          context.deviceName());
+    acquired_fence_ = context.device().createFence({});
+    make();
+}
+
+void WindowPictures::make() {
+    const vk::raii::PhysicalDevice& device = context_.physicalDevice();
+    const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
+    check(format.has_value(), "the display takes no pictures of eight bits as they are");
+    // The headset sets the pace.
+    const auto modes = device.getSurfacePresentModesKHR(*surface_);
+    vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
+    for (const auto better : {vk::PresentModeKHR::eImmediate, vk::PresentModeKHR::eMailbox}) {
+        if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
+    }
+    const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
+    const glm::uvec2 window_px = window_size_px_();
+    const auto extent = windowExtent(able, {window_px.x, window_px.y});
+    is_stale_ = !extent;
+    if (!extent) { return; }
+    size_px_ = {extent->width, extent->height};
+    const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
+    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, *extent, 1,
+                                    vk::ImageUsageFlagBits::eTransferDst);
+    info.preTransform = able.currentTransform;
+    info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
+    info.presentMode = mode;
+    info.oldSwapchain = *swapchain_;
+    swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
+    images_.clear();
+    for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
+}
+
+void WindowPictures::acquire() {
+    acquired_ = false;
+    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
+    if (is_stale_) {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+        make();
+    }
+    if (is_stale_) { return; }  // put away
+    try {
+        const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
+        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free: the headset does not wait
+        index_ = index;
+    } catch (const vk::OutOfDateKHRError&) {
+        is_stale_ = true;
+        return;
+    }
+    const auto waited = context_.device().waitForFences(*acquired_fence_, VK_TRUE, UINT64_MAX);
+    check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
+    context_.device().resetFences(*acquired_fence_);
+    acquired_ = true;
+}
+
+void WindowPictures::show() {
+    if (!acquired_) { return; }
+    acquired_ = false;
+    const vk::SwapchainKHR swapchain = *swapchain_;
+    try {
+        const std::lock_guard lock(context_.queueMutex());
+        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+    } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
+}
+
+}  // namespace binosplat

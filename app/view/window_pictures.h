@@ -1,0 +1,41 @@
+// The pictures of a window, which the headset never waits for.
+#pragma once
+
+#include "engine/gpu/context.h"
+
+#include <glm/glm.hpp>
+
+#include <functional>
+#include <vector>
+
+namespace binosplat {
+
+class WindowPictures {
+public:
+    // `window_size_px` says how large the window is now. Throws Error if the device cannot show on the surface.
+    WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px);
+
+    // Before anything is recorded: a picture to draw on, if one is free.
+    void acquire();
+    // That picture; null if none was free.
+    [[nodiscard]] vk::Image current() const { return acquired_ ? images_[index_] : vk::Image(); }
+    [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    // Once what was drawn on it is submitted and done.
+    void show();
+
+private:
+    void make();
+
+    const Context& context_;
+    vk::raii::SurfaceKHR surface_;
+    std::function<glm::uvec2()> window_size_px_;
+    vk::raii::SwapchainKHR swapchain_{nullptr};
+    vk::raii::Fence acquired_fence_{nullptr};
+    std::vector<vk::Image> images_;
+    glm::uvec2 size_px_{0, 0};
+    bool acquired_ = false;
+    bool is_stale_ = false;  // the pictures are not as the display wants them any more
+    std::uint32_t index_ = 0;
+};
+
+}  // namespace binosplat
