@@ -122,10 +122,10 @@ private:
     // share, since every command waits for those before it, also those of the frame before.
     struct Flight {
         explicit Flight(const Context& context)
-            : commands(context), readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback) {}
+            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context) {}
 
-        Commands commands;
         Buffer readback;
+        Commands commands;  // after what it writes: it waits before that goes
         std::vector<Eye> eyes;
         FrameSettings settings;
         EyeRelation relation;
@@ -205,8 +205,8 @@ private:
     std::vector<Eye> eyes_;
     bool room_ahead_fits_ = true;  // in the device's memory
     std::uint64_t cut_short_ = 0, done_again_ = 0;
-    std::array<Flight, 2> flights_;
     std::size_t turn_ = 0;
+    std::array<Flight, 2> flights_;  // last: they wait before anything goes that they use
 };
 
 }  // namespace binosplat

@@ -27,6 +27,7 @@ struct GovernedSettings {
 struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not tell
     double period_ms = 0.0;  // what the runtime gives a frame
+    bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
 };
 
 class Governor {

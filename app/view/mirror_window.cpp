@@ -124,7 +124,11 @@ void MirrorWindow::makeSwapchain() {
     info.oldSwapchain = *swapchain_;
     swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
     images_.clear();
-    for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
+    drawn_.clear();
+    for (const VkImage image : swapchain_.getImages()) {
+        images_.emplace_back(image);
+        drawn_.push_back(context_.device().createSemaphore({}));
+    }
 }
 
 WindowInput MirrorWindow::poll() {
@@ -178,6 +182,7 @@ void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
 }
 
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
+    // Of another size than the frame before, which is over then.
     if (eye_px_ != size_px) { makeEyeImage(size_px, format); }
     commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
     changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
@@ -185,7 +190,7 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
 
 void MirrorWindow::acquire() {
     acquired_ = false;
-    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
+    // What was presented is not written to again.
     if (is_stale_) {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
@@ -225,9 +230,10 @@ void MirrorWindow::show() {
     if (!acquired_) { return; }
     acquired_ = false;
     const vk::SwapchainKHR swapchain = *swapchain_;
+    const vk::Semaphore drawn = *drawn_[index_];
     try {
         const std::lock_guard lock(context_.queueMutex());
-        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_)) == vk::Result::eSuboptimalKHR;
     } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
 }
 

@@ -40,11 +40,13 @@ public:
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire();
-    // Between begin and submitAndWait: keeps an eye's presented pixels, of an image of `format`.
+    // Between begin and submit: keeps an eye's presented pixels, of an image of `format`.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
-    // Between begin and submitAndWait, once the canvas is drawn; also more than once.
+    // Between begin and submit, once the canvas is drawn; also more than once.
     void record(Commands& commands);
-    // After submitAndWait.
+    // What the submission signals for show(); null where no picture was acquired.
+    [[nodiscard]] vk::Semaphore drawn() const { return acquired_ ? *drawn_.at(index_) : vk::Semaphore(); }
+    // After submit: shows the picture once it is drawn.
     void show();
 
 private:
@@ -58,6 +60,7 @@ private:
     vk::raii::SwapchainKHR swapchain_{nullptr};
     vk::raii::Fence acquired_fence_{nullptr};
     std::vector<vk::Image> images_;
+    std::vector<vk::raii::Semaphore> drawn_;  // by picture: free again when it is
     vk::Extent2D extent_;
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};

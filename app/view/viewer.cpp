@@ -187,9 +187,11 @@ void Viewer::drawWindowAlone(const std::string& why) {
     status_.state = why;
     layOutPanel(false);
     window_->acquire();
+    waitForQueue();  // what the panel is drawn from is that of the last frame
     commands_.begin();
     recordPanel(commands_);
-    commands_.submitAndWait();
+    commands_.submit(window_->drawn());
+    commands_.wait();
     window_->show();
     sayChange(before);
 }
@@ -216,7 +218,8 @@ void Viewer::renderWaiting() {
     const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
     recordPanel(commands_);
-    commands_.submitAndWait();
+    commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
+    commands_.wait();
 }
 
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
