@@ -130,6 +130,7 @@ void Viewer::drawFrame() {
     controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scenes_.scene_from_room);
     if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
     obeyWindow(step_seconds);
+    if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     renderer_.govern(*stay_, settings_);
 
     status_.state.clear();
