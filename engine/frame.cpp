@@ -5,8 +5,15 @@
 #include "engine/eye_view.h"
 
 #include <cassert>
+#include <cmath>
 
 namespace binosplat {
+namespace {
+
+// What lists hold between two frames changes less than the room ahead of them, unless an eye turns farther than this.
+constexpr double kJumpRadians = 0.1;
+
+}  // namespace
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     StereoSettings stereo = settings.stereo;
@@ -20,14 +27,14 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
     : context_(context),
       passes_(context, options.threads_per_cell),
       stereo_passes_(context),
-      commands_(context),
       shown_{ShownTiles(context), ShownTiles(context)},
-      state_readback_(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback),
-      first_capacity_(options.first_capacity) {
+      first_capacity_(options.first_capacity),
+      flights_{Flight(context), Flight(context)} {
     show(scene);
 }
 
 void StereoFrame::show(const GpuScene& scene) {
+    finish();
     scene_ = &scene;
     first_frame_ = true;
     moves_asked_ = {};
@@ -36,11 +43,110 @@ void StereoFrame::show(const GpuScene& scene) {
 }
 
 void StereoFrame::rebuildKernels() {
+    finish();
     passes_.rebuildKernels(context_);
     stereo_passes_.rebuildKernels();
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
+    finish();
+    prepare(eyes, settings);
+    renderUntilComplete(eyes, settings, append);
+    FrameResult result = collect(flights_[turn_]);
+    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
+    return result;
+}
+
+std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
+                                                    const std::function<void(Commands&)>& append, vk::Semaphore signals) {
+    Flight &before_last = flights_[turn_], &last = flights_[1 - turn_];
+    std::optional<FrameResult> result = land(before_last);
+    bool waits = first_frame_ || jumps(eyes, settings) || (result && isCutShort());
+    // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
+    const bool is_short = result && room_ahead_fits_ && !hasRoom(kRoomAhead);
+    if (waits || is_short) {
+        if (auto newer = land(last)) { result = std::move(newer); }
+        waits = waits || (result && isCutShort());
+        if (is_short) { makeRoomAhead(); }
+    }
+    prepare(eyes, settings);
+    if (!waits) {
+        record(eyes, settings, append);
+        flights_[turn_].commands.submit(signals);
+        turn_ = 1 - turn_;
+        return result;
+    }
+    done_again_ += renderUntilComplete(eyes, settings, append);
+    result = collect(flights_[turn_]);
+    result->counters["frames_cut_short"] = cut_short_;
+    result->counters["frames_done_again"] = done_again_;
+    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
+    makeRoomAhead();
+    if (signals) {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().submit(vk::SubmitInfo({}, {}, {}, signals));
+    }
+    return result;
+}
+
+std::optional<FrameResult> StereoFrame::finish() {
+    std::optional<FrameResult> older = land(flights_[turn_]), newer = land(flights_[1 - turn_]);
+    return newer ? std::move(newer) : std::move(older);
+}
+
+std::optional<FrameResult> StereoFrame::land(Flight& flight) {
+    if (!flight.commands.isUnderWay()) { return std::nullopt; }
+    flight.commands.wait();
+    state_ = flight.readback.mapped<FrameState>()[0];
+    if (isCutShort()) { ++cut_short_; }
+    FrameResult result = collect(flight);
+    result.counters["frames_cut_short"] = cut_short_;
+    result.counters["frames_done_again"] = done_again_;
+    if (flight.settings.mode == Mode::kPredicted && flight.moves_asked == moves_asked_) { may_move_ = state_.stereo_counters.pays != 0; }
+    return result;
+}
+
+std::uint64_t StereoFrame::renderUntilComplete(std::span<const Eye> eyes, const FrameSettings& settings,
+                                               const std::function<void(Commands&)>& append) {
+    Flight& flight = flights_[turn_];
+    for (std::uint64_t times = 0;; ++times) {
+        record(eyes, settings, append);
+        flight.commands.submitAndWait();
+        for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
+        state_ = flight.readback.mapped<FrameState>()[0];
+        if (growIfNeeded()) { return times; }
+    }
+}
+
+StereoFrame::Shape StereoFrame::shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    Shape shape{.mode = settings.mode,
+                .dominant = settings.mode == Mode::kMono ? 0 : settings.dominant,
+                .per_eye = settings.per_eye,
+                .half_floats = settings.half_floats,
+                .keep_depth = settings.keep_depth,
+                .keep_both_depths = settings.keep_both_depths,
+                .keep_moments = settings.keep_moments,
+                .keep_classes = settings.keep_classes,
+                .center_rois = settings.stereo.center_rois};
+    for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
+    return shape;
+}
+
+bool StereoFrame::jumps(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    if (eyes.size() != eyes_.size() || shapeOf(eyes, settings) != shape_) { return true; }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        if (!shown_[e].isOf(settings.hidden_tiles[e], tilesOf(eyes[e].size_px))) { return true; }
+        const Pose &from = eyes_[e].world_from_camera, &to = eyes[e].world_from_camera;
+        const Intrinsics &lens = eyes_[e].intrinsics, &other_lens = eyes[e].intrinsics;
+        const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * kJumpRadians);
+        const bool is_far = glm::distance(from.position, to.position) > settings.near;
+        const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpRadians * lens.fx;
+        if (turns || is_far || zooms) { return true; }
+    }
+    return false;
+}
+
+void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
     check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px,
           "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
@@ -54,19 +160,24 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     const MovesAsked asked{stereoSettingsOf(settings), dominant_, eyes[0].size_px, settings.hidden_tiles[dominant_].size()};
     if (settings.mode != Mode::kPredicted || asked != moves_asked_) { may_move_ = true; }
     moves_asked_ = asked;
-    do {
-        recordFrame(eyes, settings);
-        if (append) { append(commands_); }
-        commands_.submitAndWait();
-        for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
-        state_ = state_readback_.mapped<FrameState>()[0];
-    } while (!growIfNeeded());
-    FrameResult result = collect(eyes, settings);
-    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
-    return result;
+    shape_ = shapeOf(eyes, settings);
+    eyes_.assign(eyes.begin(), eyes.end());
 }
 
-void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& settings) {
+void StereoFrame::record(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
+    Flight& flight = flights_[turn_];
+    flight.eyes.assign(eyes.begin(), eyes.end());
+    flight.settings = settings;
+    flight.settings.hidden_tiles = {};
+    flight.relation = relation_;
+    flight.moves_asked = moves_asked_;
+    flight.may_move = may_move_;
+    recordFrame(flight.commands, eyes, settings);
+    flight.commands.copy(buffers_.state, flight.readback, sizeof(FrameState));
+    if (append) { append(flight.commands); }
+}
+
+void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings) {
     const StereoSettings stereo = stereoSettingsOf(settings);
     const FrameState state = firstStateOf(eyes, settings, stereo);
     const int first = dominant_, second = 1 - dominant_;
@@ -76,57 +187,56 @@ void StereoFrame::recordFrame(std::span<const Eye> eyes, const FrameSettings& se
     const auto alone = [&](int eye) { return EyesOfList{.first = eye, .count = 1, .order_eye = eye, .list = eye, .middle = middle}; };
     EyeTarget dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : EyeTarget{};
 
-    commands_.begin();
-    commands_.update(buffers_.state, &state, sizeof(state));
-    for (ShownTiles& shown : shown_) { shown.record(commands_); }
+    commands.begin();
+    commands.update(buffers_.state, &state, sizeof(state));
+    for (ShownTiles& shown : shown_) { shown.record(commands); }
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(0), "");
-            passes_.recordEye(commands_, *scene_, buffers_, dominant, "");
+            passes_.recordVisible(commands, *scene_, buffers_, alone(0), "");
+            passes_.recordEye(commands, *scene_, buffers_, dominant, "");
             break;
         case Mode::kTwoPass:
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(first), "dominant ");
-            passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated ");
-            passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
+            passes_.recordVisible(commands, *scene_, buffers_, alone(first), "dominant ");
+            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
+            passes_.recordVisible(commands, *scene_, buffers_, alone(second), "affiliated ");
+            passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kShared:
-            passes_.recordVisible(commands_, *scene_, buffers_, both, "both ");
-            passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            recordOrderOfAffiliated(settings.order);
-            passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
+            passes_.recordVisible(commands, *scene_, buffers_, both, "both ");
+            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
+            recordOrderOfAffiliated(commands, settings.order);
+            passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
             break;
         case Mode::kReproject:
         case Mode::kPaper:
         case Mode::kPredicted:
-            passes_.recordVisible(commands_, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
-            passes_.recordEye(commands_, *scene_, buffers_, dominant, "dominant ");
-            if (per_eye_) { passes_.recordVisible(commands_, *scene_, buffers_, alone(second), "affiliated "); }
-            stereo_passes_.record(commands_, {.scene = *scene_,
-                                              .buffers = buffers_,
-                                              .stereo = stereo_buffers_,
-                                              .settings = stereo,
-                                              .rectified = relation_.rectified,
-                                              .may_move = may_move_,
-                                              .list = affiliated.list,
-                                              .dominant_eye = first,
-                                              .dominant = images_[first],
-                                              .affiliated = images_[second],
-                                              .dominant_shown = shown_[first],
-                                              .affiliated_shown = shown_[second],
-                                              .background = affiliated.background});
+            passes_.recordVisible(commands, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
+            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
+            if (per_eye_) { passes_.recordVisible(commands, *scene_, buffers_, alone(second), "affiliated "); }
+            stereo_passes_.record(commands, {.scene = *scene_,
+                                             .buffers = buffers_,
+                                             .stereo = stereo_buffers_,
+                                             .settings = stereo,
+                                             .rectified = relation_.rectified,
+                                             .may_move = may_move_,
+                                             .list = affiliated.list,
+                                             .dominant_eye = first,
+                                             .dominant = images_[first],
+                                             .affiliated = images_[second],
+                                             .dominant_shown = shown_[first],
+                                             .affiliated_shown = shown_[second],
+                                             .background = affiliated.background});
             if (stereo.patching == Patching::kNone) { break; }
-            if (!per_eye_) { recordOrderOfAffiliated(settings.order); }
+            if (!per_eye_) { recordOrderOfAffiliated(commands, settings.order); }
             if (!may_move_) {
-                passes_.recordEye(commands_, *scene_, buffers_, affiliated, "affiliated ");
+                passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
                 break;
             }
-            passes_.recordTiles(commands_, *scene_, buffers_, affiliated, {stereo_buffers_.tileMask(), stereo_buffers_.tileList()},
+            passes_.recordTiles(commands, *scene_, buffers_, affiliated, {stereo_buffers_.tileMask(), stereo_buffers_.tileList()},
                                 "affiliated ");
             break;
     }
-    commands_.endPass();
-    commands_.copy(buffers_.state, state_readback_, sizeof(FrameState));
+    commands.endPass();
 }
 
 FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const {
@@ -169,8 +279,8 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
     return target;
 }
 
-void StereoFrame::recordOrderOfAffiliated(Order order) {
-    if (!sharesOrder(order)) { passes_.recordOrder(commands_, *scene_, buffers_, {.order_eye = 1 - dominant_, .list = 0}, "affiliated "); }
+void StereoFrame::recordOrderOfAffiliated(Commands& commands, Order order) {
+    if (!sharesOrder(order)) { passes_.recordOrder(commands, *scene_, buffers_, {.order_eye = 1 - dominant_, .list = 0}, "affiliated "); }
 }
 
 }  // namespace binosplat

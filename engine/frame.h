@@ -42,6 +42,7 @@ struct FrameSettings {
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
     // pairs and take no part in the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
+    std::uint64_t mark = 0;  // of whoever asks; comes back with the result
 };
 
 // Its `stereo`, with what the mode says of patching.
@@ -55,6 +56,7 @@ struct FrameResult {
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need
+    std::uint64_t mark = 0;                            // of the settings it was asked with
 };
 
 // What a frame starts with; the defaults suit every device.
@@ -65,6 +67,9 @@ struct FrameOptions {
 
 class StereoFrame {
 public:
+    // Lists of frames that are not waited for have so many times the room that the last known frame needed.
+    static constexpr double kRoomAhead = 1.15;
+
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
 
     // From now on frames are of `scene`, on the same device. Kernels stay compiled.
@@ -74,6 +79,16 @@ public:
     // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.
     // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
+    // For whoever shows frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last,
+    // whose result this is; empty where there is none. So the device draws a frame while the next is prepared. Lists have room ahead of
+    // what frames need. One that found no room all the same shows background, once, is counted ("frames_cut_short"), and the frame after
+    // it is waited for. So is a frame that has little to do with the one before: the first one, one of other sizes or another mode, and
+    // after a jump of the eyes. It is done again where a list had no room, before anybody sees it ("frames_done_again").
+    // `signals`, where given, is signalled when the frame is done.
+    std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
+                                           const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
+    // Waits for all frames under way: after this nothing that they use is in use. The last one's result.
+    std::optional<FrameResult> finish();
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
     void rebuildKernels();
 
@@ -96,9 +111,51 @@ public:
     [[nodiscard]] const StereoBuffers& stereoBuffers() const { return stereo_buffers_; }
 
 private:
+    struct MovesAsked {
+        StereoSettings stereo;
+        int dominant = 0;
+        glm::uvec2 size_px{0, 0};
+        std::size_t hidden_tiles = 0;
+        bool operator==(const MovesAsked&) const = default;
+    };
+    // A frame on the device, and what must be remembered to understand what it says. Two take turns; what only the device touches they
+    // share, since every command waits for those before it, also those of the frame before.
+    struct Flight {
+        explicit Flight(const Context& context)
+            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context) {}
+
+        Buffer readback;
+        Commands commands;  // after what it writes: it waits before that goes
+        std::vector<Eye> eyes;
+        FrameSettings settings;
+        EyeRelation relation;
+        MovesAsked moves_asked;
+        bool may_move = true;
+    };
+    // What frames must have in common to be under way together.
+    struct Shape {
+        Mode mode = Mode::kMono;
+        int dominant = 0;
+        bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false, keep_moments = false, keep_classes = false,
+             center_rois = false;
+        std::array<glm::uvec2, 2> sizes_px{};
+        bool operator==(const Shape&) const = default;
+    };
+    [[nodiscard]] Shape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    // Whether lists for these eyes need not be like those of the frame before.
+    [[nodiscard]] bool jumps(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
+    // Into the flight whose turn it is.
+    void record(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);
+    // Waits for it; its result, if it was under way.
+    std::optional<FrameResult> land(Flight& flight);
+    // Until the lists had room; how often it was done again.
+    std::uint64_t renderUntilComplete(std::span<const Eye> eyes, const FrameSettings& settings,
+                                      const std::function<void(Commands&)>& append);
+    void makeRoomAhead();
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
-    void recordFrame(std::span<const Eye> eyes, const FrameSettings& settings);
-    void recordOrderOfAffiliated(Order order);
+    void recordFrame(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings);
+    void recordOrderOfAffiliated(Commands& commands, Order order);
     // Whether one order of the splats is that of both eyes.
     [[nodiscard]] bool sharesOrder(Order order) const { return order == Order::kDistance || relation_.same_depths; }
     // Of visible splats, an eye's: both eyes' unless each has its own.
@@ -113,8 +170,13 @@ private:
     [[nodiscard]] bool dominantIsVoid() const;
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
-    [[nodiscard]] FrameResult collect(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    void explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const;
+    // Of the lists, for `ahead` times what was needed.
+    [[nodiscard]] bool hasRoom(double ahead) const { return roomFor(ahead) == buffers_.capacity(); }
+    [[nodiscard]] FrameCapacity roomFor(double ahead) const;
+    // Whether a list had no room at all.
+    [[nodiscard]] bool isCutShort() const;
+    [[nodiscard]] FrameResult collect(const Flight& flight) const;
+    void explainLeftOut(const Flight& flight, FrameResult& result) const;
     template <typename T>
     [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);
 
@@ -122,32 +184,29 @@ private:
     const GpuScene* scene_;
     Passes passes_;
     StereoPasses stereo_passes_;
-    Commands commands_;
     FrameBuffers buffers_;
     StereoBuffers stereo_buffers_;
     std::array<ShownTiles, 2> shown_;
     std::array<EyeImage, 2> images_;
     Buffer moments_;  // I and J of the dominant eye, where keep_moments asks for them
     std::array<glm::uvec2, 2> sizes_px_{};
-    Buffer state_readback_;
     FrameState state_{};
     // Of the last frame.
     Mode mode_ = Mode::kMono;
     int dominant_ = 0;
     bool per_eye_ = false;  // nothing is culled or ordered for both eyes
     EyeRelation relation_;
-    // Whether anything is moved. `predicted` leaves it out as long as it did not pay in the frame before, if that was asked for the same.
-    struct MovesAsked {
-        StereoSettings stereo;
-        int dominant = 0;
-        glm::uvec2 size_px{0, 0};
-        std::size_t hidden_tiles = 0;
-        bool operator==(const MovesAsked&) const = default;
-    };
+    // `predicted` leaves moving out as long as it did not pay in the last frame known, if that was asked for the same.
     MovesAsked moves_asked_;
     bool may_move_ = true;
     FrameCapacity first_capacity_;
     bool first_frame_ = true;
+    Shape shape_;
+    std::vector<Eye> eyes_;
+    bool room_ahead_fits_ = true;  // in the device's memory
+    std::uint64_t cut_short_ = 0, done_again_ = 0;
+    std::size_t turn_ = 0;
+    std::array<Flight, 2> flights_;  // last: they wait before anything goes that they use
 };
 
 }  // namespace binosplat

@@ -13,9 +13,11 @@ std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first
     const std::uint64_t bytes = std::min(buffer.bytes(), first_bytes);
     if (bytes == 0) { return {}; }
     const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
-    commands_.begin();
-    commands_.copy(buffer, readback, bytes);
-    commands_.submitAndWait();
+    finish();
+    Commands& commands = flights_[turn_].commands;
+    commands.begin();
+    commands.copy(buffer, readback, bytes);
+    commands.submitAndWait();
     const auto values = readback.mapped<T>();
     return {values.begin(), values.end()};
 }

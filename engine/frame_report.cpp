@@ -7,13 +7,16 @@
 
 namespace binosplat {
 
-FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings& settings) const {
+FrameResult StereoFrame::collect(const Flight& flight) const {
+    const std::vector<Eye>& eyes = flight.eyes;
+    const FrameSettings& settings = flight.settings;
     FrameResult result;
-    result.gpu_ms = commands_.times();
-    result.gpu_total_ms = commands_.totalMs();
+    result.mark = settings.mark;
+    result.gpu_ms = flight.commands.times();
+    result.gpu_total_ms = flight.commands.totalMs();
     result.peak_gpu_bytes = context_.memoryUse().peak_bytes;
     auto& counters = result.counters;
-    counters["commands"] = commands_.count();
+    counters["commands"] = flight.commands.count();
     counters["splats_read"] = scene_->splatCount();
     counters["scene_bytes"] = scene_->bytes();
     counters["visible_bytes"] = buffers_.visible.bytes();
@@ -53,7 +56,7 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
         counters["splats_newcomers"] = stereo.newcomers;
         counters["stereo_bytes"] = stereo_buffers_.bytes();
         result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
-                                                       .may_move = may_move_,
+                                                       .may_move = flight.may_move,
                                                        .half_floats = settings.half_floats,
                                                        .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
                                                        .classes = stereo_buffers_.classesBuffer().bytes() > 0,
@@ -64,11 +67,13 @@ FrameResult StereoFrame::collect(std::span<const Eye> eyes, const FrameSettings&
         result.tiles_rendered = shown > 0 ? static_cast<double>(state_.masked_tiles.count) / shown : 0.0;
         if (stereo.picture_cost > 0) { result.work_rendered = static_cast<double>(stereo.chosen_cost) / stereo.picture_cost; }
     }
-    explainLeftOut(eyes, settings, result);
+    explainLeftOut(flight, result);
     return result;
 }
 
-void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings& settings, FrameResult& result) const {
+void StereoFrame::explainLeftOut(const Flight& flight, FrameResult& result) const {
+    const std::vector<Eye>& eyes = flight.eyes;
+    const FrameSettings& settings = flight.settings;
     const auto leaveOut = [&](bool condition, std::string_view sentence) {
         if (condition) { result.left_out.emplace_back(sentence); }
     };
@@ -80,7 +85,7 @@ void StereoFrame::explainLeftOut(std::span<const Eye> eyes, const FrameSettings&
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");
     leaveOut(eyes.size() == 2 && !per_eye_, "culling for the affiliated eye alone: both eyes are culled at once");
-    leaveOut(eyes.size() == 2 && !per_eye_ && sharesOrder(settings.order),
+    leaveOut(eyes.size() == 2 && !per_eye_ && (settings.order == Order::kDistance || flight.relation.same_depths),
              settings.order == Order::kDistance
                  ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
                  : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");

@@ -11,6 +11,8 @@ namespace {
 
 // Components of holes that get a box of their own: 64 KiB.
 constexpr std::uint32_t kHoleBoxes = 4096;
+// Room that is made ahead of what was needed.
+constexpr double kRoomMade = 1.5;
 
 }  // namespace
 
@@ -78,11 +80,11 @@ bool StereoFrame::dominantIsVoid() const {
     return visible.needed != visible.count || state_.pairs[dominant_].needed != state_.pairs[dominant_].count;
 }
 
-bool StereoFrame::growIfNeeded() {
+FrameCapacity StereoFrame::roomFor(double ahead) const {
     // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
-    const double slack = first_frame_ ? 1.0 : 1.25;
+    const double slack = ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
     const auto enough = [&](std::uint32_t needed, std::uint32_t capacity) {
-        if (needed <= capacity) { return capacity; }
+        if (ahead * needed <= capacity) { return capacity; }
         const double roomy = std::min(std::ceil(needed * slack / 1024.0) * 1024.0, 2147482624.0);
         return std::max(needed, static_cast<std::uint32_t>(roomy));
     };
@@ -101,13 +103,35 @@ bool StereoFrame::growIfNeeded() {
             wanted.lent_pairs = enough(pairs, now.lent_pairs);
         }
     }
-    wanted = lendWhatFits(wanted);
-    if (wanted == now) {
+    return lendWhatFits(wanted);
+}
+
+bool StereoFrame::growIfNeeded() {
+    const FrameCapacity wanted = roomFor(1.0);
+    if (wanted == buffers_.capacity()) {
         first_frame_ = false;
         return true;
     }
     growFrameBuffers(context_, buffers_, wanted);
     return false;
+}
+
+bool StereoFrame::isCutShort() const {
+    const auto isEmptied = [](const gpu::ListState& list) { return list.needed != list.count; };
+    return std::ranges::any_of(state_.visible, isEmptied) || std::ranges::any_of(state_.pairs, isEmptied);
+}
+
+void StereoFrame::makeRoomAhead() {
+    const FrameCapacity before = buffers_.capacity();
+    const FrameCapacity wanted = roomFor(kRoomAhead);
+    if (!room_ahead_fits_ || wanted == before) { return; }
+    try {
+        growFrameBuffers(context_, buffers_, wanted);
+    } catch (const Error&) {
+        // It goes without, as long as the lists themselves fit.
+        room_ahead_fits_ = false;
+        growFrameBuffers(context_, buffers_, before);
+    }
 }
 
 }  // namespace binosplat

@@ -50,6 +50,18 @@ TEST_CASE("what the wearer set is the most there is, and it is kept where everyt
     CHECK(off.outcome.output.find(" took ") == std::string::npos);
 }
 
+TEST_CASE("the headset is asked for the rate that the settings name, and said to lack one that it has not") {
+    const Workplace work;
+    const auto periodAt = [&](const ViewRun& run, std::size_t frame) { return run.frames.at(frame).at("period_ns").get<std::int64_t>(); };
+    const ViewRun chosen = runQuality(work, "chosen", kQuick, 20, "refresh-rate = 120\n");
+    CHECK(periodAt(chosen, 0) == 11'111'111);
+    CHECK(periodAt(chosen, 15) == 8'333'333);
+    const ViewRun other = runQuality(work, "other", kQuick, 10, "refresh-rate = 75\n");
+    CHECK(periodAt(other, 8) == 11'111'111);
+    CHECK(other.outcome.output.find("refresh-rate is 75, this headset has 72, 80, 90, 120") != std::string::npos);
+    CHECK(periodAt(runQuality(work, "left", kQuick, 10, ""), 8) == 11'111'111);
+}
+
 TEST_CASE("a quality that is none is refused") {
     const Workplace work;
     std::ofstream(work.path / "bad.toml") << "[view]\nquality = \"best\"\n";

@@ -63,9 +63,11 @@ void Instance::create(const InstanceOptions& options) {
     takes_depth_ = has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     has_visibility_mask_ = options.visibility_mask && has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     has_local_floor_ = has(kLocalFloorExtension);
+    has_refresh_rates_ = has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME);
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
+    if (has_refresh_rates_) { extensions.push_back(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension == nullptr || !has(profile.extension)) { continue; }
         if (controller_extensions_.insert(profile.extension).second) { extensions.push_back(profile.extension); }

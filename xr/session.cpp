@@ -95,6 +95,27 @@ double Session::periodMs() const {
     return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
 }
 
+std::string Session::askForRate(double rate_hz) {
+    if (rate_hz == std::exchange(asked_rate_hz_, rate_hz)) { return {}; }
+    if (!instance_.hasRefreshRates()) { return "refresh-rate: this headset's rate cannot be chosen"; }
+    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
+    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+    std::uint32_t count = 0;
+    BINOSPLAT_XR(list(session_, 0, &count, nullptr));
+    std::vector<float> rates(count);
+    BINOSPLAT_XR(list(session_, count, &count, rates.data()));
+    // As people write them: 72 for 71.999.
+    const auto isIt = [&](float rate) { return std::abs(static_cast<double>(rate) - rate_hz) < 0.5; };
+    const auto found = std::ranges::find_if(rates, isIt);
+    if (rate_hz != 0.0 && found == rates.end()) {
+        std::string offered;
+        for (const float rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
+        return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
+    }
+    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : *found));
+    return {};
+}
+
 void Session::requestExit() {
     const XrResult result = xrRequestExitSession(session_);
     // A session that does not run can just be left.

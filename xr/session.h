@@ -54,6 +54,9 @@ public:
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
     // What the runtime gives a frame, in milliseconds; 90 Hz where it states none.
     [[nodiscard]] double periodMs() const;
+    // Asks for so many frames a second, if that is not what was asked for last; 0: what the runtime likes. A sentence for people where that
+    // cannot be had, empty otherwise. The period follows when the runtime says so.
+    std::string askForRate(double rate_hz);
     // Where the eyes are in space(); empty where the headset does not know how it is turned. While it does not know where it is, it stays
     // where it was last.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes();
@@ -102,6 +105,7 @@ private:
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
+    double asked_rate_hz_ = 0.0;
     bool running_ = false, ended_ = false;
     bool turn_settled_ = false, place_settled_ = false;
     std::optional<XrTime> recentred_from_;  // the runtime's own recentring

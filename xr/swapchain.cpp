@@ -68,6 +68,10 @@ Swapchain& Swapchain::operator=(Swapchain&& other) noexcept {
 void Swapchain::destroy() {
     if (swapchain_ == XR_NULL_HANDLE) { return; }
     const std::lock_guard lock(session_->context().queueMutex());
+    // A frame may still be on its way into the images.
+    try {
+        session_->context().queue().waitIdle();
+    } catch (const vk::SystemError&) {}  // a device that is lost has none under way
     xrDestroySwapchain(swapchain_);
     swapchain_ = XR_NULL_HANDLE;
 }

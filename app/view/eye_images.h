@@ -26,10 +26,10 @@ public:
 
     // Before anything is recorded: the images of a frame, with that of the eye's depth where it will have one and the runtime takes it.
     void acquire(int eye, bool with_depth);
-    // Between begin and submitAndWait of `commands`, with what acquire() took, also more than once. `near` in scene units.
+    // Between begin and submit of `commands`, with what acquire() took, also more than once. `near` in scene units.
     void present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near);
     void clear(Commands& commands, int eye, const glm::vec3& colour);
-    // After submitAndWait: gives back what acquire() took.
+    // After submit: gives back what acquire() took.
     void release();
 
     // What of `eye` was presented in this frame, as a layer shows it.

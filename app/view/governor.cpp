@@ -165,7 +165,7 @@ std::optional<std::size_t> Governor::worthTrying(double now_ms) const {
 void Governor::measure(const GovernedFrame& frame) {
     now_s_ += 1e-3 * frame.period_ms;
     period_ms_ = frame.period_ms;
-    if (quality_ == Quality::kOff) { return; }
+    if (quality_ == Quality::kOff || frame.is_old) { return; }
     if (frame.gpu_ms <= 0.0) {
         sentence_ = "the device does not say how long frames take";
         return;

@@ -27,6 +27,7 @@ struct GovernedSettings {
 struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not tell
     double period_ms = 0.0;  // what the runtime gives a frame
+    bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
 };
 
 class Governor {
@@ -69,6 +70,8 @@ private:
     // Whether the method is known to be faster than what loses nothing, or is just that.
     [[nodiscard]] bool pays(std::size_t method) const;
     void learn(double now_ms);
+    // A step upwards that did not keep what it promised is not tried again soon.
+    void takeBack();
     // A method that nobody has measured yet, at a resolution where it cannot do harm: if what is guessed of it would allow better settings
     // than the present ones.
     [[nodiscard]] std::optional<std::size_t> worthTrying(double now_ms) const;

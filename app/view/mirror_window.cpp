@@ -145,6 +145,7 @@ void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
 }
 
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
+    // Of another size than the frame before, which is over then.
     if (eye_px_ != size_px) { makeEyeImage(size_px, format); }
     commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
     changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);

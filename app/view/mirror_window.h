@@ -41,11 +41,13 @@ public:
     [[nodiscard]] WindowInput poll();
     // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
     void acquire() { pictures_->acquire(); }
-    // Between begin and submitAndWait: keeps an eye's presented pixels, of an image of `format`.
+    // Between begin and submit: keeps an eye's presented pixels, of an image of `format`.
     void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
-    // Between begin and submitAndWait, once the canvas is drawn; also more than once.
+    // Between begin and submit, once the canvas is drawn; also more than once.
     void record(Commands& commands);
-    // After submitAndWait.
+    // What the submission signals for show(); null where no picture was acquired.
+    [[nodiscard]] vk::Semaphore drawn() const { return pictures_->drawn(); }
+    // After submit: shows the picture once it is drawn.
     void show() { pictures_->show(); }
 
 private:

@@ -115,6 +115,9 @@ void drawTimes(const OverlayStatus& status) {
         text(fmt::format("the lenses hide {:.0f} and {:.0f} of {:.0f} tiles", count("tiles_hidden_left"), count("tiles_hidden_right"),
                          tiles));
     }
+    if (const double cut_short = count("frames_cut_short"); cut_short > 0.0) {
+        text(fmt::format("{:.0f} frames had no room in their lists, {:.0f} were drawn again", cut_short, count("frames_done_again")));
+    }
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);
     for (const auto& [name, ms] : addUp(status.frame->gpu_ms)) {

@@ -33,6 +33,7 @@ void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
 void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
     governor_.wish(settings.quality, {settings.stereo.mode, settings.stereo.budget, settings.resolution_scale});
     fitImages(stay, settings);
+    if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     stay.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
 }
 
@@ -51,6 +52,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.keep_depth = frame.keep_both_depths = stay.images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
+    frame.mark = governed_count_;
     // One eye's picture for both is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
         frame.hidden_tiles = stay.lens_mask.update(stay.session, views.eyes, stay.images->partPx());
@@ -68,16 +70,20 @@ void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const Similari
         eyes[at] = eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, stay.images->partPx());
         if (!one_eye || e == frame.dominant) { stay.images->acquire(e, true); }
     }
-    last_ =
-        scene.frame.render(one_eye ? std::span<const Eye>(&eyes[static_cast<std::size_t>(frame.dominant)], 1) : std::span<const Eye>(eyes),
-                           frame, [&](Commands& commands) {
-                               recordEyes(commands, stay, scene, frame, settings.tint, window);
-                               record_panel(commands);
-                           });
-    const GovernedSettings before = governor_.settings();
-    governor_.measure({last_.gpu_total_ms, stay.session.periodMs()});
-    if (governor_.settings() != before) { log_.say(governor_.sentence()); }
+    const auto seen = one_eye ? std::span<const Eye>(&eyes[static_cast<std::size_t>(frame.dominant)], 1) : std::span<const Eye>(eyes);
+    std::optional<FrameResult> known = scene.frame.renderAhead(
+        seen, frame,
+        [&](Commands& commands) {
+            recordEyes(commands, stay, scene, frame, settings.tint, window);
+            record_panel(commands);
+        },
+        window != nullptr ? window->drawn() : vk::Semaphore());
+    const bool is_of_now = known && known->mark == governed_count_;
+    if (known) { last_ = std::move(*known); }
+    governor_.measure({last_.gpu_total_ms, stay.session.periodMs(), !is_of_now});
+    if (governor_.settings() != governed_) { log_.say(governor_.sentence()); }
     sayHidden(one_eye);
+    sayShort();
 }
 
 void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint,
@@ -92,6 +98,12 @@ void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScen
         const bool shown = frame.mode == Mode::kMono || dominant != tint;
         if (window != nullptr && shown) { window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_); }
     }
+}
+
+void SceneRenderer::sayShort() {
+    const auto found = last_.counters.find("frames_cut_short");
+    const std::uint64_t now = found == last_.counters.end() ? 0 : found->second;
+    if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown without what had no room in their lists: {}", now)); }
 }
 
 void SceneRenderer::sayHidden(bool one_eye) {

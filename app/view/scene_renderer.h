@@ -31,11 +31,12 @@ public:
     // The runtime refuses depth after all.
     void dropDepth(HeadsetStay& stay);
 
-    // Renders and presents, in one submission with what `record_panel` records. With a `window` it keeps an eye for that.
+    // Renders and presents, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps an eye
+    // for that.
     void render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                 const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
 
-    // No counters before the first frame of a scene.
+    // Of those that the device is done with. No counters before the first frame of a scene.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
     void forgetLastFrame() { last_ = {}; }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
@@ -45,6 +46,7 @@ private:
     [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views);
     void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
     void sayHidden(bool one_eye);
+    void sayShort();
 
     const xr::Instance& instance_;
     const RunOptions& options_;
@@ -52,6 +54,9 @@ private:
     vk::Format format_;
     Presenter presenter_;
     Governor governor_;
+    GovernedSettings governed_;  // as of the frame drawn last
+    std::uint64_t governed_count_ = 0;
+    std::uint64_t cut_short_ = 0;  // frames, as last said
     FrameResult last_;
     std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said
     bool takes_depth_ = true;

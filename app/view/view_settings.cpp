@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kLeastResolutionScale = 0.1, kMostResolutionScale = 2.0;
+constexpr double kLeastResolutionScale = 0.1, kMostResolutionScale = 2.0, kMostRefreshRate = 1000.0;
 
 glm::dquat readRotation(const Setting& setting) {
     std::vector<double> values;
@@ -48,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& s
             {"panel", settings.panel ? "true" : "false"},
             {"visibility-mask", settings.visibility_mask ? "true" : "false"},
             {"tilt", settings.tilt ? "true" : "false"},
+            {"refresh-rate", fmt::format("{:g}", settings.refresh_rate)},
             {"quality", fmt::format("\"{}\"", kQualityNames[static_cast<std::size_t>(settings.quality)])}};
 }
 
@@ -68,6 +69,8 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 const auto* const found = std::ranges::find(kQualityNames, setting.text());
                 check(found != std::end(kQualityNames), "{} is {}, must be off, sharp, balanced or fast", setting.origin, setting.text());
                 settings.quality = static_cast<Quality>(found - std::begin(kQualityNames));
+            } else if (key == "refresh-rate") {
+                settings.refresh_rate = readNumber(setting, 0.0, kMostRefreshRate);
             } else if (key == "tilt") {
                 settings.tilt = readFlag(setting);
             } else if (key == "visibility-mask") {

@@ -18,6 +18,7 @@ struct ViewSettings {
     bool panel = true;
     bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
     bool tilt = false;                          // whether two hands may tilt the scene
+    double refresh_rate = 0.0;                  // frames per second; 0: the runtime's choice
     Quality quality = Quality::kOff;            // how the frame rate is held
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
@@ -25,7 +26,7 @@ struct ViewSettings {
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };
 
-// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, scene-position,
+// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, refresh-rate, scene-position,
 // scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 

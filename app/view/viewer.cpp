@@ -130,6 +130,7 @@ void Viewer::drawFrame() {
     controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scenes_.scene_from_room);
     if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
     obeyWindow(step_seconds);
+    if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     renderer_.govern(*stay_, settings_);
 
     status_.state.clear();
@@ -187,9 +188,11 @@ void Viewer::drawWindowAlone(const std::string& why) {
     status_.state = why;
     layOutPanel(false);
     window_->acquire();
+    waitForQueue();  // what the panel is drawn from is that of the last frame
     commands_.begin();
     recordPanel(commands_);
-    commands_.submitAndWait();
+    commands_.submit(window_->drawn());
+    commands_.wait();
     window_->show();
     sayChange(before);
 }
@@ -216,7 +219,8 @@ void Viewer::renderWaiting() {
     const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
     recordPanel(commands_);
-    commands_.submitAndWait();
+    commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
+    commands_.wait();
 }
 
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {

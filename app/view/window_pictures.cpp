@@ -44,12 +44,16 @@ void WindowPictures::make() {
     info.oldSwapchain = *swapchain_;
     swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
     images_.clear();
-    for (const VkImage image : swapchain_.getImages()) { images_.emplace_back(image); }
+    drawn_.clear();
+    for (const VkImage image : swapchain_.getImages()) {
+        images_.emplace_back(image);
+        drawn_.push_back(context_.device().createSemaphore({}));
+    }
 }
 
 void WindowPictures::acquire() {
     acquired_ = false;
-    // Nothing of it is in use: every frame waits for its submission, and what was presented is not written to again.
+    // What was presented is not written to again.
     if (is_stale_) {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
@@ -74,9 +78,10 @@ void WindowPictures::show() {
     if (!acquired_) { return; }
     acquired_ = false;
     const vk::SwapchainKHR swapchain = *swapchain_;
+    const vk::Semaphore drawn = *drawn_[index_];
     try {
         const std::lock_guard lock(context_.queueMutex());
-        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR({}, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_)) == vk::Result::eSuboptimalKHR;
     } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
 }
 

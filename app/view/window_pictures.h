@@ -20,7 +20,9 @@ public:
     // That picture; null if none was free.
     [[nodiscard]] vk::Image current() const { return acquired_ ? images_[index_] : vk::Image(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    // Once what was drawn on it is submitted and done.
+    // What the submission that draws on it signals; null if none was free.
+    [[nodiscard]] vk::Semaphore drawn() const { return acquired_ ? *drawn_.at(index_) : vk::Semaphore(); }
+    // Once the submission is under way: shows the picture when it is drawn.
     void show();
 
 private:
@@ -32,6 +34,7 @@ private:
     vk::raii::SwapchainKHR swapchain_{nullptr};
     vk::raii::Fence acquired_fence_{nullptr};
     std::vector<vk::Image> images_;
+    std::vector<vk::raii::Semaphore> drawn_;  // by picture: free again when it is
     glm::uvec2 size_px_{0, 0};
     bool acquired_ = false;
     bool is_stale_ = false;  // the pictures are not as the display wants them any more

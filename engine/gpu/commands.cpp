@@ -22,7 +22,16 @@ Commands::Commands(const Context& context) : context_(context) {
     }
 }
 
+Commands::~Commands() {
+    if (!under_way_) { return; }
+    // A device that is lost has nothing under way any more.
+    const vk::Fence fence = *fence_;
+    (void)context_.device().getDispatcher()->vkWaitForFences(*context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE,
+                                                             UINT64_MAX);
+}
+
 void Commands::begin() {
+    assert(!under_way_);
     pass_names_.clear();
     timestamp_count_ = 0;
     count_ = 0;
@@ -129,17 +138,23 @@ void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
     changeLayout(image, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
 }
 
-void Commands::submitAndWait() {
+void Commands::submit(vk::Semaphore signals) {
     endPass();
     const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {}, {});
     command_buffer_.end();
     const vk::CommandBuffer commands = *command_buffer_;
+    const auto signalled = signals ? vk::ArrayProxyNoTemporaries<const vk::Semaphore>(signals) : nullptr;
     try {
-        {
-            const std::lock_guard lock(context_.queueMutex());
-            context_.queue().submit(vk::SubmitInfo({}, {}, commands), *fence_);
-        }
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().submit(vk::SubmitInfo({}, {}, commands, signalled), *fence_);
+    } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
+    under_way_ = true;
+}
+
+void Commands::wait() {
+    if (!std::exchange(under_way_, false)) { return; }
+    try {
         const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
         check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
     } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }

@@ -18,8 +18,12 @@ using PassTimes = std::vector<std::pair<std::string, double>>;
 class Commands {
 public:
     explicit Commands(const Context& context);
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+    // Waits for what is under way.
+    ~Commands();
 
-    // begin, any of the recording calls, submitAndWait; then times() may be asked for.
+    // begin, any of the recording calls, submit, wait; then times() may be asked for, and begin again.
     void begin();
     // Everything up to the next beginPass counts as the pass `name`.
     void beginPass(const std::string& name);
@@ -55,12 +59,20 @@ public:
     void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
     void clearImage(vk::Image image, const glm::vec4& colour);
 
-    void submitAndWait();
+    // The device begins; `signals`, where given, is signalled once it is done.
+    void submit(vk::Semaphore signals = {});
+    // Until the device is done, if anything is under way.
+    void wait();
+    void submitAndWait() {
+        submit();
+        wait();
+    }
+    [[nodiscard]] bool isUnderWay() const { return under_way_; }
 
-    // For what is not a pass: pictures that leave for a headset or a window. Between begin and submitAndWait.
+    // For what is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
-    // Of the frame that submitAndWait finished; empty where the device has no timestamps.
+    // Of the frame that wait() finished; empty where the device has no timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
     [[nodiscard]] double totalMs() const { return total_ms_; }
     // Kernels, fills, updates and copies of buffers since begin.
@@ -81,7 +93,7 @@ private:
     std::vector<std::string> pass_names_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;
-    bool in_pass_ = false;
+    bool in_pass_ = false, under_way_ = false;
     PassTimes times_;
     double total_ms_ = 0.0;
 };

@@ -5,8 +5,12 @@
 
 namespace binosplat {
 
+bool ShownTiles::isOf(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) const {
+    return std::ranges::equal(hidden, hidden_) && (hidden.empty() || size_tiles == size_tiles_);
+}
+
 void ShownTiles::set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) {
-    if (std::ranges::equal(hidden, hidden_) && (hidden.empty() || size_tiles == size_tiles_)) { return; }
+    if (isOf(hidden, size_tiles)) { return; }
     hidden_.assign(hidden.begin(), hidden.end());
     size_tiles_ = size_tiles;
     hidden_count_ = static_cast<std::uint32_t>(std::ranges::count_if(hidden_, [](std::uint8_t tile) { return tile != 0; }));

@@ -15,6 +15,8 @@ public:
 
     // A byte a tile, row-major: 1 where nobody will see it; empty: all are shown. What changed is on its way with the next record().
     void set(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles);
+    // Whether set() with these would change nothing.
+    [[nodiscard]] bool isOf(std::span<const std::uint8_t> hidden, glm::uvec2 size_tiles) const;
     // Before the passes that read the mask. Records nothing where the device has it already.
     void record(Commands& commands);
     // Once what was recorded has run.

@@ -2,11 +2,13 @@
 // BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait or allocate, N from 1, and FAULT lost, no-device-memory, no-host-memory, SIGINT or
 // SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. BINOSPLAT_FAULT_TICKS=N: timestamps are
 // N ticks apart, however long the work between them took.
+// BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -51,13 +53,25 @@ VkResult strike(const char* call) {
     return VK_SUCCESS;
 }
 
+void trace(const char* call, VkFence fence) {
+    static std::FILE* const file = [] {
+        const char* const name = std::getenv("BINOSPLAT_FAULT_TRACE");
+        return name != nullptr ? std::fopen(name, "w") : nullptr;
+    }();
+    if (file != nullptr) {
+        std::fprintf(file, "%s %llx\n", call, static_cast<unsigned long long>(reinterpret_cast<std::uintptr_t>(fence)));
+    }
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
+    trace("submit", fence);
     const VkResult result = strike("submit");
     return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
 }
 
 // A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
 VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all, std::uint64_t timeout) {
+    for (std::uint32_t i = 0; i < count; ++i) { trace("wait", fences[i]); }
     const VkResult waited = g_wait(device, count, fences, all, timeout);
     const VkResult result = strike("wait");
     return result != VK_SUCCESS ? result : waited;

@@ -4,11 +4,20 @@
 
 namespace simulated {
 
-Clock::Clock(bool real, XrDuration period) : is_real(real), frame_period(period) {}
+Clock::Clock(bool real, XrDuration period, double share) : is_real(real), frame_period(period), irregularity(share) {}
 
-Clock::Frame Clock::nextFrame() {
+XrDuration Clock::delayOf(std::int64_t of_frame) const {
+    if (is_real || irregularity == 0 || of_frame <= 0) return 0;
+    // The same in every run, and without a pattern that a program could follow.
+    auto mixed = static_cast<std::uint32_t>(of_frame) * 2654435761u;
+    mixed = (mixed ^ mixed >> 15) * 2246822519u;
+    const double drawn = static_cast<double>((mixed ^ mixed >> 13) & 0xffff) / 65535.0;
+    return static_cast<XrDuration>(irregularity * (drawn - 0.5) * static_cast<double>(frame_period));
+}
+
+Clock::Frame Clock::nextFrame(std::int64_t skipped) {
     if (!birth) birth = std::chrono::steady_clock::now();
-    ++frame;
+    frame += is_real ? 1 : 1 + skipped;
     // A frame that comes late takes the next place that is left, as on a display.
     if (is_real && (frame > 0 || is_early)) frame = std::max<std::int64_t>(frame, (now() - origin) / frame_period + 1);
     const std::chrono::nanoseconds wake(shown() - frame_period - kStart);

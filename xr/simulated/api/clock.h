@@ -13,15 +13,16 @@ namespace simulated {
 
 class Clock {
 public:
-    // True for real pacing. The period must not be zero.
-    Clock(bool is_real, XrDuration period);
+    // True for real pacing. The period must not be zero. In lock-step frames come up to half this share of a period early or late.
+    Clock(bool is_real, XrDuration period, double irregularity = 0);
 
     struct Frame {
         XrTime display_time;
         // With the real clock: when its xrWaitFrame returns.
         std::chrono::steady_clock::time_point wake_time;
     };
-    Frame nextFrame();
+    // In lock-step, `skipped` periods pass before it.
+    Frame nextFrame(std::int64_t skipped = 0);
     // A period without a frame, as long as nobody asks for any.
     void pass();
     XrTime now() const;
@@ -41,10 +42,12 @@ private:
     static constexpr XrTime kStart = 1'000'000'000;
 
     // When the frame on display is.
-    XrTime shown() const { return origin + std::max<std::int64_t>(frame, 0) * frame_period; }
+    XrTime shown() const { return origin + std::max<std::int64_t>(frame, 0) * frame_period + delayOf(frame); }
+    XrDuration delayOf(std::int64_t of_frame) const;
 
     bool is_real;
     XrDuration frame_period;
+    double irregularity;
     // The frame on display, counted in periods since this period began.
     XrTime origin = kStart;
     std::int64_t frame = -1;

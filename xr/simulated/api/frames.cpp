@@ -1,4 +1,6 @@
 // Sections 10.3 to 10.5: xrLocateViews and the frame loop. In lock-step xrWaitFrame moves time on by one period and does not sleep.
+#include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <thread>
 
@@ -33,6 +35,26 @@ void checkBlendMode(XrEnvironmentBlendMode mode) {
     const bool is_known = mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
     require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such blend mode");
     require(mode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "only OPAQUE");
+}
+
+// The display shows a frame in the first period in which the device is done with it.
+void loadGpu(Session& session, const XrFrameEndInfo& info) {
+    const Simulation& simulation = *session.instance.simulation;
+    const GpuLoad load = simulation.script.gpu_load.at(simulation.clock.secondsAt(info.displayTime));
+    session.frames.gpu_ms.reset();
+    if (load.amount == 0) return;
+    double megapixels = 0;
+    for (std::uint32_t i = 0; i < info.layerCount; ++i) {
+        if (info.layers[i]->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) continue;
+        const auto& layer = *reinterpret_cast<const XrCompositionLayerProjection*>(info.layers[i]);
+        for (std::uint32_t view = 0; view < layer.viewCount; ++view) {
+            const XrExtent2Di& size = layer.views[view].subImage.imageRect.extent;
+            megapixels += 1e-6 * size.width * size.height;
+        }
+    }
+    const double period_ms = 1e-6 * static_cast<double>(simulation.clock.period());
+    session.frames.gpu_ms = load.ms(period_ms, megapixels);
+    session.frames.missed = std::max<std::int64_t>(static_cast<std::int64_t>(std::ceil(*session.frames.gpu_ms / period_ms - 1e-9)) - 1, 0);
 }
 
 }  // namespace
@@ -85,7 +107,7 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         });
         Session& owner = runningSession(session);
         Simulation& simulation = *owner.instance.simulation;
-        frame = simulation.clock.nextFrame();
+        frame = simulation.clock.nextFrame(std::exchange(owner.frames.missed, 0));
         const State state = simulation.at(frame.display_time);
         owner.meetEvents(frame.display_time);
         owner.announceMasks(state);
@@ -112,6 +134,7 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
         require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
+        if (owner.instance.simulation->script.changes_state_at_begin) owner.step(owner.at(*owner.frames.begun));
         wakeFrameWaiters();
         return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
     });
@@ -127,8 +150,9 @@ XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
         checkLayers(owner, info);
         owner.frames.begun.reset();
         const State state = owner.at(info.displayTime);
+        loadGpu(owner, info);
         showFrame(owner, info, state);
-        owner.step(state);
+        if (!owner.instance.simulation->script.changes_state_at_begin) owner.step(state);
         return successOf(owner);
     });
 }

@@ -11,12 +11,23 @@ namespace {
 
 std::vector<float> ratesOf(const Script& script) {
     std::vector<float> rates{72, 80, 90, 120, static_cast<float>(script.rate_hz)};
+    for (const ScriptEvent& event : script.events) {
+        if (event.kind == ScriptEvent::Kind::kRate) rates.push_back(static_cast<float>(event.value));
+    }
     std::sort(rates.begin(), rates.end());
     rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
     return rates;
 }
 
 }  // namespace
+
+void changeRate(Instance& instance, double rate_hz) {
+    Simulation& simulation = *instance.simulation;
+    const auto before = static_cast<float>(std::exchange(simulation.rate_hz, rate_hz)), now = static_cast<float>(rate_hz);
+    simulation.clock.setPeriod(std::llround(1e9 / rate_hz));
+    if (now == before || !instance.extensions.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
+    instance.events.push(XrEventDataDisplayRefreshRateChangedFB{XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, now});
+}
 
 XrResult xrEnumerateDisplayRefreshRatesFB(XrSession session, uint32_t displayRefreshRateCapacityInput,
                                           uint32_t* displayRefreshRateCountOutput, float* displayRefreshRates) {
@@ -47,10 +58,7 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 "a rate that was not enumerated");
         if (wanted == before) return successOf(owner);
-        simulation.rate_hz = wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted;
-        simulation.clock.setPeriod(std::llround(1e9 / simulation.rate_hz));
-        owner.instance.events.push(
-            XrEventDataDisplayRefreshRateChangedFB{XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, wanted});
+        changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);
         return successOf(owner);
     });
 }

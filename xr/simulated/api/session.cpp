@@ -1,5 +1,7 @@
 #include "xr/simulated/api/session.h"
 
+#include <cmath>
+
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/structures.h"
 #include "xr/simulated/names.h"
@@ -105,8 +107,12 @@ void Session::meetEvents(XrTime display_time) {
     const XrTime grace_ends = display_time + kFramesOfGrace * simulation.clock.period();
     for (const ScriptEvent& event : simulation.script.eventsIn(simulation.events_until_s, time_s)) {
         std::string& logged = log_events.emplace_back(nameOf(event.kind));
+        if (event.kind == ScriptEvent::Kind::kRate) logged.append(" ").append(std::to_string(std::lround(event.value)));
         if (event.kind == ScriptEvent::Kind::kSlowImages) logged.append(" ").append(std::to_string(event.count));
         switch (event.kind) {
+            case ScriptEvent::Kind::kRate:
+                changeRate(instance, event.value);
+                break;
             case ScriptEvent::Kind::kSlowImages:
                 slow_images = event.count;
                 break;

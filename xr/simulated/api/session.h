@@ -19,6 +19,8 @@ namespace simulated {
 struct FrameLoop {
     std::optional<XrTime> waited;  // returned by xrWaitFrame, not begun yet
     std::optional<XrTime> begun;   // begun, not ended yet
+    std::int64_t missed = 0;       // periods that the frame ended last took beyond its own
+    std::optional<double> gpu_ms;  // what the script says it took
     bool should_render = false;    // as the frame that was waited for last was told
 };
 
@@ -73,6 +75,9 @@ void checkNotLost(const Session& session);
 
 // While a loss is pending, whatever succeeds says so.
 XrResult successOf(const Session& session, XrResult success = XR_SUCCESS);
+
+// Another display rate, from the next frame on; the application is told if it asked to be.
+void changeRate(Instance& instance, double rate_hz);
 
 // For an xrWaitFrame on another thread that waits for a frame which will not come any more.
 void wakeFrameWaiters();

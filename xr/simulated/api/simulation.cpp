@@ -74,7 +74,7 @@ std::unique_ptr<Simulation> Simulation::begin() {
         return survived;
     }
     Script script = scriptOfEnvironment();
-    const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz));
+    const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz), script.irregularity);
     std::string profile = favouriteProfile(script);
     const double rate_hz = script.rate_hz;
     return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile), rate_hz});

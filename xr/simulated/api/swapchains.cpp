@@ -10,7 +10,6 @@
 namespace simulated {
 namespace {
 
-constexpr std::size_t kImages = 3;
 constexpr XrSwapchainUsageFlags kKnownUsage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
                                               XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT |
                                               XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT |
@@ -73,6 +72,27 @@ ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info
 
 }  // namespace
 
+std::uint32_t Swapchain::nextImage() const {
+    const auto count = static_cast<std::uint32_t>(images.size());
+    const auto turn = static_cast<std::uint32_t>(acquisitions % count);
+    std::uint32_t next = turn;
+    switch (session.instance.simulation->script.image_order) {
+        case Script::ImageOrder::kInTurn:
+            break;
+        case Script::ImageOrder::kReversed:
+            next = count - 1 - turn;
+            break;
+        case Script::ImageOrder::kShuffled:
+            next = static_cast<std::uint32_t>((acquisitions + 1) * 2654435761u >> 16) % count;
+            break;
+    }
+    const auto isHeld = [&](std::uint32_t image) { return std::find(acquired.begin(), acquired.end(), image) != acquired.end(); };
+    // Not the one on show, if there is another.
+    const auto isShown = [&](std::uint32_t image) { return has_released && image == released_index && acquired.size() + 1 < count; };
+    while (isHeld(next) || isShown(next)) next = (next + 1) % count;
+    return next;
+}
+
 Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
     Swapchain& found = get<Swapchain>(swapchain);
     require(&found.session == &session, XR_ERROR_HANDLE_INVALID, "a swapchain of another session");
@@ -107,7 +127,7 @@ XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* creat
         auto created = std::make_unique<Swapchain>(owner);
         created->info = checkedImage(owner, info);
         created->is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
-        created->is_prepared.resize(created->is_static ? 1 : kImages);
+        created->is_prepared.resize(created->is_static ? 1 : owner.instance.simulation->script.images);
         for (std::size_t i = 0; i < created->is_prepared.size(); ++i) created->images.push_back(owner.device->createImage(created->info));
         output = handleOf(adopt(owner, std::move(created)));
         return successOf(owner);
@@ -142,7 +162,7 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         uint32_t& output = checkedOutput(index);
         require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
         require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all images are acquired already");
-        const auto next = static_cast<std::uint32_t>(owner.acquisitions % owner.images.size());
+        const std::uint32_t next = owner.nextImage();
         // The image on show is given away again: the application holds all others.
         if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);
         if (!owner.is_prepared[next]) owner.session.device->prepare(*owner.images[next]);

@@ -1,4 +1,5 @@
-// Section 10.1: swapchains of three images on the application's device. Images are acquired in turn, waited for and released oldest first.
+// Section 10.1: swapchains on the application's device, of as many images as the script says. They are acquired in its order, waited for
+// and released oldest first.
 #pragma once
 
 #include <array>
@@ -25,6 +26,8 @@ struct Swapchain : Object {
     std::deque<std::uint32_t> acquired;
     bool is_oldest_waited = false;
     std::uint64_t acquisitions = 0;
+    // Of the image that is acquired next, in the script's order: one that the application does not hold.
+    [[nodiscard]] std::uint32_t nextImage() const;
     // What the compositor sees: the image that was released last, and its texels once somebody wanted them.
     bool has_released = false;
     std::uint32_t released_index = 0;

@@ -15,6 +15,7 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     record.frame = simulation.frames_shown;
     record.display_time_ns = info.displayTime;
     record.period_ns = simulation.clock.period();
+    record.gpu_ms = session.frames.gpu_ms;
     record.should_render = session.frames.should_render;
     record.session_state = wordOf(session.state);
     record.stage_from_head = state.stage_from_head;

@@ -63,6 +63,7 @@ std::string frameLine(const FrameRecord& record) {
     json["layers"] = Json::array();
     for (const LoggedLayer& layer : record.layers) { json["layers"].push_back(jsonOf(layer)); }
     json["events"] = record.events;
+    if (record.gpu_ms) { json["gpu_ms"] = *record.gpu_ms; }
     // Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -52,6 +52,7 @@ struct FrameRecord {
     std::uint64_t frame = 0;
     std::int64_t display_time_ns = 0;
     std::int64_t period_ns = 0;
+    std::optional<double> gpu_ms;  // where the script says it
     bool should_render = true;
     std::string session_state;  // "FOCUSED" ...
     Pose stage_from_head;

@@ -64,6 +64,8 @@ double ControllerState::input(std::string_view identifier_and_component) const {
 
 const char* nameOf(ScriptEvent::Kind kind) {
     switch (kind) {
+        case ScriptEvent::Kind::kRate:
+            return "rate";
         case ScriptEvent::Kind::kSlowImages:
             return "slow-images";
         case ScriptEvent::Kind::kRecentre:

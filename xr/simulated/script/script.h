@@ -78,6 +78,7 @@ struct State {
 // What happens once, when the display time first reaches `time_s`.
 struct ScriptEvent {
     enum class Kind {
+        kRate,          // the display shows `value` frames a second
         kSlowImages,    // the next `count` xrWaitSwapchainImage calls with a finite timeout return XR_TIMEOUT_EXPIRED
         kRecentre,      // kNoticeSeconds later LOCAL's origin is where the head is then
         kLoseSession,   // LOSS_PENDING, then XR_ERROR_SESSION_LOST from every call
@@ -88,8 +89,19 @@ struct ScriptEvent {
     double time_s = 0.0;
     Kind kind = Kind::kExit;
     std::uint32_t count = 1;
+    double value = 0.0;
 };
 [[nodiscard]] const char* nameOf(ScriptEvent::Kind kind);  // the script's word for it
+
+// How long the graphics device draws at a frame.
+struct GpuLoad {
+    enum class Unit { kShareOfPeriod, kMs, kMsPerMegapixel } unit = Unit::kMs;
+    double amount = 0.0;
+
+    [[nodiscard]] double ms(double period_ms, double megapixels) const {
+        return amount * (unit == Unit::kShareOfPeriod ? period_ms : unit == Unit::kMsPerMegapixel ? megapixels : 1.0);
+    }
+};
 
 // Which frames' composed pictures are written; frames count from 0 at the first xrEndFrame.
 struct FrameChoice {
@@ -123,7 +135,11 @@ public:
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
     double rate_hz = 90.0;
-    glm::uvec2 size_px{1024, 1024};  // recommended, per eye
+    double irregularity = 0.0;  // of periods, as a share of them
+    std::uint32_t images = 3;   // of a swapchain
+    enum class ImageOrder { kInTurn, kReversed, kShuffled } image_order = ImageOrder::kInTurn;
+    bool changes_state_at_begin = false;  // session states change while a frame is open, not after its end
+    glm::uvec2 size_px{1024, 1024};       // recommended, per eye
     double eye_distance_m = 0.063;
     std::array<double, 2> cant_rad{0.0, 0.0};
     std::string system_name = "Simulated headset";  // or the headset file's name
@@ -158,6 +174,7 @@ public:
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
     Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true}, head_turn_known{true}, head_place_known{true};
+    Steps<GpuLoad> gpu_load;
     std::vector<ScriptEvent> events;  // by time
 };
 

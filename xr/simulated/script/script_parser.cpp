@@ -19,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kRateMeaning = "the rate in frames per second";
+constexpr double kLeastRate = 1.0, kMostRate = 1000.0;
+
 // To the left about the vertical, then upwards.
 glm::dquat turned(double yaw_rad, double pitch_rad) {
     return glm::angleAxis(yaw_rad, glm::dvec3(0, 1, 0)) * glm::angleAxis(pitch_rad, glm::dvec3(1, 0, 0));
@@ -57,7 +60,9 @@ private:
                                                                            {"head", &Parser::parseHead},
                                                                            {"head-motion", &Parser::parseHeadMotionLine},
                                                                            {"headset", &Parser::parseHeadsetLine},
+                                                                           {"images", &Parser::parseImages},
                                                                            {"ipd", &Parser::parseIpd},
+                                                                           {"irregular", &Parser::parseIrregular},
                                                                            {"local", &Parser::parseLocal},
                                                                            {"no-headset-for", &Parser::parseNoHeadset},
                                                                            {"plugged", &Parser::parsePlugged},
@@ -67,6 +72,7 @@ private:
                                                                            {"refuse-depth", &Parser::parseRefusedDepth},
                                                                            {"size", &Parser::parseSize},
                                                                            {"stage", &Parser::parseStage},
+                                                                           {"state-changes", &Parser::parseStateChanges},
                                                                            {"touch", &Parser::parseTouch},
                                                                            {"visibility-mask", &Parser::parseMask},
                                                                            {"vulkan-additions", &Parser::parseVulkanAdditions}};
@@ -88,7 +94,38 @@ private:
 
     void parseRate(Words& words) {
         requireFirst(words, "rate");
-        script_.rate_hz = words.number("the rate in frames per second", 1.0, 1000.0);
+        script_.rate_hz = words.number(kRateMeaning, kLeastRate, kMostRate);
+    }
+
+    void parseIrregular(Words& words) {
+        requireFirst(words, "irregular");
+        script_.irregularity = 0.01 * words.number("how much periods differ, in percent", 0.0, 90.0);
+    }
+
+    void parseImages(Words& words) {
+        requireFirst(words, "images");
+        script_.images = static_cast<std::uint32_t>(words.count("the number of images", 1, 16));
+        if (words.isAtEnd()) { return; }
+        constexpr std::array kOrders{Script::ImageOrder::kInTurn, Script::ImageOrder::kReversed, Script::ImageOrder::kShuffled};
+        script_.image_order = kOrders.at(words.choice("the order", {"in-turn", "reversed", "shuffled"}));
+    }
+
+    void parseStateChanges(Words& words) {
+        requireFirst(words, "state-changes");
+        script_.changes_state_at_begin = words.choice("when states change", {"at-begin", "at-end"}) == 0;
+    }
+
+    // "70 %", "8 ms" or "3 ms-per-megapixel".
+    static GpuLoad parseLoad(Words& words) {
+        const double amount = words.number("the load", 0.0, 1e5);
+        switch (words.choice("the load's unit", {"%", "ms", "ms-per-megapixel"})) {
+            case 0:
+                return {GpuLoad::Unit::kShareOfPeriod, amount / 100.0};
+            case 1:
+                return {GpuLoad::Unit::kMs, amount};
+            default:
+                return {GpuLoad::Unit::kMsPerMegapixel, amount};
+        }
     }
 
     void parseSize(Words& words) {
@@ -253,7 +290,7 @@ private:
         last_at_s_ = time_s;
         const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
         switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                              "eye", "controller", "worn", "head", "recentre", "present"})) {
+                                              "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load"})) {
             case 0:
                 return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
             case 1:
@@ -292,8 +329,13 @@ private:
                 script_.events.insert(std::ranges::upper_bound(script_.events, time_s, {}, &ScriptEvent::time_s),
                                       {time_s, ScriptEvent::Kind::kRecentre, 1});
                 return;
-            default:
+            case 12:
                 return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
+            case 13:
+                script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.number(kRateMeaning, kLeastRate, kMostRate)});
+                return;
+            default:
+                return addStep(words, script_.gpu_load, time_s, parseLoad(words));
         }
     }
 

@@ -1,0 +1,161 @@
+// Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
+#include "engine/frame.h"
+#include "tests/frame_runs.h"
+
+#include <doctest/doctest.h>
+
+using namespace binosplat;
+using test::Gpu;
+using test::ViewedScene;
+
+namespace {
+
+FrameSettings makeSettings(Mode mode, std::uint64_t mark = 0) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.mark = mark;
+    return settings;
+}
+
+ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {128, 128}, 20000); }
+
+// A head that goes on a little, and turns a little.
+std::array<Eye, 2> eyesAt(const Eye& middle, int step) {
+    Eye eye = middle;
+    eye.world_from_camera.position.x += 0.01 * step;
+    eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.02 * step, glm::dvec3(0, 1, 0));
+    return stereoPair(eye, 0.063);
+}
+
+std::uint64_t count(const FrameResult& result, const char* name) {
+    const auto found = result.counters.find(name);
+    return found == result.counters.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "a frame that is not waited for is the one that is, byte for byte, in every mode") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
+        CAPTURE(static_cast<int>(mode));
+        StereoFrame waited(context(), scene), ahead(context(), scene);
+        for (int step = 0; step < 4; ++step) { ahead.renderAhead(eyesAt(view.eye, step), makeSettings(mode)); }
+        const std::array<Image, 2> pictures{ahead.readPicture(kLeft), ahead.readPicture(kRight)};
+        // `predicted` looks at the frame before for whether moving pays.
+        for (int step = 2; step < 4; ++step) { waited.render(eyesAt(view.eye, step), makeSettings(mode)); }
+        for (const int eye : {kLeft, kRight}) { CHECK(pictures[static_cast<std::size_t>(eye)].values == waited.readPicture(eye).values); }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "what a frame says of itself comes two frames later, the first and the last at once") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame waited(context(), scene), frame(context(), scene);
+    std::vector<std::uint64_t> visible;
+    for (int step = 0; step < 6; ++step) {
+        visible.push_back(count(waited.render(eyesAt(view.eye, step), makeSettings(Mode::kShared)), "splats_visible_left"));
+    }
+    std::vector<int> told;
+    const auto take = [&](const std::optional<FrameResult>& result) {
+        told.push_back(result ? static_cast<int>(result->mark) : -1);
+        if (result) { CHECK(count(*result, "splats_visible_left") == visible[result->mark]); }
+    };
+    for (int step = 0; step < 6; ++step) {
+        take(frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared, static_cast<std::uint64_t>(step))));
+    }
+    take(frame.finish());
+    // The first is waited for, since nothing is known of its lists.
+    CHECK(told == std::vector{0, -1, -1, 1, 2, 3, 5});
+    CHECK_FALSE(frame.finish().has_value());
+}
+
+TEST_CASE_FIXTURE(Gpu, "the host goes on while the device draws") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene);
+    frame.renderAhead(eyesAt(view.eye, 0), makeSettings(Mode::kShared));
+    // A device that waits for the host, which would wait for ever were the frame waited for.
+    vk::raii::Event gate = context().device().createEvent({});
+    Commands hold(context());
+    hold.begin();
+    hold.buffer().waitEvents(*gate, vk::PipelineStageFlagBits::eHost, vk::PipelineStageFlagBits::eAllCommands, {}, {}, {});
+    hold.submit();
+    CHECK_FALSE(frame.renderAhead(eyesAt(view.eye, 1), makeSettings(Mode::kShared)).has_value());
+    CHECK_FALSE(frame.renderAhead(eyesAt(view.eye, 2), makeSettings(Mode::kShared)).has_value());
+    context().device().getDispatcher()->vkSetEvent(*context().device(), *gate);
+    CHECK(frame.finish().has_value());
+    hold.wait();
+}
+
+TEST_CASE_FIXTURE(Gpu, "lists have room ahead of what eyes need, so that a view that moves is not cut short") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    for (int step = 0; step < 30; ++step) {
+        const auto result = frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared));
+        if (step == 0) { CHECK(count(*result, "frames_done_again") >= 1); }  // nothing was known yet
+    }
+    const FrameResult last = *frame.finish();
+    CHECK(count(last, "frames_cut_short") == 0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "after a jump a frame is waited for, and done again before anybody sees it") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame waited(context(), scene), frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    // From a look away from everything to a look at it.
+    Eye away = view.eye;
+    away.world_from_camera.orientation = away.world_from_camera.orientation * glm::angleAxis(3.1, glm::dvec3(0, 1, 0));
+    for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(away, 0), makeSettings(Mode::kShared)); }
+    const auto result = frame.renderAhead(eyesAt(view.eye, 0), makeSettings(Mode::kShared, 7));
+    REQUIRE(result.has_value());
+    CHECK(result->mark == 7);
+    CHECK(count(*result, "frames_done_again") > 0);
+    CHECK(count(*result, "frames_cut_short") == 0);
+    waited.render(eyesAt(view.eye, 0), makeSettings(Mode::kShared));
+    CHECK(frame.readPicture(kLeft).values == waited.readPicture(kLeft).values);
+}
+
+TEST_CASE_FIXTURE(Gpu, "a frame that finds no room although its eyes did not jump is counted, and the next one is whole") {
+    // Nothing moves but a wall of splats that comes out from behind the near plane.
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame waited(context(), scene), frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    FrameSettings blind = makeSettings(Mode::kShared), seeing = makeSettings(Mode::kShared);
+    blind.near = 1e4;
+    for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, 0), blind); }
+    FrameResult last{};
+    for (int step = 0; step < 4; ++step) {
+        if (auto result = frame.renderAhead(eyesAt(view.eye, 0), seeing)) { last = std::move(*result); }
+    }
+    CHECK(count(last, "frames_cut_short") > 0);
+    CHECK(count(last, "frames_done_again") > 0);
+    waited.render(eyesAt(view.eye, 0), seeing);
+    CHECK(frame.readPicture(kLeft).values == waited.readPicture(kLeft).values);
+    CHECK(frame.readPicture(kRight).values == waited.readPicture(kRight).values);
+}
+
+TEST_CASE_FIXTURE(Gpu, "other sizes, modes and hidden tiles wait for the frames that are under way") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene);
+    std::array<Eye, 2> small = eyesAt(view.eye, 0);
+    for (Eye& eye : small) {
+        eye.size_px = {64, 48};
+        eye.intrinsics = intrinsicsFromFovX(1.0, eye.size_px);
+    }
+    std::vector<std::uint8_t> hidden(tilesOf({128, 128}).x * tilesOf({128, 128}).y, 0);
+    hidden[0] = 1;
+    std::uint64_t mark = 0;
+    for (int round = 0; round < 2; ++round) {
+        for (const Mode mode : {Mode::kShared, Mode::kPredicted, Mode::kPaper}) {
+            for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, step), makeSettings(mode, ++mark)); }
+            FrameSettings masked = makeSettings(mode, ++mark);
+            masked.hidden_tiles = {hidden, hidden};
+            CHECK(frame.renderAhead(eyesAt(view.eye, 3), masked)->mark == mark);
+            CHECK(frame.renderAhead(small, makeSettings(mode, ++mark))->mark == mark);
+        }
+    }
+    CHECK_FALSE(frame.finish().has_value());
+}
