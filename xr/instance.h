@@ -22,9 +22,9 @@ struct InstanceOptions {
 
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor and
-    // those of controllers where they are. Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or
-    // no headset, and what `wait_for_headset` throws.
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
+    // XR_EXT_hand_tracking and those of controllers where they are. Throws Error (exit code 3, one line that says what was looked for)
+    // where there is no runtime or no headset, and what `wait_for_headset` throws.
     explicit Instance(const InstanceOptions& options = {});
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -37,6 +37,8 @@ public:
     [[nodiscard]] bool takesDepth() const { return takes_depth_; }
     [[nodiscard]] bool hasVisibilityMask() const { return has_visibility_mask_; }
     [[nodiscard]] bool hasLocalFloor() const { return has_local_floor_; }
+    // It has XR_EXT_hand_tracking, and this headset finds hands.
+    [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
     // Of those that controllers need.
     [[nodiscard]] bool hasExtension(const std::string& name) const { return controller_extensions_.contains(name); }
     // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
@@ -65,7 +67,7 @@ private:
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string description_;
-    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false;
+    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, tracks_hands_ = false;
     std::set<std::string> controller_extensions_;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;

@@ -27,15 +27,21 @@ void Layers::addEyes(const std::array<LayerEye, 2>& eyes) {
 }
 
 void Layers::addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain) {
+    addQuad({room_from_panel, size_m, &swapchain, {0, 0}, swapchain.sizePx()});
+}
+
+void Layers::addQuad(const LayerQuad& quad) {
+    XrSwapchainSubImage part = quad.swapchain->subImage(quad.size_px);
+    part.imageRect.offset = {static_cast<std::int32_t>(quad.from_px.x), static_cast<std::int32_t>(quad.from_px.y)};
     XrCompositionLayerQuad& panel = panels_.emplace_back();
     panel = {XR_TYPE_COMPOSITION_LAYER_QUAD,
              nullptr,
              XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT,
-             session_.space(),
+             quad.follows_head ? session_.headSpace() : session_.space(),
              XR_EYE_VISIBILITY_BOTH,
-             swapchain.subImage(swapchain.sizePx()),
-             toXr(room_from_panel),
-             {static_cast<float>(size_m.x), static_cast<float>(size_m.y)}};
+             part,
+             toXr(quad.pose),
+             {static_cast<float>(quad.size_m.x), static_cast<float>(quad.size_m.y)}};
     list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&panel));
 }
 

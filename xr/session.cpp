@@ -51,6 +51,7 @@ Session::Session(const Instance& instance, const Context& context) : instance_(i
     try {
         local_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
         space_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
+        head_ = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW, kHere);
         findFloor();
         for (int eye = 0; eye < 2; ++eye) { readHiddenMesh(eye); }
     } catch (...) {

@@ -74,6 +74,8 @@ public:
     [[nodiscard]] const Context& context() const { return context_; }
     // The room: see settle(). Before that, LOCAL.
     [[nodiscard]] XrSpace space() const { return space_; }
+    // What moves with the head.
+    [[nodiscard]] XrSpace headSpace() const { return head_; }
     // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
     [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
     // Another number whenever they were read.
@@ -96,7 +98,7 @@ private:
     const Instance& instance_;
     const Context& context_;
     XrSession session_ = XR_NULL_HANDLE;
-    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE;
+    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE;
     XrSpace floor_ = XR_NULL_HANDLE;  // on the floor, somewhere; null: the runtime has none
     XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);

@@ -127,8 +127,9 @@ void Viewer::drawFrame() {
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
-    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scenes_.scene_from_room);
-    if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
+    const WearerNow wearer{stay_->input.read(), room_from_head_, stay_->session.floorBelowMetres(), step_seconds};
+    controls_.update(wearer, panel_, settings_, scenes_.scene_from_room);
+    chooseThings(wearer, views);
     obeyWindow(step_seconds);
     renderer_.govern(*stay_, settings_);
 
@@ -147,6 +148,20 @@ void Viewer::drawFrame() {
     keepFrameTime();
 }
 
+void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
+    for (const int h : {kLeft, kRight}) {
+        if (panel_.pulses(h)) { stay_->input.pulse(h); }
+    }
+    vignette_.update(settings_.vignette && controls_.isMoving(), wearer.step_seconds);
+    RoomSight sight;
+    sight.eye = wearer.room_from_head.position;
+    if (settings_.hands) { sight.hands = wearer.hands; }
+    sight.rays = panel_.rays(sight.eye, controls_.aimingHand());
+    sight.teleport = controls_.teleportAim();
+    sight.vignette_m = vignette_.widthMetres(views.eyes);
+    stay_->things.choose(sight);
+}
+
 void Viewer::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
     if (log_.frame > 0) { status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count()); }
@@ -158,10 +173,13 @@ void Viewer::showFrame(const FrameViews& views) {
     stay_->images->release();
     const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
     if (has_panel) { stay_->panel_images.release(); }
+    stay_->things.release();
     const auto submit = [&] {
         xr::Layers layers(stay_->session);
         addEyes(layers, views);
-        if (has_panel) { addPanel(layers, views.room_from_head); }
+        stay_->things.addBehindPanel(layers);
+        if (has_panel) { layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images); }
+        stay_->things.addBeforePanel(layers);
         stay_->session.endFrame(layers.list());
     };
     try {
@@ -241,6 +259,7 @@ void Viewer::layOutPanel(bool hung) {
 }
 
 void Viewer::recordPanel(Commands& commands) {
+    stay_->things.record(commands);
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
@@ -260,11 +279,6 @@ void Viewer::obeyWindow(double step_seconds) {
         panel_.hangBefore(room_from_head_);
     }
     scenes_.scene_from_room = movedByWindow(scenes_.scene_from_room, window_input_, room_from_head_, step_seconds);
-}
-
-void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
-    layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images);
-    if (const auto ray = panel_.ray(room_from_head)) { layers.addPanel(ray->room_from_strip, ray->size_m, stay_->ray_image); }
 }
 
 void Viewer::obey(const OverlayActions& actions) {
