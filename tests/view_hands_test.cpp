@@ -202,3 +202,72 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
     // The same step; the middle is the same.
     CHECK(at(clear.eye(20, kLeft), 64, 64) == at(during, 64, 64));
 }
+
+TEST_CASE("the room shows behind the scene where the headset and the wearer let it, in every mode") {
+    const Workplace work;
+    std::ofstream(work.path / "through.toml") << "[view]\npassthrough = true\n";
+    const std::string options = "builtin:fence --load-first --hide-panel --hide-hands --eye 0,0,-6 --look 0,0,3 --up 0,-1,0";
+    const auto run = [&](const std::string& name, const std::string& modes, const std::string& more,
+                         const std::string& room = "0.2 0.9 0.4") {
+        const ViewRun seen = runView(work, name, kSmall + "room-colour " + room + "\n" + modes + "at 0.2 exit\n", options + more);
+        checkClean(seen);
+        return seen;
+    };
+    // A pixel of the picture's corner, where the fence is not.
+    const auto corner = [](const Image& picture) { return glm::vec3(picture.values[0], picture.values[1], picture.values[2]); };
+    const glm::vec3 red(1.0f, 0.0f, 0.0f), green(0.2f, 0.9f, 0.4f);
+    const auto isNear = [](const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b) < 0.02f; };
+    const std::string blends = "blend-modes opaque alpha-blend\n", through = " --config through.toml";
+    for (const std::string mode : {"mono", "two-pass", "predicted"}) {
+        CAPTURE(mode);
+        const std::string in_mode = " --background 1,0,0 --mode " + mode;
+        const ViewRun opaque = run("opaque-" + mode, blends, in_mode), seen = run("seen-" + mode, blends, in_mode + through);
+        CHECK(opaque.frames.at(15).at("blend_mode") == "OPAQUE");
+        CHECK(seen.frames.at(15).at("blend_mode") == "ALPHA_BLEND");
+        CHECK(seen.layers(15, "projection").at(0).at("flags") == nlohmann::json::array({"blend_texture_source_alpha"}));
+        for (const int side : {kLeft, kRight}) {
+            CHECK(isNear(corner(opaque.eye(15, side)), red));
+            CHECK(isNear(corner(seen.eye(15, side)), green));
+        }
+    }
+    // Where the scene is, it is as it was: over its own black, and over a room that is black.
+    const std::string black = " --mode mono --background 0,0,0";
+    const ViewRun in_the_dark = run("dark", blends, black + through, "0 0 0");
+    CHECK(compare(in_the_dark.eye(15, kLeft), run("black", blends, black).eye(15, kLeft)).psnrDb() > 40.0);
+    // A headset that adds light to the room's.
+    const ViewRun additive = run("additive", "blend-modes additive\n", " --background 1,0,0 --mode mono" + through);
+    CHECK(additive.frames.at(15).at("blend_mode") == "ADDITIVE");
+    CHECK(isNear(corner(additive.eye(15, kLeft)), green));
+    // One that shuts the room out.
+    const ViewRun shut = run("shut", "", " --background 1,0,0 --mode mono" + through);
+    CHECK(shut.frames.at(15).at("blend_mode") == "OPAQUE");
+    CHECK(isNear(corner(shut.eye(15, kLeft)), red));
+}
+
+TEST_CASE("while the scene loads, the room shows where the wearer wants it") {
+    const Workplace work;
+    std::ofstream(work.path / "through.toml") << "[view]\npassthrough = true\n";
+    const ViewRun run =
+        runView(work, "waiting", "rate 100\nsize 32 32\nblend-modes alpha-blend opaque\nroom-colour 0.2 0.9 0.4\nat 0.05 exit\n",
+                "builtin:atelier --hide-panel --hide-hands --config through.toml");
+    checkClean(run);
+    const Image seen = run.eye(3, kLeft);
+    CHECK(seen.values[1] == doctest::Approx(0.9).epsilon(0.01));
+}
+
+TEST_CASE("how one moves and what is seen is chosen on the panel") {
+    const Workplace work;
+    const std::string small = kSmall + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+    const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", kScene), 8);
+    const ViewRun run =
+        runView(work, "choose", small + clickOn(panel, {{0.034, 0.675}, {0.28, 0.675}, {0.53, 0.675}, {0.73, 0.675}}), kScene);
+    checkClean(run);
+    for (const char* change : {"locomotion = \"teleport\"", "vignette = false", "hands = false", "passthrough = true"}) {
+        INFO(change << " in " << run.outcome.output);
+        CHECK(run.outcome.output.find(change) != std::string::npos);
+    }
+    CHECK(hands(run, 20).size() == 2);
+    CHECK(hands(run, 80).empty());
+    CHECK(run.frames.at(20).at("blend_mode") == "OPAQUE");
+    CHECK(run.frames.at(95).at("blend_mode") == "ALPHA_BLEND");
+}

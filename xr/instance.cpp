@@ -119,8 +119,11 @@ void Instance::readViews() {
     BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr));
     std::vector<XrEnvironmentBlendMode> modes(count);
     BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()));
-    const bool opaque = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end();
-    if (!opaque && !modes.empty()) { blend_mode_ = modes.front(); }
+    const auto has = [&](XrEnvironmentBlendMode mode) { return std::ranges::find(modes, mode) != modes.end(); };
+    if (!has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) && !modes.empty()) { blend_mode_ = modes.front(); }
+    for (const XrEnvironmentBlendMode mode : {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}) {
+        if (has(mode)) { see_through_ = mode; }
+    }
 }
 
 DeviceMaker Instance::deviceMaker() const {

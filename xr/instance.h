@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -44,8 +45,12 @@ public:
     // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
-    // How layers meet the world: opaque where the headset has it, else what it likes best.
-    [[nodiscard]] XrEnvironmentBlendMode blendMode() const { return blend_mode_; }
+    // How layers meet the world: opaque where the headset has it, else what it likes best; or so that the room shows behind them, where it
+    // has that.
+    [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
+        return see_through && see_through_ ? *see_through_ : blend_mode_;
+    }
+    [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value(); }
 
     // The instance and the device that Context opens must be this runtime's. Valid as long as the instance.
     [[nodiscard]] DeviceMaker deviceMaker() const;
@@ -71,6 +76,7 @@ private:
     std::set<std::string> controller_extensions_;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+    std::optional<XrEnvironmentBlendMode> see_through_;
 };
 
 }  // namespace binosplat::xr

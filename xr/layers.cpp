@@ -7,7 +7,7 @@
 
 namespace binosplat::xr {
 
-void Layers::addEyes(const std::array<LayerEye, 2>& eyes) {
+void Layers::addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) {
     for (std::size_t e = 0; e < 2; ++e) {
         eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov,
                     eyes[e].colour->subImage(eyes[e].part_px)};
@@ -22,7 +22,8 @@ void Layers::addEyes(const std::array<LayerEye, 2>& eyes) {
                       static_cast<float>(eyes[e].near_m)};
         eyes_[e].next = &depths_[e];
     }
-    scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, session_.space(), 2, eyes_.data()};
+    const XrCompositionLayerFlags flags = see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;
+    scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, flags, session_.space(), 2, eyes_.data()};
     list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&scene_));
 }
 

@@ -35,7 +35,8 @@ public:
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    void addEyes(const std::array<LayerEye, 2>& eyes);
+    // Where it is `see_through`, what is behind shows as far as the pictures' alpha lets it; their colours are multiplied by it.
+    void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through);
     // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
     // blended over what lies behind; its colours are multiplied by alpha already.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);

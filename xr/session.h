@@ -45,6 +45,8 @@ public:
     // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error where the runtime refuses a layer: then
     // the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
+    // Whether the room shows behind the layers, where the headset can; from the next endFrame() on.
+    void seeThrough(bool see_through) { blend_mode_ = instance_.blendMode(see_through); }
     // Asks the runtime for the end; frames go on until beginFrame() returns kExit.
     void requestExit();
 
@@ -111,6 +113,7 @@ private:
     std::string why_ended_;
     std::array<HiddenMesh, 2> hidden_meshes_;
     int hidden_mesh_version_ = 0;
+    XrEnvironmentBlendMode blend_mode_;
 };
 
 }  // namespace binosplat::xr

@@ -174,6 +174,7 @@ void Viewer::showFrame(const FrameViews& views) {
     const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
     if (has_panel) { stay_->panel_images.release(); }
     stay_->things.release();
+    stay_->session.seeThrough(renderer_.seesThrough(settings_));
     const auto submit = [&] {
         xr::Layers layers(stay_->session);
         addEyes(layers, views);
@@ -231,7 +232,8 @@ void Viewer::renderWaiting() {
     for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
-    const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    const glm::vec4 colour = renderer_.seesThrough(settings_) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
     for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
     recordPanel(commands_);
     commands_.submitAndWait();
@@ -243,7 +245,7 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
         const int e = scenes_.get() != nullptr && settings_.showsOneEye() ? settings_.stereo.dominant : shown_to;
         return stay_->images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
-    layers.addEyes({layerEye(kLeft), layerEye(kRight)});
+    layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
 }
 
 void Viewer::layOutPanel(bool hung) {
@@ -251,6 +253,7 @@ void Viewer::layOutPanel(bool hung) {
     status_.scene = scenes_.name();
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
+    status_.can_pass_through = instance_.canSeeThrough();
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }

@@ -54,6 +54,7 @@ struct FrameRecord {
     std::int64_t period_ns = 0;
     bool should_render = true;
     std::string session_state;  // "FOCUSED" ...
+    std::string blend_mode;     // "OPAQUE" ...
     Pose stage_from_head;
     std::array<LoggedEye, 2> eyes;  // by Side
     std::vector<LoggedLayer> layers;
