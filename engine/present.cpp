@@ -9,7 +9,7 @@ namespace binosplat {
 
 KernelTable presentKernels() {
     return everyVariant("10_present", sizeof(gpu::PresentPass),
-                        {{"kBlueFirst", 2}, {"kLinear", 2}, {"kTint", 2}, {"kDepth", 2}, {"kHalfColours", 2}});
+                        {{"kBlueFirst", 2}, {"kLinear", 2}, {"kTint", 2}, {"kDepth", 2}, {"kHalfColours", 2}, {"kSeeThrough", 2}});
 }
 
 bool Presenter::takes(vk::Format format) {
@@ -48,8 +48,9 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
     commands.beginPass("10_present");
-    commands.dispatch(kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth, eye.image->half_floats}), pass,
-                      (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
+    commands.dispatch(
+        kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth, eye.image->half_floats, eye.see_through}), pass,
+        (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
 }

@@ -12,6 +12,7 @@ struct PresentedEye {
     const StereoBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
     vk::Image colour;                          // where the picture goes; 8-bit RGBA or BGRA
     vk::Image depth;                           // where its depth goes, D32: near / depth, 0 where nothing is; or null
+    bool see_through = false;                  // its alpha goes along, multiplied in as headsets blend: as light
 };
 
 // All kernels of pass 10.

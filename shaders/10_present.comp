@@ -9,6 +9,7 @@ layout(constant_id = 1) const bool kLinear = false;     // the image is no sRGB 
 layout(constant_id = 2) const bool kTint = false;       // by what made each pixel
 layout(constant_id = 3) const bool kDepth = false;
 layout(constant_id = 4) const bool kHalfColours = false;
+layout(constant_id = 5) const bool kSeeThrough = false;  // its alpha goes along, for what the headset shows behind it
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
@@ -20,6 +21,8 @@ vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), gre
 
 // Light of a display-encoded value (IEC 61966-2-1).
 vec3 decode(vec3 encoded) { return mix(pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))); }
+
+vec3 encode(vec3 light) { return mix(1.055 * pow(light, vec3(1 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308))); }
 
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
@@ -50,10 +53,14 @@ void main() {
     const uint i = at.y * pass.size_px.x + at.x;
     const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
+    // Blended as display-encoded values, which headsets blend as light: what was multiplied by alpha is so again, but as light.
+    const float alpha = kSeeThrough ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
+    if (kSeeThrough) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
     if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
-    if (kLinear) { colour = decode(colour); }
+    if (kLinear || kSeeThrough) { colour = alpha * decode(colour); }
+    if (kSeeThrough && !kLinear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
-    pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | 0xff000000u;
+    pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
     if (kDepth) {
         // D/A, as near / depth: 1 at the near plane, 0 where nothing is.
         const float share = pass.near * pixel.a / pass.depths.at[i];

@@ -177,6 +177,8 @@ TEST_CASE("what the panel is set to survives its file") {
     settings.resolution_scale = 0.7;
     settings.tint = true;
     settings.panel = false;
+    settings.hands = settings.vignette = false;
+    settings.teleport = settings.passthrough = true;
     settings.scene_from_room = kSome;
     const auto file = std::filesystem::temp_directory_path() / "binosplat_placement_test.toml";
     std::ofstream(file) << viewSettingsToml(settings);
@@ -211,17 +213,22 @@ TEST_CASE("a ray meets the panel where it points, from the front alone") {
     std::array<xr::Hand, 2> hands;
     // A quarter to the right and downwards of the panel's middle.
     hands[kRight].aim = compose(hung, {glm::dquat(1, 0, 0, 0), {0.2, 0.1, -0.5}});
-    panel.update(hands);
+    panel.update(hands, true);
     REQUIRE(panel.pointer().place_px.has_value());
     CHECK(panel.pointer().place_px->x == doctest::Approx(600));
     CHECK(panel.pointer().place_px->y == doctest::Approx(300));
     CHECK_FALSE(panel.pointer().pressed);
-    const auto ray = panel.ray({});
-    REQUIRE(ray.has_value());
-    CHECK(ray->size_m.y == doctest::Approx(0.5));
-    checkNear(ray->room_from_strip.position, transform(hung, {0.2, 0.1, -0.25}));
+    const auto rays = panel.rays(glm::dvec3(0.0), std::nullopt);
+    REQUIRE(rays.size() == 1);
+    CHECK_FALSE(rays[0].fades);
+    CHECK(rays[0].strip.size_m.y == doctest::Approx(0.5));
+    checkNear(rays[0].strip.room_from_strip.position, transform(hung, {0.2, 0.1, -0.25}));
     hands[kRight].aim = compose(hung, {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
-    panel.update(hands);
+    panel.update(hands, true);
     CHECK_FALSE(panel.pointer().place_px.has_value());
-    CHECK_FALSE(panel.ray({}).has_value());
+    // It fades before it is there.
+    const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
+    REQUIRE(behind.size() == 1);
+    CHECK(behind[0].fades);
+    CHECK(behind[0].strip.size_m.y < 0.5);
 }

@@ -35,7 +35,7 @@ Presented runPresent(Gpu& gpu, glm::uvec2 size_px, const std::vector<glm::vec4>&
     pass.device_depths = depths.address<float>();
     pass.size_px = size_px;
     pass.near = static_cast<float>(how.near);
-    const Kernel kernel(gpu.context(), "10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth, halves});
+    const Kernel kernel(gpu.context(), "10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth, halves, how.see_through});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
     return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, with_depth ? colours.size() : 0)};
 }
@@ -89,11 +89,14 @@ TEST_CASE_FIXTURE(Gpu, "pictures become the bytes of their twin, at every order 
                 CAPTURE(size_px.x);
                 CAPTURE(blue_first);
                 CAPTURE(linear);
-                const reference::Presentation how{blue_first, linear, 0.2};
-                const Presented actual = runPresent(*this, size_px, colours, {}, how);
-                const std::vector<std::uint32_t> expected = reference::present(asDoubles(colours), how);
-                CHECK(countOff(actual.pixels, expected, 1) == 0);
-                CHECK(countOff(actual.pixels, expected, 0) <= 1 + colours.size() / 500);
+                for (const bool see_through : {false, true}) {
+                    CAPTURE(see_through);
+                    const reference::Presentation how{blue_first, linear, 0.2, see_through};
+                    const Presented actual = runPresent(*this, size_px, colours, {}, how);
+                    const std::vector<std::uint32_t> expected = reference::present(asDoubles(colours), how);
+                    CHECK(countOff(actual.pixels, expected, 1) == 0);
+                    CHECK(countOff(actual.pixels, expected, 0) <= 1 + colours.size() / 500);
+                }
             }
         }
     }
@@ -104,6 +107,20 @@ TEST_CASE_FIXTURE(Gpu, "red comes first, opaque; with blue first it comes third"
     CHECK(runPresent(*this, {1, 1}, colours, {}, {false, false, 0.2}).pixels[0] == 0xff0080ffu);
     CHECK(runPresent(*this, {1, 1}, colours, {}, {true, false, 0.2}).pixels[0] == 0xffff8000u);
     CHECK(runPresent(*this, {1, 1}, colours, {}, {false, true, 0.2}).pixels[0] == 0xff0037ffu);  // 0.5 is 21.4 % of the light
+}
+
+TEST_CASE_FIXTURE(Gpu, "what is seen through has the light of its colour times its alpha") {
+    // Half of white, encoded: half of its light is the byte 188. A quarter of red; nothing; more than all.
+    const std::vector<glm::vec4> colours{{0.5f, 0.5f, 0.5f, 0.5f}, {0.25f, 0, 0, 0.25f}, {0.3f, 0.3f, 0.3f, 0}, {1, 0.5f, 0, 2}};
+    const reference::Presentation how{false, false, 0.2, true};
+    const std::vector<std::uint32_t> expected{0x80bcbcbcu, 0x40000089u, 0};
+    const std::vector<std::uint32_t> actual = runPresent(*this, {4, 1}, colours, {}, how).pixels;
+    CHECK(countOff({actual.begin(), actual.begin() + 3}, {expected.begin(), expected.begin() + 3}, 0) == 0);
+    CHECK((actual[3] >> 24) == 255u);
+    CHECK(countOff(actual, reference::present(asDoubles(colours), how), 0) == 0);
+    // Opaque colours are the same bytes as ever.
+    const std::vector<glm::vec4> opaque{{1.0f, 0.5f, 0.1f, 1.0f}};
+    CHECK(runPresent(*this, {1, 1}, opaque, {}, how).pixels == runPresent(*this, {1, 1}, opaque, {}, {}).pixels);
 }
 
 TEST_CASE_FIXTURE(Gpu, "what is no colour becomes one") {

@@ -474,3 +474,17 @@ TEST_CASE("theTopLeftTexelOfACubesFaceIsWhereVulkanHasIt") {
     CHECK(at(seen, 1, 1) == kBlack);
     CHECK(at(seen, 6, 6) == kBlack);
 }
+
+TEST_CASE("theRoomShowsAsFarAsAlphaLetsItOrIsAdded") {
+    const Backdrop room{{1.0, 0.0, 0.0}, false}, added{{1.0, 0.0, 0.0}, true};
+    const auto seen = [](const std::vector<Layer>& layers, const Backdrop& backdrop) {
+        return at(composeEye(eyeOf({2, 2}), kLeft, layers, backdrop), 0, 0);
+    };
+    CHECK(seen({}, room) == Rgb{255, 0, 0});
+    // Half of blue's light over it: half the light is the byte 188 of sRGB.
+    const Canvas blue = halves({2, 2}, {0.0f, 0.0f, 1.0f, 0.5f}), green({2, 2}, {0, 255, 0, 255});
+    CHECK(seen({blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{188, 0, 188});
+    CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, room) == Rgb{0, 255, 0});
+    CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, added) == Rgb{255, 255, 0});
+    CHECK(seen({quad(green, {0, 0, -2}, {9, 9}), blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{0, 188, 188});
+}

@@ -23,6 +23,7 @@ FrameRecord someRecord() {
     record.display_time_ns = 9'007'199'254'740'993;  // not a double
     record.period_ns = 11'111'111;
     record.session_state = "FOCUSED";
+    record.blend_mode = "ADDITIVE";
     record.stage_from_head = {glm::dquat(0.1, 0.2, 0.3, 0.4), {0.1, 1.0 / 3.0, std::nextafter(1.0, 2.0)}};
     record.eyes[kLeft].fov = {-0.7, 0.6, 0.5, -0.4};
     LoggedView view;
@@ -45,6 +46,7 @@ TEST_CASE("aFrameIsOneLine") { CHECK(frameLine(someRecord()).find('\n') == std::
 TEST_CASE("numbersInTheLogReadBackAsTheyWere") {
     const Json json = Json::parse(frameLine(someRecord()));
     CHECK(json["frame"] == 7);
+    CHECK(json["blend_mode"] == "ADDITIVE");
     CHECK(json["display_time_ns"].get<std::int64_t>() == 9'007'199'254'740'993);
     CHECK(json["head"]["position"][1].get<double>() == 1.0 / 3.0);
     CHECK(json["head"]["position"][2].get<double>() == std::nextafter(1.0, 2.0));

@@ -115,6 +115,9 @@ TEST_CASE("choicesAreListed") {
     refuses("eye left", "what is set is missing, must be angles or cant");
     refuses("at 1 should-render maybe", "whether to render is maybe, must be on or off");
     refuses("at 1 head maybe", "whether it is tracked is maybe, must be on, off or turn-only");
+    refuses("blend-modes see-through", "a blend mode is see-through, must be opaque, additive or alpha-blend");
+    refuses("blend-modes opaque opaque", "a blend mode stands there twice, must be named once");
+    refuses("room-colour 0 0 2", "the room's colour is 2, must be a number from 0 to 1");
     refuses("refuse-depth all", "what is refused is all, must be images or layers");
     refuses("visibility-mask perhaps", "whether there is a mask is perhaps, must be on, off or broken");
     refuses("local", "the pose is missing");

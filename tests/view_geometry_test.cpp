@@ -95,7 +95,7 @@ TEST_CASE("a wall's edge stays straight and in its place, in asymmetric, canted,
         "eye left angles -48 36 40 -44\neye right angles -36 48 40 -44\neye left cant 8\neye right cant 8\n"
         "head 0 position 0 1.6 0\nhead 0.15 position 0 1.6 0\nhead 0.25 position 0.2 1.7 -0.3 rotation 0.05 0.1 0.12 0.98\n"
         "at 0.4 eye left angles -40 50 30 -50\nat 0.4 eye right angles -30 35 45 -35\nat 0.6 exit\n";
-    const std::string scene = "builtin:step-edge --load-first --hide-panel --eye 0,0,0 --look 0,0,4";
+    const std::string scene = "builtin:step-edge --load-first --hide-panel --hide-hands --eye 0,0,0 --look 0,0,4";
     for (const std::string mode : {"two-pass", "shared", "predicted"}) {
         CAPTURE(mode);
         const ViewRun run = runView(work, mode, script, scene + " --mode " + mode);
@@ -107,7 +107,7 @@ TEST_CASE("a wall's edge stays straight and in its place, in asymmetric, canted,
 TEST_CASE("swapped eyes would be noticed") {
     const Workplace work;
     const ViewRun run = runView(work, "run", "rate 90\nsize 192 192\nat 0.2 exit\n",
-                                "builtin:step-edge --load-first --hide-panel --mode two-pass --eye 0,0,0 --look 0,0,4");
+                                "builtin:step-edge --load-first --hide-panel --hide-hands --mode two-pass --eye 0,0,0 --look 0,0,4");
     ViewRun swapped = run;
     for (auto& frame : swapped.frames) { std::swap(frame.at("eyes").at(0), frame.at("eyes").at(1)); }
     CHECK(std::abs(measure(traceEdge(swapped, 10, kLeft)).x - measure(traceEdge(swapped, 10, kRight)).x) > 0.05);

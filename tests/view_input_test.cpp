@@ -66,8 +66,8 @@ TEST_CASE("every controller brings the panel and sends it away, clicks on it, an
                                   fmt::format("press right {} 0.3 0.33\npress right {} 0.45 0.47\n", trigger, menu);
         const ViewRun run = runWith(work, profile, lines);
         CHECK(pulses(run) == 2);
-        CHECK(run.layers(40, "quad").size() == 2);
-        CHECK(run.layers(55, "quad").empty());
+        CHECK(run.panels(40).size() == 1);
+        CHECK(run.panels(55).empty());
     }
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("a grip that shivers holds on, and one that is only touched does not g
 
 TEST_CASE("a pad moves the wearer while it is pressed, not while a thumb rests on it") {
     const Workplace work;
-    const std::string hidden = " --hide-panel", pad = "axis left trackpad 0.1 0 0\naxis left trackpad 0.12 0 1\n";
+    const std::string hidden = " --hide-panel --hide-hands", pad = "axis left trackpad 0.1 0 0\naxis left trackpad 0.12 0 1\n";
     const Image still = runWith(work, "htc/vive_controller", "", hidden).eye(55, kLeft);
     CHECK(compare(runWith(work, "htc/vive_controller", pad, hidden).eye(55, kLeft), still).psnrDb() > 60.0);
     CHECK(compare(runWith(work, "htc/vive_controller", pad + "press left trackpad 0.2 0.4\n", hidden).eye(55, kLeft), still).psnrDb() <
@@ -107,7 +107,7 @@ TEST_CASE("a stick pushed mostly aside turns and does not lift") {
                        fmt::format("axis right thumbstick 0.1 0 0\naxis right thumbstick 0.12 0.9 {0}\naxis right thumbstick 0.3 0.9 {0}\n"
                                    "axis right thumbstick 0.32 0 0\n",
                                    y),
-                       " --hide-panel")
+                       " --hide-panel --hide-hands")
             .eye(55, kLeft);
     };
     CHECK(compare(pushed(0.7), pushed(0.0)).psnrDb() > 60.0);

@@ -45,6 +45,21 @@ struct ViewRun {
         }
         return found;
     }
+    // What hangs in the room, by how it is drawn: the panel is the largest picture, rays are thin.
+    [[nodiscard]] std::vector<nlohmann::json> panels(std::size_t frame) const {
+        return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("views").at(0).at("rect").at(3) > 256; });
+    }
+    [[nodiscard]] std::vector<nlohmann::json> rays(std::size_t frame) const {
+        return quadsWhere(frame, [](const nlohmann::json& quad) { return quad.at("size").at(0) < 0.01; });
+    }
+    template <typename Condition>
+    [[nodiscard]] std::vector<nlohmann::json> quadsWhere(std::size_t frame, const Condition& condition) const {
+        std::vector<nlohmann::json> found;
+        for (const auto& quad : layers(frame, "quad")) {
+            if (condition(quad)) { found.push_back(quad); }
+        }
+        return found;
+    }
 };
 
 // `arguments` after the scene; a script of these lines drives the headset. The run is over after `seconds` at the latest.

@@ -11,7 +11,7 @@ using namespace binosplat::test;
 namespace {
 
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
-const std::string kScene = "builtin:fence --load-first --mode shared";
+const std::string kScene = "builtin:fence --load-first --hide-hands --mode shared";
 // What a picture loses where the runtime turns it by the last digit of a float.
 constexpr double kSamePictureDb = 28.0, kOtherPictureDb = 25.0;
 
@@ -102,7 +102,8 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
     const Workplace work;
     // A metre is four scene units: the fence, a unit ahead, is nearer than 0.3 m.
     const std::string camera = "--eye 0,0,0 --look 0,0,3 --up 0,-1,0 --mode two-pass --metres-per-unit 0.25";
-    const ViewRun run = runView(work, "near", kSmall + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --near 0.3 " + camera);
+    const ViewRun run =
+        runView(work, "near", kSmall + "at 0.1 exit\n", "builtin:fence --load-first --hide-panel --hide-hands --near 0.3 " + camera);
     checkClean(run);
     const auto rendered = [&](const std::string& near) {
         REQUIRE(work.run("render builtin:fence --out expected --size 128x128 --fov-x 90 " + camera + " --near " + near).exit_code == 0);

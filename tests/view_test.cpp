@@ -95,7 +95,7 @@ TEST_CASE("the wearer sees what render makes of the same poses and angles") {
     for (const std::string mode : {"two-pass", "predicted"}) {
         CAPTURE(mode);
         const std::string stereo = fmt::format(" --mode {} --dominant right", mode);
-        const ViewRun run = runView(work, mode, script, kScene + " --hide-panel " + start + stereo);
+        const ViewRun run = runView(work, mode, script, kScene + " --hide-panel --hide-hands " + start + stereo);
         checkClean(run);
         checkAgrees(work, run, 10, start + stereo);
         const glm::dquat head = glm::normalize(glm::dquat(0.98, 0.08, -0.15, 0.06));
@@ -109,8 +109,8 @@ TEST_CASE("the wearer sees what render makes of the same poses and angles") {
 TEST_CASE("two runs with the virtual clock write the same files") {
     const Workplace work;
     const std::string script = kSmall + "head 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\nat 0.25 exit\n";
-    const ViewRun first = runView(work, "first", script, kScene + " --hide-panel");
-    const ViewRun second = runView(work, "second", script, kScene + " --hide-panel");
+    const ViewRun first = runView(work, "first", script, kScene + " --hide-panel --hide-hands");
+    const ViewRun second = runView(work, "second", script, kScene + " --hide-panel --hide-hands");
     checkClean(first);
     CHECK(first.frames.size() > 15);
     CHECK(std::system(("diff -r '" + first.out.string() + "' '" + second.out.string() + "' >/dev/null").c_str()) == 0);

@@ -197,7 +197,7 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
     const std::string script = "rate 90\nsize 200 200\nframes every 4\n", end = "at 0.12 eye left angles -45 60 45 -45\nat 0.25 exit\n";
     for (const std::string mode : {"shared", "predicted", "mono"}) {
         CAPTURE(mode);
-        const std::string arguments = "builtin:fence --load-first --hide-panel --mode " + mode;
+        const std::string arguments = "builtin:fence --load-first --hide-panel --hide-hands --mode " + mode;
         const ViewRun without = runView(work, "without-" + mode, script + end, arguments);
         const ViewRun with = runView(work, "with-" + mode, script + "visibility-mask on\n" + end, arguments);
         checkClean(with);

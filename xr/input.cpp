@@ -15,7 +15,7 @@ constexpr const char* kHandPaths[] = {"/user/hand/left", "/user/hand/right"};
 
 }  // namespace
 
-Input::Input(const Session& session) : session_(session) {
+Input::Input(const Session& session) : session_(session), tracking_(session) {
     const Instance& instance = session.instance();
     for (std::size_t h = 0; h < 2; ++h) { hands_[h] = instance.path(kHandPaths[h]); }
     auto info = structure<XrActionSetCreateInfo>(XR_TYPE_ACTION_SET_CREATE_INFO);
@@ -104,6 +104,7 @@ std::array<Hand, 2> Input::read() {
     for (std::size_t h = 0; h < 2; ++h) {
         hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h]);
         hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h]);
+        hands[h].joints = tracking_.locate(static_cast<int>(h));
         hands[h].clicks = clicks_[h].update(readNumber(trigger_, hands_[h]));
         hands[h].grabs = grabs_[h].update(readNumber(squeeze_, hands_[h]));
         // A pad that only feels the thumb is at rest.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
-#include "xr/session.h"
+#include "xr/hand_tracking.h"
 
 #include <array>
 #include <optional>
@@ -13,6 +13,7 @@ namespace binosplat::xr {
 struct Hand {
     std::optional<Pose> aim;             // the ray goes along its z
     std::optional<Pose> grip;            // where the hand is
+    std::optional<HandJoints> joints;    // where the runtime finds them
     bool clicks = false, grabs = false;  // trigger and squeeze; they hold on to what they are until it is clear that they are not
     glm::dvec2 stick{0.0};               // right and up are positive; of a pad, only while it is pressed
     bool menu = false;
@@ -50,6 +51,7 @@ private:
     [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, XrSpace space) const;
 
     const Session& session_;
+    HandTracking tracking_;
     XrActionSet set_ = XR_NULL_HANDLE;
     XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, squeeze_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
              stick_click_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;

@@ -63,11 +63,13 @@ void Instance::create(const InstanceOptions& options) {
     takes_depth_ = has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     has_visibility_mask_ = options.visibility_mask && has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     has_local_floor_ = has(kLocalFloorExtension);
+    tracks_hands_ = has(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
     has_refresh_rates_ = has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME);
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
     if (has_refresh_rates_) { extensions.push_back(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME); }
+    if (tracks_hands_) { extensions.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension == nullptr || !has(profile.extension)) { continue; }
         if (controller_extensions_.insert(profile.extension).second) { extensions.push_back(profile.extension); }
@@ -97,7 +99,10 @@ void Instance::findSystem(const InstanceOptions& options) {
     }
     if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime.runtimeName), result); }
     auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
+    auto hands = structure<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
+    if (tracks_hands_) { properties.next = &hands; }
     BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
+    tracks_hands_ = tracks_hands_ && hands.supportsHandTracking == XR_TRUE;
     description_ = fmt::format("{}: {}", runtime.runtimeName, properties.systemName);
 }
 
@@ -116,8 +121,11 @@ void Instance::readViews() {
     BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr));
     std::vector<XrEnvironmentBlendMode> modes(count);
     BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()));
-    const bool opaque = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end();
-    if (!opaque && !modes.empty()) { blend_mode_ = modes.front(); }
+    const auto has = [&](XrEnvironmentBlendMode mode) { return std::ranges::find(modes, mode) != modes.end(); };
+    if (!has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) && !modes.empty()) { blend_mode_ = modes.front(); }
+    for (const XrEnvironmentBlendMode mode : {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}) {
+        if (has(mode)) { see_through_ = mode; }
+    }
 }
 
 DeviceMaker Instance::deviceMaker() const {

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,8 +24,8 @@ struct InstanceOptions {
 class Instance {
 public:
     // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
-    // XR_FB_display_refresh_rate and those of controllers where they are. Throws Error (exit code 3, one line that says what was looked
-    // for) where there is no runtime or no headset, and what `wait_for_headset` throws.
+    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking and those of controllers where they are. Throws Error (exit code 3, one line that
+    // says what was looked for) where there is no runtime or no headset, and what `wait_for_headset` throws.
     explicit Instance(const InstanceOptions& options = {});
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -38,13 +39,19 @@ public:
     [[nodiscard]] bool hasVisibilityMask() const { return has_visibility_mask_; }
     [[nodiscard]] bool hasLocalFloor() const { return has_local_floor_; }
     [[nodiscard]] bool hasRefreshRates() const { return has_refresh_rates_; }
+    // It has XR_EXT_hand_tracking, and this headset finds hands.
+    [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
     // Of those that controllers need.
     [[nodiscard]] bool hasExtension(const std::string& name) const { return controller_extensions_.contains(name); }
     // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
-    // How layers meet the world: opaque where the headset has it, else what it likes best.
-    [[nodiscard]] XrEnvironmentBlendMode blendMode() const { return blend_mode_; }
+    // How layers meet the world: opaque where the headset has it, else what it likes best; or so that the room shows behind them, where it
+    // has that.
+    [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
+        return see_through && see_through_ ? *see_through_ : blend_mode_;
+    }
+    [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value(); }
 
     // The instance and the device that Context opens must be this runtime's. Valid as long as the instance.
     [[nodiscard]] DeviceMaker deviceMaker() const;
@@ -66,10 +73,11 @@ private:
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string description_;
-    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false;
+    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false, tracks_hands_ = false;
     std::set<std::string> controller_extensions_;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+    std::optional<XrEnvironmentBlendMode> see_through_;
 };
 
 }  // namespace binosplat::xr

@@ -20,16 +20,27 @@ struct LayerEye {
     glm::uvec2 part_px{0, 0};  // of the images, from their top left corner
 };
 
+// A flat picture, seen from the side of its -z and blended over what lies behind; its colours are multiplied by alpha already.
+struct LayerQuad {
+    Pose pose;  // room axes; or the head's, where it follows that
+    glm::dvec2 size_m{0.0};
+    const Swapchain* swapchain = nullptr;
+    glm::uvec2 from_px{0, 0}, size_px{0, 0};  // of its image
+    bool follows_head = false;
+};
+
 class Layers {
 public:
     explicit Layers(const Session& session) : session_(session) {}
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    void addEyes(const std::array<LayerEye, 2>& eyes);
+    // Where it is `see_through`, what is behind shows as far as the pictures' alpha lets it; their colours are multiplied by it.
+    void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through);
     // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
     // blended over what lies behind; its colours are multiplied by alpha already.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
+    void addQuad(const LayerQuad& quad);
 
     // For Session::endFrame; valid as long as this and the swapchains.
     [[nodiscard]] std::span<const XrCompositionLayerBaseHeader* const> list() const { return list_; }

@@ -36,7 +36,8 @@ Pose headOf(const std::array<EyeView, 2>& eyes) {
 
 }  // namespace
 
-Session::Session(const Instance& instance, const Context& context) : instance_(instance), context_(context) {
+Session::Session(const Instance& instance, const Context& context)
+    : instance_(instance), context_(context), blend_mode_(instance.blendMode(false)) {
     const std::lock_guard lock(context.queueMutex());
     auto binding = structure<XrGraphicsBindingVulkan2KHR>(XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR);
     binding.instance = *context.instance();
@@ -51,6 +52,7 @@ Session::Session(const Instance& instance, const Context& context) : instance_(i
     try {
         local_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
         space_ = makeSpace(XR_REFERENCE_SPACE_TYPE_LOCAL, kHere);
+        head_ = makeSpace(XR_REFERENCE_SPACE_TYPE_VIEW, kHere);
         findFloor();
         for (int eye = 0; eye < 2; ++eye) { readHiddenMesh(eye); }
     } catch (...) {
@@ -83,7 +85,7 @@ FrameOutcome Session::beginFrame() {
 void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers) {
     auto info = structure<XrFrameEndInfo>(XR_TYPE_FRAME_END_INFO);
     info.displayTime = frame_state_.predictedDisplayTime;
-    info.environmentBlendMode = instance_.blendMode();
+    info.environmentBlendMode = blend_mode_;
     info.layerCount = static_cast<std::uint32_t>(layers.size());
     info.layers = layers.empty() ? nullptr : layers.data();
     const std::lock_guard lock(context_.queueMutex());

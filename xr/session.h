@@ -45,6 +45,8 @@ public:
     // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error where the runtime refuses a layer: then
     // the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
+    // Whether the room shows behind the layers, where the headset can; from the next endFrame() on.
+    void seeThrough(bool see_through) { blend_mode_ = instance_.blendMode(see_through); }
     // Asks the runtime for the end; frames go on until beginFrame() returns kExit.
     void requestExit();
 
@@ -77,6 +79,8 @@ public:
     [[nodiscard]] const Context& context() const { return context_; }
     // The room: see settle(). Before that, LOCAL.
     [[nodiscard]] XrSpace space() const { return space_; }
+    // What moves with the head.
+    [[nodiscard]] XrSpace headSpace() const { return head_; }
     // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
     [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
     // Another number whenever they were read.
@@ -99,7 +103,7 @@ private:
     const Instance& instance_;
     const Context& context_;
     XrSession session_ = XR_NULL_HANDLE;
-    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE;
+    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE;
     XrSpace floor_ = XR_NULL_HANDLE;  // on the floor, somewhere; null: the runtime has none
     XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
@@ -113,6 +117,7 @@ private:
     std::string why_ended_;
     std::array<HiddenMesh, 2> hidden_meshes_;
     int hidden_mesh_version_ = 0;
+    XrEnvironmentBlendMode blend_mode_;
 };
 
 }  // namespace binosplat::xr

@@ -157,6 +157,7 @@ std::span<const OptionRow<ViewOptions>> viewRows() {
         {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
         {{"load-first", "", kView, "", "load the scene before the session starts, not meanwhile"}, field::flag<&ViewOptions::load_first>()},
         {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},
+        {{"hide-hands", "", kView, "", "draw neither hands nor controllers"}, field::flag<&ViewOptions::hide_hands>()},
         {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
          field::text<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},

@@ -45,11 +45,11 @@ void EyeImages::acquire(int eye, bool with_depth) {
 
 void EyeImages::present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near) {
     const auto e = static_cast<std::size_t>(eye);
-    presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e]}, near);
+    presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e], see_through_}, near);
 }
 
-void EyeImages::clear(Commands& commands, int eye, const glm::vec3& colour) {
-    commands.clearImage(colour_now_[static_cast<std::size_t>(eye)], glm::vec4(colour, 1.0f));
+void EyeImages::clear(Commands& commands, int eye, const glm::vec4& colour) {
+    commands.clearImage(colour_now_[static_cast<std::size_t>(eye)], colour);
 }
 
 void EyeImages::release() {

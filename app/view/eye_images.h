@@ -26,9 +26,11 @@ public:
 
     // Before anything is recorded: the images of a frame, with that of the eye's depth where it will have one and the runtime takes it.
     void acquire(int eye, bool with_depth);
+    // Whether alpha goes along, for the room behind the scene.
+    void seeThrough(bool see_through) { see_through_ = see_through; }
     // Between begin and submit of `commands`, with what acquire() took, also more than once. `near` in scene units.
     void present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near);
-    void clear(Commands& commands, int eye, const glm::vec3& colour);
+    void clear(Commands& commands, int eye, const glm::vec4& colour);
     // After submit: gives back what acquire() took.
     void release();
 
@@ -41,6 +43,7 @@ private:
     std::array<xr::Swapchain, 2> colour_, depth_;
     std::array<vk::Image, 2> colour_now_{}, depth_now_{};  // of this frame; null: not taken
     std::array<bool, 2> shows_depth_{};
+    bool see_through_ = false;
 };
 
 }  // namespace binosplat

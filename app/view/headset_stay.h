@@ -3,6 +3,7 @@
 
 #include "app/view/eye_images.h"
 #include "app/view/lens_mask.h"
+#include "app/view/room_things.h"
 #include "xr/input.h"
 #include "xr/layers.h"
 
@@ -17,7 +18,8 @@ struct HeadsetStay {
     xr::Session session;
     vk::Format format;
     xr::Input input;
-    xr::Swapchain panel_images, ray_image;
+    xr::Swapchain panel_images;
+    RoomThings things;
     std::unique_ptr<EyeImages> images;  // once their size is known
     LensMask lens_mask;
 };

@@ -3,6 +3,7 @@
 
 #include "app/options/modes.h"
 #include "app/report/report.h"
+#include "app/view/comfort_widgets.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -167,6 +168,7 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         if (ImGui::Button("Next scene")) { actions.scene_step = 1; }
         ImGui::SameLine();
         actions.take_picture = ImGui::Button("Picture");
+        drawComfort(settings, status.can_pass_through);
         // What is said may take several lines, and moves nothing that is pointed at.
         ImGui::TextWrapped("%s",
                            status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());

@@ -23,6 +23,7 @@ struct OverlayStatus {
     std::string governor;                // what it does about the frame rate, and why
     std::string message;                 // what came of the last button
     bool can_reload_shaders = false;     // whether there is a button for it
+    bool can_pass_through = false;       // likewise
 };
 
 // Buttons that were pressed.

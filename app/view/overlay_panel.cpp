@@ -8,7 +8,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kScrolls = 0.5;  // of the stick
-constexpr double kRayWidthMetres = 0.004;
+constexpr double kRayWidthMetres = 0.006, kFadingRayMetres = 0.4;
 // In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
 const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
 const glm::dvec3 kUp(0.0, -1.0, 0.0);
@@ -39,51 +39,59 @@ std::optional<OverlayPanel::Hit> OverlayPanel::meet(const Pose& room_from_aim) c
     return Hit{share * size_px_, distance};
 }
 
-void OverlayPanel::update(const std::array<xr::Hand, 2>& hands) {
-    pointer_ = {};
-    pointing_.reset();
-    pulse_.reset();
-    std::optional<int> hits;
-    if (carrier_) {
-        const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
-        if (hand.grabs && hand.aim) {
-            room_from_panel_ = compose(*hand.aim, hand_from_panel_);
-        } else {
-            carrier_.reset();
-        }
+void OverlayPanel::carry(const std::array<xr::Hand, 2>& hands) {
+    if (!carrier_) { return; }
+    const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
+    if (hand.grabs && hand.aim) {
+        room_from_panel_ = compose(*hand.aim, hand_from_panel_);
+    } else {
+        carrier_.reset();
     }
-    for (const int h : {kRight, kLeft}) {
-        const xr::Hand& hand = hands[static_cast<std::size_t>(h)];
-        const bool squeezes = hand.grabs, begins = squeezes && !squeezed_[static_cast<std::size_t>(h)];
-        squeezed_[static_cast<std::size_t>(h)] = squeezes;
-        if (!hand.aim || pointing_) { continue; }
-        const std::optional<Hit> hit = meet(*hand.aim);
-        if (!hit) { continue; }
-        if (begins && !carrier_) {
-            carrier_ = h;
-            hand_from_panel_ = compose(inverse(*hand.aim), room_from_panel_);
-        }
-        pointing_ = hand.aim;
-        distance_m_ = hit->distance_m;
-        pointer_ = {hit->place_px, hand.clicks, std::abs(hand.stick.y) > kScrolls ? 0.2 * hand.stick.y : 0.0};
-        hits = h;
-        if (hit_by_ != h || (hand.clicks && !clicked_)) { pulse_ = h; }
-    }
-    hit_by_ = hits;
-    clicked_ = pointer_.pressed;
 }
 
-std::optional<OverlayPanel::Ray> OverlayPanel::ray(const Pose& room_from_head) const {
-    if (!pointing_) { return std::nullopt; }
-    const glm::dvec3 along = pointing_->orientation * glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 middle = pointing_->position + 0.5 * distance_m_ * along;
-    // The strip's z points away from the eyes, as near to that as a direction across the ray can.
-    glm::dvec3 away = middle - room_from_head.position;
-    away -= glm::dot(away, along) * along;
-    if (glm::length(away) < 1e-6) { return std::nullopt; }
-    const glm::dvec3 right = glm::cross(along, glm::normalize(away));
-    const glm::dmat3 room_from_strip(right, along, glm::normalize(away));
-    return Ray{{glm::normalize(glm::quat_cast(room_from_strip)), middle}, {kRayWidthMetres, distance_m_}};
+void OverlayPanel::follow(const xr::Hand& hand, int h, bool shown) {
+    HandNow& now = hands_[static_cast<std::size_t>(h)];
+    const HandNow before = now;
+    now = {};
+    now.squeezes = hand.grabs;
+    now.clicks = hand.clicks;
+    if (hand.aim && (shown || hand.clicks)) { now.aim = hand.aim; }
+    if (hand.aim && shown) { now.hit = meet(*hand.aim); }
+    const bool begins_click = now.clicks && !before.clicks;
+    now.clicks_here = now.clicks && (begins_click ? now.hit.has_value() : before.clicks_here);
+    if (!now.hit) { return; }
+    now.pulses = !before.hit || begins_click;
+    if (begins_click) { clicked_last_ = h; }
+    if (now.squeezes && !before.squeezes && !carrier_) {
+        carrier_ = h;
+        hand_from_panel_ = compose(inverse(*hand.aim), room_from_panel_);
+    }
+}
+
+void OverlayPanel::update(const std::array<xr::Hand, 2>& hands, bool shown) {
+    if (shown) {
+        carry(hands);
+    } else {
+        carrier_.reset();
+    }
+    for (const int h : {kLeft, kRight}) { follow(hands[static_cast<std::size_t>(h)], h, shown); }
+    pointer_ = {};
+    const int pointer = of(clicked_last_).hit ? clicked_last_ : 1 - clicked_last_;
+    if (!of(pointer).hit) { return; }
+    const double scroll = hands[static_cast<std::size_t>(pointer)].stick.y;
+    pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
+}
+
+std::vector<OverlayPanel::Ray> OverlayPanel::rays(const glm::dvec3& eye, std::optional<int> without) const {
+    std::vector<Ray> rays;
+    for (const int h : {kLeft, kRight}) {
+        const HandNow& hand = of(h);
+        if (!hand.aim || without == h) { continue; }
+        const double length_m = hand.hit ? hand.hit->distance_m : kFadingRayMetres;
+        const glm::dvec3 end = transform(*hand.aim, glm::dvec3(0.0, 0.0, length_m));
+        if (const auto strip = stripBetween(hand.aim->position, end, kRayWidthMetres, eye)) { rays.push_back({*strip, !hand.hit}); }
+    }
+    return rays;
 }
 
 }  // namespace binosplat

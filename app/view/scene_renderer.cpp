@@ -53,6 +53,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
     frame.mark = governed_count_;
+    if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // One eye's picture for both is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
         frame.hidden_tiles = stay.lens_mask.update(stay.session, views.eyes, stay.images->partPx());
@@ -63,6 +64,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
 void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                            const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel) {
     const bool one_eye = settings.showsOneEye();
+    stay.images->seeThrough(seesThrough(settings));
     const FrameSettings frame = settingsOfFrame(stay, settings, scene_from_room.scale, views);
     std::array<Eye, 2> eyes;
     for (const int e : {kLeft, kRight}) {

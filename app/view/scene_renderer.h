@@ -36,6 +36,8 @@ public:
     void render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                 const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
 
+    // The wearer wants the room behind the scene, and the headset can show it.
+    [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
     // Of those that the device is done with. No counters before the first frame of a scene.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
     void forgetLastFrame() { last_ = {}; }

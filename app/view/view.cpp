@@ -24,6 +24,7 @@ ViewSettings startSettings(const ViewOptions& options) {
     settings.stereo = options.run.stereo;
     settings = readViewSettings(options.tables, settings);
     if (options.hide_panel) { settings.panel = false; }
+    if (options.hide_hands) { settings.hands = false; }
     if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
     return settings;
 }

@@ -49,6 +49,10 @@ std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& s
             {"visibility-mask", settings.visibility_mask ? "true" : "false"},
             {"tilt", settings.tilt ? "true" : "false"},
             {"refresh-rate", fmt::format("{:g}", settings.refresh_rate)},
+            {"hands", settings.hands ? "true" : "false"},
+            {"locomotion", settings.teleport ? "\"teleport\"" : "\"walk\""},
+            {"vignette", settings.vignette ? "true" : "false"},
+            {"passthrough", settings.passthrough ? "true" : "false"},
             {"quality", fmt::format("\"{}\"", kQualityNames[static_cast<std::size_t>(settings.quality)])}};
 }
 
@@ -73,6 +77,16 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
                 settings.refresh_rate = readNumber(setting, 0.0, kMostRefreshRate);
             } else if (key == "tilt") {
                 settings.tilt = readFlag(setting);
+            } else if (key == "hands") {
+                settings.hands = readFlag(setting);
+            } else if (key == "locomotion") {
+                const bool teleports = setting.text() == "teleport";
+                check(teleports || setting.text() == "walk", "{} is {}, must be walk or teleport", setting.origin, setting.text());
+                settings.teleport = teleports;
+            } else if (key == "vignette") {
+                settings.vignette = readFlag(setting);
+            } else if (key == "passthrough") {
+                settings.passthrough = readFlag(setting);
             } else if (key == "visibility-mask") {
                 settings.visibility_mask = readFlag(setting);
             } else if (key == "scene-position") {

@@ -19,6 +19,10 @@ struct ViewSettings {
     bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
     bool tilt = false;                          // whether two hands may tilt the scene
     double refresh_rate = 0.0;                  // frames per second; 0: the runtime's choice
+    bool hands = true;                          // draw them, or what they hold
+    bool teleport = false;                      // in place of walking
+    bool vignette = true;                       // while the wearer moves by stick
+    bool passthrough = false;                   // the room in place of the background, where the headset shows it
     Quality quality = Quality::kOff;            // how the frame rate is held
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
@@ -26,8 +30,8 @@ struct ViewSettings {
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };
 
-// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, quality, refresh-rate, scene-position,
-// scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
+// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, hands, locomotion, vignette,
+// passthrough, quality, refresh-rate, scene-position, scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
 // A config that --config takes, also of `render`.

@@ -127,8 +127,9 @@ void Viewer::drawFrame() {
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
-    controls_.update(stay_->input.read(), room_from_head_, step_seconds, panel_, settings_, scenes_.scene_from_room);
-    if (const std::optional<int> hand = panel_.pulse()) { stay_->input.pulse(*hand); }
+    const WearerNow wearer{stay_->input.read(), room_from_head_, stay_->session.floorBelowMetres(), step_seconds};
+    controls_.update(wearer, panel_, settings_, scenes_.scene_from_room);
+    chooseThings(wearer, views);
     obeyWindow(step_seconds);
     if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     renderer_.govern(*stay_, settings_);
@@ -148,6 +149,20 @@ void Viewer::drawFrame() {
     keepFrameTime();
 }
 
+void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
+    for (const int h : {kLeft, kRight}) {
+        if (panel_.pulses(h)) { stay_->input.pulse(h); }
+    }
+    vignette_.update(settings_.vignette && controls_.isMoving(), wearer.step_seconds);
+    RoomSight sight;
+    sight.eye = wearer.room_from_head.position;
+    if (settings_.hands) { sight.hands = wearer.hands; }
+    sight.rays = panel_.rays(sight.eye, controls_.aimingHand());
+    sight.teleport = controls_.teleportAim();
+    sight.vignette_m = vignette_.widthMetres(views.eyes);
+    stay_->things.choose(sight);
+}
+
 void Viewer::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
     if (log_.frame > 0) { status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count()); }
@@ -159,10 +174,14 @@ void Viewer::showFrame(const FrameViews& views) {
     stay_->images->release();
     const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
     if (has_panel) { stay_->panel_images.release(); }
+    stay_->things.release();
+    stay_->session.seeThrough(renderer_.seesThrough(settings_));
     const auto submit = [&] {
         xr::Layers layers(stay_->session);
         addEyes(layers, views);
-        if (has_panel) { addPanel(layers, views.room_from_head); }
+        stay_->things.addBehindPanel(layers);
+        if (has_panel) { layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images); }
+        stay_->things.addBeforePanel(layers);
         stay_->session.endFrame(layers.list());
     };
     try {
@@ -216,7 +235,8 @@ void Viewer::renderWaiting() {
     for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
-    const glm::vec3 colour = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    const glm::vec4 colour = renderer_.seesThrough(settings_) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
     for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
     recordPanel(commands_);
     commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
@@ -229,7 +249,7 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
         const int e = scenes_.get() != nullptr && settings_.showsOneEye() ? settings_.stereo.dominant : shown_to;
         return stay_->images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
-    layers.addEyes({layerEye(kLeft), layerEye(kRight)});
+    layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
 }
 
 void Viewer::layOutPanel(bool hung) {
@@ -237,6 +257,7 @@ void Viewer::layOutPanel(bool hung) {
     status_.scene = scenes_.name();
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
+    status_.can_pass_through = instance_.canSeeThrough();
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
@@ -245,6 +266,7 @@ void Viewer::layOutPanel(bool hung) {
 }
 
 void Viewer::recordPanel(Commands& commands) {
+    stay_->things.record(commands);
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
@@ -264,11 +286,6 @@ void Viewer::obeyWindow(double step_seconds) {
         panel_.hangBefore(room_from_head_);
     }
     scenes_.scene_from_room = movedByWindow(scenes_.scene_from_room, window_input_, room_from_head_, step_seconds);
-}
-
-void Viewer::addPanel(xr::Layers& layers, const Pose& room_from_head) const {
-    layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images);
-    if (const auto ray = panel_.ray(room_from_head)) { layers.addPanel(ray->room_from_strip, ray->size_m, stay_->ray_image); }
 }
 
 void Viewer::obey(const OverlayActions& actions) {

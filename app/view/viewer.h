@@ -8,6 +8,7 @@
 #include "app/view/scene_renderer.h"
 #include "app/view/shown_scene.h"
 #include "app/view/view_settings.h"
+#include "app/view/vignette.h"
 #include "app/view/wearer_controls.h"
 
 #include <chrono>
@@ -41,9 +42,10 @@ private:
     void settle();
     void renderWaiting();
     void recordPanel(Commands& commands);
+    // Hands, rays and what else hangs in the room in this frame.
+    void chooseThings(const WearerNow& wearer, const FrameViews& views);
     void showFrame(const FrameViews& views);
     void addEyes(xr::Layers& layers, const FrameViews& views) const;
-    void addPanel(xr::Layers& layers, const Pose& room_from_head) const;
     // The widgets; takes the panel's image where it is `hung`.
     void layOutPanel(bool hung);
     void keepFrameTime();
@@ -72,6 +74,7 @@ private:
     vk::Image panel_now_;  // of this frame, where the panel is shown
     OverlayPanel panel_;
     WearerControls controls_;
+    Vignette vignette_;
     Commands commands_;
     OverlayStatus status_;
     Pose room_from_head_;  // as last known

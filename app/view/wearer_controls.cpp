@@ -10,6 +10,8 @@ namespace {
 constexpr double kWalkMetresPerSecond = 1.5, kRiseMetresPerSecond = 0.8;
 constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
 constexpr double kStickTurns = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
+// Where the runtime knows no floor: below the head of a wearer who stands at the start.
+constexpr double kUsualFloorMetres = 1.6;
 
 // Thumbs push aside a little when they push ahead: the larger part counts alone.
 glm::dvec2 dominantAxis(const glm::dvec2& stick) {
@@ -20,49 +22,84 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 
 }  // namespace
 
-void WearerControls::update(const std::array<xr::Hand, 2>& hands, const Pose& room_from_head, double step_seconds, OverlayPanel& panel,
-                            ViewSettings& settings, Similarity& scene_from_room) {
-    const bool menu = hands[kLeft].menu || hands[kRight].menu;
+void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room) {
+    const bool menu = now.hands[kLeft].menu || now.hands[kRight].menu;
     if (menu && !menu_) {
         settings.panel = !settings.panel;
-        if (settings.panel) { panel.hangBefore(room_from_head); }
+        if (settings.panel) { panel.hangBefore(now.room_from_head); }
     }
     menu_ = menu;
-    panel.update(settings.panel ? hands : std::array<xr::Hand, 2>{});
+    panel.update(now.hands, settings.panel);
+    walk(now, panel, settings.teleport, scene_from_room);
+    if (settings.teleport) {
+        teleport(now, panel, scene_from_room);
+    } else {
+        aiming_.reset();
+        teleport_ = {};
+    }
+    turn(now, scene_from_room);
+    hold(now, panel, settings.tilt, scene_from_room);
+}
 
-    const glm::dvec3 forward = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
+void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room) {
+    const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
-    const glm::dvec2 walk(withoutShiver(hands[kLeft].stick.x), withoutShiver(hands[kLeft].stick.y));
-    const glm::dvec2 right_stick = dominantAxis(hands[kRight].stick);
-    const double rise = panel.pointer().place_px ? 0.0 : withoutShiver(right_stick.y);  // over the panel it scrolls
+    const glm::dvec2& left_stick = now.hands[kLeft].stick;
+    const glm::dvec2 walk = teleports ? glm::dvec2(0.0) : glm::dvec2(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
+    // Over the panel it scrolls.
+    const double rise = panel.pointer().place_px ? 0.0 : withoutShiver(dominantAxis(now.hands[kRight].stick).y);
     const glm::dvec3 step_m = kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
-    if (step_m != glm::dvec3(0.0)) { scene_from_room = movedBy(scene_from_room, step_seconds * step_m); }
+    moves_ = step_m != glm::dvec3(0.0);
+    if (moves_) { scene_from_room = movedBy(scene_from_room, now.step_seconds * step_m); }
+}
 
-    const double turn = right_stick.x;
+void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room) {
+    const auto aims = [&](int h) {
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        const bool pushed = h == kLeft && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
+        return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
+    };
+    if (aiming_ && !aims(*aiming_)) {
+        // A hand that was lost did not let go.
+        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && teleport_.target) {
+            glm::dvec3 step_m = *teleport_.target - now.room_from_head.position;
+            step_m.y = 0.0;
+            scene_from_room = movedBy(scene_from_room, step_m);
+        }
+        aiming_.reset();
+    }
+    for (const int h : {kRight, kLeft}) {
+        if (!aiming_ && aims(h)) { aiming_ = h; }
+    }
+    teleport_ = {};
+    if (aiming_) { teleport_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
+}
+
+void WearerControls::turn(const WearerNow& now, Similarity& scene_from_room) {
+    const double turn = dominantAxis(now.hands[kRight].stick).x;
     if (std::abs(turn) > kStickTurns && !turned_) {
-        scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), room_from_head.position);
+        scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), now.room_from_head.position);
         turned_ = true;
     } else if (std::abs(turn) < kStickRests) {
         turned_ = false;
     }
+}
 
-    const auto holds = [&](int h) {
-        const xr::Hand& hand = hands[static_cast<std::size_t>(h)];
-        return hand.grabs && hand.grip.has_value() && !panel.isCarriedBy(h);
-    };
-    std::array<std::optional<glm::dvec3>, 2> now;
+void WearerControls::hold(const WearerNow& now, const OverlayPanel& panel, bool may_tilt, Similarity& scene_from_room) {
+    std::array<std::optional<glm::dvec3>, 2> holding;
     for (const int h : {kLeft, kRight}) {
-        if (holds(h)) { now[static_cast<std::size_t>(h)] = hands[static_cast<std::size_t>(h)].grip->position; }
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        if (hand.grabs && hand.grip && !panel.isCarriedBy(h)) { holding[static_cast<std::size_t>(h)] = hand.grip->position; }
     }
     // A hand that begins or ends to hold changes who holds, and moves nothing.
-    const bool goes_on = now[kLeft].has_value() == held_[kLeft].has_value() && now[kRight].has_value() == held_[kRight].has_value();
-    if (goes_on && now[kLeft] && now[kRight]) {
-        scene_from_room = heldBy(scene_from_room, {*held_[kLeft], *held_[kRight]}, {*now[kLeft], *now[kRight]}, settings.tilt);
-    } else if (goes_on && (now[kLeft] || now[kRight])) {
-        const std::size_t h = now[kLeft] ? kLeft : kRight;
-        scene_from_room = movedBy(scene_from_room, *held_[h] - *now[h]);
+    const bool goes_on = holding[kLeft].has_value() == held_[kLeft].has_value() && holding[kRight].has_value() == held_[kRight].has_value();
+    if (goes_on && holding[kLeft] && holding[kRight]) {
+        scene_from_room = heldBy(scene_from_room, {*held_[kLeft], *held_[kRight]}, {*holding[kLeft], *holding[kRight]}, may_tilt);
+    } else if (goes_on && (holding[kLeft] || holding[kRight])) {
+        const std::size_t h = holding[kLeft] ? kLeft : kRight;
+        scene_from_room = movedBy(scene_from_room, *held_[h] - *holding[h]);
     }
-    held_ = now;
+    held_ = holding;
 }
 
 }  // namespace binosplat

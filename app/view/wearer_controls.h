@@ -3,23 +3,46 @@
 
 #include "app/view/overlay_panel.h"
 #include "app/view/placement.h"
+#include "app/view/teleport.h"
 #include "app/view/view_settings.h"
 #include "xr/input.h"
 
 #include <array>
+#include <optional>
 
 namespace binosplat {
+
+// The wearer in a frame.
+struct WearerNow {
+    std::array<xr::Hand, 2> hands;
+    Pose room_from_head;
+    std::optional<double> floor_m;  // its y in the room, where the runtime knows
+    double step_seconds = 0.0;
+};
 
 class WearerControls {
 public:
     // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, rise and sink. A hand squeezed: the scene moves
-    // with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes.
-    void update(const std::array<xr::Hand, 2>& hands, const Pose& room_from_head, double step_seconds, OverlayPanel& panel,
-                ViewSettings& settings, Similarity& scene_from_room);
+    // with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes. Where the wearer teleports, the
+    // left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there.
+    void update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room);
+
+    // Whether sticks moved the wearer in this frame.
+    [[nodiscard]] bool isMoving() const { return moves_; }
+    // The hand that aims at the floor, and where it would bring the wearer.
+    [[nodiscard]] std::optional<int> aimingHand() const { return aiming_; }
+    [[nodiscard]] const TeleportAim& teleportAim() const { return teleport_; }
 
 private:
-    bool turned_ = false, menu_ = false;
+    void walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room);
+    void teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room);
+    void turn(const WearerNow& now, Similarity& scene_from_room);
+    void hold(const WearerNow& now, const OverlayPanel& panel, bool may_tilt, Similarity& scene_from_room);
+
+    bool turned_ = false, menu_ = false, moves_ = false;
     std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene
+    std::optional<int> aiming_;
+    TeleportAim teleport_;
 };
 
 }  // namespace binosplat

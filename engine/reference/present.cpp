@@ -15,13 +15,26 @@ std::uint32_t byteOf(double value, bool linear) {
     return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
 }
 
+double encodedOf(double light) { return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055; }
+
+// Of a value that was blended, encoded, with this share: the light of the colour itself, multiplied by the share.
+std::uint32_t seenThrough(double value, double share, bool linear) {
+    if (!(value > 0.0) || share == 0.0) { return 0; }
+    const double light = share * lightOf(std::min(value / share, 1.0));
+    return byteOf(linear ? light : encodedOf(light), false);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> present(std::span<const glm::dvec4> rgba, const Presentation& presentation) {
     std::vector<std::uint32_t> words;
     for (const glm::dvec4& pixel : rgba) {
-        const std::uint32_t red = byteOf(pixel.r, presentation.linear), green = byteOf(pixel.g, presentation.linear);
-        const std::uint32_t blue = byteOf(pixel.b, presentation.linear), alpha = 255;
+        const double share = !presentation.see_through ? 1.0 : pixel.a > 0.0 ? std::min(pixel.a, 1.0) : 0.0;
+        const auto channel = [&](double value) {
+            return presentation.see_through ? seenThrough(value, share, presentation.linear) : byteOf(value, presentation.linear);
+        };
+        const std::uint32_t red = channel(pixel.r), green = channel(pixel.g), blue = channel(pixel.b);
+        const auto alpha = static_cast<std::uint32_t>(std::floor(share * 255.0 + 0.5));
         const std::uint32_t first = presentation.blue_first ? blue : red, third = presentation.blue_first ? red : blue;
         words.push_back(first | green << 8 | third << 16 | alpha << 24);
     }

@@ -61,6 +61,10 @@ const char* nameOf(XrStructureType type) {
     case name:                      \
         return #name + sizeof "XR_SESSION_STATE_" - 1;
 
+#define SIMULATED_BLEND_WORD(name, value) \
+    case name:                            \
+        return #name + sizeof "XR_ENVIRONMENT_BLEND_MODE_" - 1;
+
 const char* wordOf(XrSessionState state) {
     switch (state) {
         XR_LIST_ENUM_XrSessionState(SIMULATED_WORD);
@@ -69,6 +73,15 @@ const char* wordOf(XrSessionState state) {
     }
 }
 
+const char* wordOf(XrEnvironmentBlendMode mode) {
+    switch (mode) {
+        XR_LIST_ENUM_XrEnvironmentBlendMode(SIMULATED_BLEND_WORD);
+        default:
+            return nullptr;
+    }
+}
+
+#undef SIMULATED_BLEND_WORD
 #undef SIMULATED_CASE
 #undef SIMULATED_WORD
 

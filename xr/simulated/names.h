@@ -9,5 +9,7 @@ const char* nameOf(XrResult result);
 const char* nameOf(XrStructureType type);
 // "FOCUSED".
 const char* wordOf(XrSessionState state);
+// "ALPHA_BLEND".
+const char* wordOf(XrEnvironmentBlendMode mode);
 
 }  // namespace simulated

@@ -31,10 +31,12 @@ Session& runningSession(XrSession session) {
     return found;
 }
 
-void checkBlendMode(XrEnvironmentBlendMode mode) {
+void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
     const bool is_known = mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
     require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such blend mode");
-    require(mode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "only OPAQUE");
+    const bool is_offered = std::ranges::any_of(
+        script.blend_modes, [&](Script::BlendMode offered) { return static_cast<int>(offered) + 1 == static_cast<int>(mode); });
+    require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer this one");
 }
 
 // The display shows a frame in the first period in which the device is done with it.
@@ -146,7 +148,7 @@ XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
         const XrFrameEndInfo& info = checked(frameEndInfo, XR_TYPE_FRAME_END_INFO);
         require(owner.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
         checkTime(info.displayTime);
-        checkBlendMode(info.environmentBlendMode);
+        checkBlendMode(info.environmentBlendMode, owner.instance.simulation->script);
         checkLayers(owner, info);
         owner.frames.begun.reset();
         const State state = owner.at(info.displayTime);

@@ -120,8 +120,11 @@ XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId system
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
-        return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes,
-                         {XR_ENVIRONMENT_BLEND_MODE_OPAQUE});
+        std::vector<XrEnvironmentBlendMode> modes;
+        for (const Script::BlendMode mode : owner.simulation->script.blend_modes) {
+            modes.push_back(static_cast<XrEnvironmentBlendMode>(static_cast<int>(mode) + 1));
+        }
+        return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes, modes);
     });
 }
 

@@ -126,16 +126,17 @@ std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Lay
     return seen;
 }
 
-glm::dvec3 blend(const glm::dvec3& below, const glm::dvec4& texel, const Blending& blending) {
-    if (!blending.texture_source_alpha) { return glm::dvec3(texel); }
+// Light and alpha.
+glm::dvec4 blend(const glm::dvec4& below, const glm::dvec4& texel, const Blending& blending) {
+    if (!blending.texture_source_alpha) { return {glm::dvec3(texel), 1.0}; }
     const double alpha = std::clamp(texel.a, 0.0, 1.0);
     const glm::dvec3 premultiplied = blending.unpremultiplied_alpha ? glm::dvec3(texel) * alpha : glm::dvec3(texel);
-    return premultiplied + below * (1.0 - alpha);
+    return glm::dvec4(premultiplied, alpha) + below * (1.0 - alpha);
 }
 
 }  // namespace
 
-RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers) {
+RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop) {
     const std::vector<SeenLayer> seen = seenBy(eye, side, layers);
     const Tangents tangents(eye.fov);
     RgbPicture picture{eye.size_px, {}};
@@ -143,11 +144,12 @@ RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> laye
     for (std::uint32_t y = 0; y < eye.size_px.y; ++y) {
         for (std::uint32_t x = 0; x < eye.size_px.x; ++x) {
             const glm::dvec3 direction_eye = tangents.direction(pixelCentre(eye.size_px, x, y));
-            glm::dvec3 light(0.0);
+            glm::dvec4 light(0.0);
             for (const SeenLayer& layer : seen) {
                 const auto texel = std::visit([&](const auto& shape) { return shape.at(x, y, direction_eye); }, layer.shape);
                 if (texel) { light = blend(light, *texel, layer.blending); }
             }
+            light += glm::dvec4((backdrop.adds ? 1.0 : 1.0 - light.a) * backdrop.light, 0.0);
             for (const double value : {light.r, light.g, light.b}) { picture.bytes.push_back(srgbByte(value)); }
         }
     }

@@ -111,9 +111,17 @@ struct EyeView {
     Fov fov;
 };
 
-// Layers in submission order over black. A projection layer is turned from its own view's orientation to the eye's, through directions;
-// nothing is drawn where the view had no picture. With equal orientation, angles and size an sRGB picture comes through byte for byte.
-[[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers);
+// What is behind all layers, where the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
+// it.
+struct Backdrop {
+    glm::dvec3 light{0.0};  // linear
+    bool adds = false;
+};
+
+// Layers in submission order over the backdrop. A projection layer is turned from its own view's orientation to the eye's, through
+// directions; nothing is drawn where the view had no picture. With equal orientation, angles and size an sRGB picture comes through byte
+// for byte.
+[[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
 
 // Left and right eye beside one another, at the top of a picture as high as the higher one.
 [[nodiscard]] RgbPicture sideBySide(const RgbPicture& left, const RgbPicture& right);

@@ -18,11 +18,19 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     record.gpu_ms = session.frames.gpu_ms;
     record.should_render = session.frames.should_render;
     record.session_state = wordOf(session.state);
+    record.blend_mode = wordOf(info.environmentBlendMode);
     record.stage_from_head = state.stage_from_head;
     for (std::size_t eye = 0; eye < kEyes; ++eye) record.eyes[eye] = {state.eyes[eye].stage_from_eye, state.eyes[eye].fov};
     record.layers = loggedLayers(session, info, state);
     record.events = std::exchange(session.log_events, {});
     return record;
+}
+
+// The room about the wearer, as far as the frame's blend mode shows it.
+Backdrop backdropOf(const Script& script, const XrFrameEndInfo& info) {
+    if (info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE) return {};
+    const glm::dvec3& room = script.room_colour;
+    return {{decodeSrgb(room.r), decodeSrgb(room.g), decodeSrgb(room.b)}, info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_ADDITIVE};
 }
 
 void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& folder) {
@@ -31,7 +39,8 @@ void writePicture(const Session& session, const XrFrameEndInfo& info, const Stat
     std::array<RgbPicture, kEyes> pictures;
     for (const Side side : kSides) {
         const EyeState& eye = state.eyes[side];
-        pictures[side] = composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers);
+        pictures[side] =
+            composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers, backdropOf(simulation.script, info));
     }
     char name[32];
     std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(simulation.frames_shown));

@@ -57,6 +57,7 @@ std::string frameLine(const FrameRecord& record) {
               {"period_ns", record.period_ns},
               {"should_render", record.should_render},
               {"session_state", record.session_state},
+              {"blend_mode", record.blend_mode},
               {"head", jsonOf(record.stage_from_head)}};
     json["eyes"] = Json::array();
     for (const LoggedEye& eye : record.eyes) { json["eyes"].push_back({{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}}); }

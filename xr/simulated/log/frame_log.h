@@ -55,6 +55,7 @@ struct FrameRecord {
     std::optional<double> gpu_ms;  // where the script says it
     bool should_render = true;
     std::string session_state;  // "FOCUSED" ...
+    std::string blend_mode;     // "OPAQUE" ...
     Pose stage_from_head;
     std::array<LoggedEye, 2> eyes;  // by Side
     std::vector<LoggedLayer> layers;

@@ -151,7 +151,10 @@ public:
     std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
-    bool plugged = true;  // else there is a runtime, but no headset
+    enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1
+    std::vector<BlendMode> blend_modes{BlendMode::kOpaque};    // the one that it likes best first
+    glm::dvec3 room_colour{0.5};                               // what shows behind pictures that do not cover it; as sRGB encodes it
+    bool plugged = true;                                       // else there is a runtime, but no headset
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -53,6 +54,7 @@ private:
         static const std::map<std::string, Command, std::less<>> kCommands{{"at", &Parser::parseAt},
                                                                            {"aim", &Parser::parseAim},
                                                                            {"axis", &Parser::parseAxis},
+                                                                           {"blend-modes", &Parser::parseBlendModes},
                                                                            {"controller", &Parser::parseController},
                                                                            {"extension", &Parser::parseExtension},
                                                                            {"eye", &Parser::parseEye},
@@ -70,6 +72,7 @@ private:
                                                                            {"profile", &Parser::parseProfile},
                                                                            {"rate", &Parser::parseRate},
                                                                            {"refuse-depth", &Parser::parseRefusedDepth},
+                                                                           {"room-colour", &Parser::parseRoomColour},
                                                                            {"size", &Parser::parseSize},
                                                                            {"stage", &Parser::parseStage},
                                                                            {"state-changes", &Parser::parseStateChanges},
@@ -362,6 +365,23 @@ private:
     void parsePlugged(Words& words) {
         requireFirst(words, "plugged");
         script_.plugged = words.onOff("whether the headset is plugged in");
+    }
+
+    void parseBlendModes(Words& words) {
+        requireFirst(words, "blend-modes");
+        script_.blend_modes.clear();
+        do {
+            const auto mode = static_cast<Script::BlendMode>(words.choice("a blend mode", {"opaque", "additive", "alpha-blend"}));
+            if (std::ranges::find(script_.blend_modes, mode) != script_.blend_modes.end()) {
+                words.fail("a blend mode stands there twice, must be named once");
+            }
+            script_.blend_modes.push_back(mode);
+        } while (!words.isAtEnd());
+    }
+
+    void parseRoomColour(Words& words) {
+        requireFirst(words, "room-colour");
+        for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.number("the room's colour", 0.0, 1.0); }
     }
 
     void parseMask(Words& words) {

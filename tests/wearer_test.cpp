@@ -1,0 +1,262 @@
+// Facts about the wearer's hands without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn.
+#include "app/view/hand_picture.h"
+#include "app/view/vignette.h"
+#include "app/view/wearer_controls.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace binosplat;
+
+namespace {
+
+constexpr double kTenth = 0.1;
+
+// A hand that points straight at a place of a panel, half a metre before it.
+xr::Hand pointingAt(const OverlayPanel& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
+    xr::Hand hand;
+    hand.aim = compose(panel.roomFromPanel(), Pose{{1, 0, 0, 0}, {from_middle_m.x, from_middle_m.y, -0.5}});
+    hand.clicks = clicks;
+    return hand;
+}
+
+xr::Hand pointingAway() {
+    xr::Hand hand;
+    hand.aim = Pose{glm::angleAxis(3.0, glm::dvec3(0, 1, 0)), {0.3, 0.4, 0.3}};
+    return hand;
+}
+
+// Both eyes at the middle, each seeing so far to every side.
+std::array<xr::EyeView, 2> eyesThatSee(float angle_rad) {
+    const xr::EyeView eye{{{0, 0, 0, 1}, {0, 0, 0}}, {-angle_rad, angle_rad, angle_rad, -angle_rad}};
+    return {eye, eye};
+}
+
+double alphaAt(const TexelPicture& picture, std::uint32_t x, std::uint32_t y) {
+    return static_cast<double>(picture.texels.at(std::size_t{y} * picture.size_px.x + x) >> 24) / 255.0;
+}
+
+// A flat hand, fingers along -y, whose palm is at `palm`.
+xr::HandJoints flatHand(const glm::dvec3& palm) {
+    xr::HandJoints joints{};
+    for (auto& joint : joints) { joint = {palm, 0.01}; }
+    joints[XR_HAND_JOINT_WRIST_EXT].place = palm + glm::dvec3(0.0, 0.06, 0.0);
+    for (std::size_t finger = 0; finger < 5; ++finger) {
+        const std::size_t first = finger == 0 ? 2 : 6 + 5 * (finger - 1), count = finger == 0 ? 4 : 5;
+        for (std::size_t i = 0; i < count; ++i) {
+            joints[first + i].place =
+                palm + glm::dvec3(0.02 * (static_cast<double>(finger) - 2.0), 0.03 - 0.03 * static_cast<double>(i), 0.0);
+        }
+    }
+    return joints;
+}
+
+}  // namespace
+
+TEST_CASE("both hands point, and the one that clicked last is the pointer") {
+    OverlayPanel panel({800, 400}, 0.8);
+    const auto at = [&] { return panel.pointer().place_px.value_or(glm::dvec2(-1.0)).x; };
+    std::array<xr::Hand, 2> hands{pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
+    panel.update(hands, true);
+    CHECK(panel.rays(glm::dvec3(0.0), std::nullopt).size() == 2);
+    CHECK(at() == doctest::Approx(600));
+    CHECK(panel.pulses(kLeft));
+    CHECK(panel.pulses(kRight));
+    hands[kLeft].clicks = true;
+    panel.update(hands, true);
+    CHECK(at() == doctest::Approx(200));
+    CHECK(panel.pointer().pressed);
+    CHECK(panel.pulses(kLeft));
+    CHECK_FALSE(panel.pulses(kRight));
+    // It stays the pointer, until the other one clicks or it misses.
+    hands[kLeft].clicks = false;
+    panel.update(hands, true);
+    CHECK(at() == doctest::Approx(200));
+    const xr::Hand left = hands[kLeft];
+    hands[kLeft] = pointingAway();
+    panel.update(hands, true);
+    CHECK(at() == doctest::Approx(600));
+    hands[kLeft] = left;
+    panel.update(hands, true);
+    CHECK(at() == doctest::Approx(200));
+    hands[kRight].clicks = true;
+    panel.update(hands, true);
+    CHECK(at() == doctest::Approx(600));
+}
+
+TEST_CASE("a trigger that was pulled beside the panel does not click when the ray comes over it") {
+    OverlayPanel panel({800, 400}, 0.8);
+    std::array<xr::Hand, 2> hands{xr::Hand{}, pointingAway()};
+    hands[kRight].clicks = true;
+    panel.update(hands, true);
+    CHECK(panel.clicksElsewhere(kRight));
+    hands[kRight] = pointingAt(panel, {0.0, 0.0}, true);
+    panel.update(hands, true);
+    CHECK(panel.pointer().place_px.has_value());
+    CHECK_FALSE(panel.pointer().pressed);
+    CHECK(panel.clicksElsewhere(kRight));
+    hands[kRight].clicks = false;
+    panel.update(hands, true);
+    hands[kRight].clicks = true;
+    panel.update(hands, true);
+    CHECK(panel.pointer().pressed);
+    CHECK_FALSE(panel.clicksElsewhere(kRight));
+}
+
+TEST_CASE("without a panel a hand shows its ray only while its trigger is pulled") {
+    OverlayPanel panel({800, 400}, 0.8);
+    std::array<xr::Hand, 2> hands{pointingAt(panel, {0.0, 0.0}), pointingAt(panel, {0.0, 0.0})};
+    panel.update(hands, false);
+    CHECK(panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt).empty());
+    CHECK_FALSE(panel.pointer().place_px.has_value());
+    hands[kLeft].clicks = true;
+    panel.update(hands, false);
+    const auto rays = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
+    REQUIRE(rays.size() == 1);
+    CHECK(rays[0].fades);
+    CHECK(panel.rays(glm::dvec3(0.0), kLeft).empty());
+}
+
+TEST_CASE("a strip joins its ends and shows its face to the eye") {
+    const glm::dvec3 from(0.2, 0.4, 0.3), to(-0.3, 0.1, 0.9), eye(0.1, -0.2, 0.0);
+    const auto strip = stripBetween(from, to, 0.01, eye);
+    REQUIRE(strip.has_value());
+    CHECK(glm::distance(transform(strip->room_from_strip, {0.0, -0.5 * strip->size_m.y, 0.0}), from) < 1e-12);
+    CHECK(glm::distance(transform(strip->room_from_strip, {0.0, 0.5 * strip->size_m.y, 0.0}), to) < 1e-12);
+    CHECK(transform(inverse(strip->room_from_strip), eye).z < 0.0);
+    CHECK(std::abs(transform(inverse(strip->room_from_strip), eye).x) < 1e-12);
+    CHECK_FALSE(stripBetween(from, from, 0.01, eye).has_value());
+    CHECK_FALSE(stripBetween(from, to, 0.01, from - 2.0 * (to - from)).has_value());
+    // Also straight above and below the eye.
+    for (const double y : {-1.0, 1.0}) {
+        const Strip faced = facing(eye + glm::dvec3(0.0, y, 0.0), {0.1, 0.1}, eye);
+        CHECK(glm::distance(transform(inverse(faced.room_from_strip), eye), {0.0, 0.0, -1.0}) < 1e-9);
+    }
+}
+
+TEST_CASE("a throw lands on the floor, where physics puts it") {
+    // 7 m/s straight ahead from 1.2 m: it falls for sqrt(2 h / g).
+    const TeleportAim level = aimTeleport({{1, 0, 0, 0}, {0.2, 0.4, 0.3}}, 1.6);
+    REQUIRE(level.target.has_value());
+    CHECK(level.target->y == doctest::Approx(1.6));
+    CHECK(level.target->x == doctest::Approx(0.2));
+    CHECK(level.target->z == doctest::Approx(0.3 + 7.0 * std::sqrt(2.0 * 1.2 / 9.8)));
+    CHECK(level.arc.size() == kTeleportStrips + 1);
+    CHECK(glm::distance(level.arc.front(), glm::dvec3(0.2, 0.4, 0.3)) < 1e-12);
+    // Upwards it flies farther, and down at one's feet not at all.
+    const auto reach = [](double up_rad) {
+        const TeleportAim aim = aimTeleport({glm::angleAxis(up_rad, glm::dvec3(1, 0, 0)), {0.0, 0.4, 0.0}}, 1.6);
+        return glm::length(glm::dvec2(aim.target->x, aim.target->z));
+    };
+    CHECK(reach(0.6) > reach(0.0) + 1.0);
+    CHECK(reach(0.6) < 7.0);
+    CHECK(reach(-1.5707) < 0.01);
+    CHECK_FALSE(aimTeleport({{1, 0, 0, 0}, {0.0, 1.7, 0.0}}, 1.6).target.has_value());
+}
+
+TEST_CASE("who teleports stands where the throw lands, once the stick is let go, and does not walk") {
+    OverlayPanel panel({800, 400}, 0.8);
+    WearerControls controls;
+    ViewSettings settings;
+    settings.panel = false;
+    settings.teleport = true;
+    Similarity scene_from_room;
+    WearerNow now;
+    now.room_from_head.position = {0.3, 0.0, -0.2};
+    now.floor_m = 1.6;
+    now.step_seconds = kTenth;
+    now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {-0.2, 0.4, 0.3}};
+    now.hands[kLeft].stick = {0.0, 1.0};
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(controls.aimingHand() == kLeft);
+    CHECK_FALSE(controls.isMoving());
+    CHECK(scene_from_room.position == glm::dvec3(0.0));
+    const glm::dvec3 target = controls.teleportAim().target.value();
+    now.hands[kLeft].stick = {0.0, 0.0};
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK_FALSE(controls.aimingHand().has_value());
+    CHECK(controls.teleportAim().arc.empty());
+    // The head is above the target now, as high as before.
+    const glm::dvec3 head = transform(scene_from_room, now.room_from_head.position);
+    CHECK(head.x == doctest::Approx(target.x));
+    CHECK(head.y == doctest::Approx(0.0));
+    CHECK(head.z == doctest::Approx(target.z));
+    // A hand that is lost while it aims moves nobody.
+    const Similarity before = scene_from_room;
+    now.hands[kLeft].stick = {0.0, 1.0};
+    controls.update(now, panel, settings, scene_from_room);
+    now.hands[kLeft] = {};
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(scene_from_room.position == before.position);
+    // The trigger does it, too, where there is no stick.
+    now.hands[kRight].aim = Pose{{1, 0, 0, 0}, {0.2, 0.4, 0.3}};
+    now.hands[kRight].clicks = true;
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(controls.aimingHand() == kRight);
+    now.hands[kRight].clicks = false;
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(glm::distance(scene_from_room.position, before.position) > 1.0);
+}
+
+TEST_CASE("the vignette closes while the wearer moves, covers all that the eyes see, and is gone afterwards") {
+    Vignette vignette;
+    for (const float angle_rad : {0.6f, 0.8f, 1.1f}) {
+        const auto eyes = eyesThatSee(angle_rad);
+        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
+        double width_m = 1e9;
+        for (int i = 0; i < 5; ++i) {
+            vignette.update(true, 0.05);
+            const double next_m = vignette.widthMetres(eyes).value();
+            CHECK(next_m <= width_m);
+            width_m = next_m;
+        }
+        const double seen_m = 2.0 * kVignetteMetres * std::tan(static_cast<double>(angle_rad));
+        CHECK(width_m >= seen_m);
+        // Its clear part lies within what is seen.
+        CHECK(kVignetteClear * width_m < seen_m);
+        for (int i = 0; i < 10; ++i) { vignette.update(false, 0.05); }
+        CHECK_FALSE(vignette.widthMetres(eyes).has_value());
+    }
+}
+
+TEST_CASE("a hand is drawn where its joints are, and nowhere else") {
+    const glm::dvec3 eye(0.0), palm(0.1, 0.2, 0.6);
+    const xr::HandJoints joints = flatHand(palm);
+    const Strip place = handPicturePlace(joints, eye);
+    const TexelPicture picture = drawHand(joints, place, eye, {false, false});
+    REQUIRE(picture.texels.size() == std::size_t{kHandPicturePx.x} * kHandPicturePx.y);
+    // The palm is in the middle; each joint shows where its line of sight meets the picture.
+    CHECK(alphaAt(picture, kHandPicturePx.x / 2, kHandPicturePx.y / 2) == 1.0);
+    for (const xr::HandJoint& joint : joints) {
+        const glm::dvec3 from = transform(inverse(place.room_from_strip), eye), to = transform(inverse(place.room_from_strip), joint.place);
+        const glm::dvec3 hit = from + (to - from) * (from.z / (from.z - to.z));
+        const glm::dvec2 at = (glm::dvec2(hit) / place.size_m + 0.5) * glm::dvec2(kHandPicturePx);
+        CHECK(alphaAt(picture, static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) == 1.0);
+    }
+    for (const std::uint32_t border : {0u, kHandPicturePx.x - 1}) {
+        CHECK(alphaAt(picture, border, kHandPicturePx.y / 2) == 0.0);
+        CHECK(alphaAt(picture, kHandPicturePx.x / 2, border) == 0.0);
+    }
+}
+
+TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of their image") {
+    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {false, true}) == 0xff0000ffu);
+    CHECK(texelOf({1.0, 0.0, 0.0}, 1.0, {true, true}) == 0xffff0000u);
+    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, true}) == 0x80808080u);
+    // Half the light is the byte 188 of sRGB.
+    CHECK(texelOf({1.0, 1.0, 1.0}, 0.5, {false, false}) == 0x80bcbcbcu);
+    const TexelPicture sheet = drawSprites({false, false});
+    const auto alpha = [&](Sprite sprite, const glm::dvec2& share) {
+        const auto [from_px, size_px] = placeOf(sprite);
+        const glm::uvec2 at = from_px + glm::uvec2(share * glm::dvec2(size_px));
+        return alphaAt(sheet, at.x, at.y);
+    };
+    CHECK(alpha(Sprite::kRay, {0.5, 0.99}) == 1.0);
+    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.0}) == 1.0);
+    CHECK(alpha(Sprite::kFadingRay, {0.5, 0.99}) < 0.05);
+    CHECK(alpha(Sprite::kVignette, {0.5, 0.5}) == 0.0);
+    CHECK(alpha(Sprite::kVignette, {0.0, 0.5}) > 0.9);
+    CHECK(alpha(Sprite::kKnob, {0.0, 0.0}) == 0.0);
+    CHECK(alpha(Sprite::kKnob, {0.5, 0.5}) == 1.0);
+}

@@ -1,0 +1,53 @@
+// Asking for joints.
+#include "xr/hand_tracking.h"
+
+#include "xr/convert.h"
+
+#include <algorithm>
+
+namespace binosplat::xr {
+
+HandTracking::HandTracking(const Session& session) : session_(session) {
+    const Instance& instance = session.instance();
+    if (!instance.tracksHands()) { return; }
+    const auto create = instance.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
+    destroy_ = instance.function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
+    locate_ = instance.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
+    for (std::size_t h = 0; h < 2; ++h) {
+        auto info = structure<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
+        info.hand = h == kLeft ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
+        info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
+        // A runtime may offer hands that this headset, or its wearer, does not allow: controllers are drawn then.
+        if (XR_FAILED(create(session.handle(), &info, &trackers_[h]))) { trackers_[h] = XR_NULL_HANDLE; }
+    }
+}
+
+HandTracking::~HandTracking() {
+    for (const XrHandTrackerEXT tracker : trackers_) {
+        if (tracker != XR_NULL_HANDLE) { destroy_(tracker); }
+    }
+}
+
+std::optional<HandJoints> HandTracking::locate(int hand) const {
+    const XrHandTrackerEXT tracker = trackers_[static_cast<std::size_t>(hand)];
+    if (tracker == XR_NULL_HANDLE) { return std::nullopt; }
+    std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> found{};
+    auto info = structure<XrHandJointsLocateInfoEXT>(XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
+    info.baseSpace = session_.space();
+    info.time = session_.displayTime();
+    auto locations = structure<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
+    locations.jointCount = XR_HAND_JOINT_COUNT_EXT;
+    locations.jointLocations = found.data();
+    checkResult(locate_(tracker, &info, &locations), "xrLocateHandJointsEXT");
+    const auto isKnown = [](const XrHandJointLocationEXT& joint) {
+        return (joint.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0;
+    };
+    if (locations.isActive != XR_TRUE || !std::ranges::all_of(found, isKnown)) { return std::nullopt; }
+    HandJoints joints;
+    std::ranges::transform(found, joints.begin(), [](const XrHandJointLocationEXT& joint) {
+        return HandJoint{fromXr(joint.pose.position), static_cast<double>(joint.radius)};
+    });
+    return joints;
+}
+
+}  // namespace binosplat::xr
