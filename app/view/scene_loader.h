@@ -3,6 +3,7 @@
 
 #include "app/options/options.h"
 #include "app/view/placement.h"
+#include "app/view/scene_facts.h"
 #include "engine/frame.h"
 
 #include <atomic>
@@ -22,6 +23,7 @@ struct LoadedScene {
     StereoFrame frame;
     Similarity start;  // see startPlacement
     LoadNotes notes;
+    SceneFacts facts;
 };
 
 // Loads on a thread of its own.
