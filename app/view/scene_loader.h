@@ -35,6 +35,9 @@ public:
     // Gives up where it can, and waits for the rest.
     ~SceneLoader();
 
+    // It is to give up where it can; then it is done, with nothing to take.
+    void cancel() { cancelled_ = true; }
+
     [[nodiscard]] const std::string& scene() const { return scene_; }
     // Share done, 0 to 1.
     [[nodiscard]] double progress() const { return progress_; }

@@ -203,7 +203,9 @@ void Viewer::takeScene() {
     renderer_.forgetLastFrame();
     try {
         rememberScene(scenes_.name());
-    } catch (const Error& error) { log_.say(error.what()); }
+    } catch (const Error& error) {
+        if (error.what() != complaint) { log_.say(error.what()); }
+    }
 }
 
 void Viewer::openWindow() {
