@@ -100,7 +100,10 @@ public:
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
           server_(folder,
-                  {"Xvfb", "-displayfd", "1", "-screen", "0", fmt::format("{}x{}x24", kScreenPx.x, kScreenPx.y), "-fbdir", folder.string()},
+                  // Of numbers that are taken it complains first.
+                  {"/bin/sh", "-c",
+                   fmt::format("exec Xvfb -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
+                               folder.string())},
                   "") {
         std::string line = server_.waitFor("\n");
         line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c < '0' || c > '9'; }), line.end());
