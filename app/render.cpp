@@ -1,16 +1,20 @@
-// `binosplat render`: one frame, its pictures and its report.
+// `binosplat render`: one frame, or those along a path, their pictures and the report.
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/options/modes.h"
+#include "app/render_path.h"
 #include "app/report/report.h"
 #include "engine/error.h"
 #include "engine/frame.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/roi_picture.h"
 #include "engine/setup/output_files.h"
+
+#include <optional>
+#include <span>
 
 namespace binosplat {
 
@@ -38,6 +42,13 @@ void writePictures(OutputFiles& files, StereoFrame& frame, const FrameSettings& 
     writePicture(files.staging() / "dominant_depth", PictureKind::kFloat, frame.readDominantDepth());
 }
 
+// The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
+FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const FrameSettings& settings) {
+    const FrameResult first = frame.render(eyes, settings);
+    stopIfInterrupted();
+    return first.gpu_total_ms < kLongFrameMs ? frame.render(eyes, settings) : first;
+}
+
 }  // namespace
 
 void runRender(const RenderOptions& options) {
@@ -46,6 +57,7 @@ void runRender(const RenderOptions& options) {
     // Whatever can be known to fail is found out before the scene is loaded.
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
+    const std::optional<HeadPath> path = options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));
 
     LoadNotes notes;
     Scene scene = loadWithProgress(options.scene, options.run.load, notes, options.run.memory_limit_mib);
@@ -58,24 +70,26 @@ void runRender(const RenderOptions& options) {
     scene = {};
 
     StereoFrame frame(context, gpu_scene);
-    const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
     FrameSettings settings = frameSettings(options.run.camera, stereo);
-    settings.keep_classes = true;
+    const auto report = [&](const auto& said) {
+        writeText(files.staging() / "report.json", reportJson(said));
+        context.requireNoValidationMessages();
+        stopIfInterrupted();
+        files.publish();
+        fmt::print("{}", reportTable(said));
+    };
     stopIfInterrupted();
-    FrameResult result = frame.render(eyes, settings);
-    stopIfInterrupted();
-    // The first frame of a device says more about its driver than about the passes; the report is about the second, unless that takes long.
-    if (result.gpu_total_ms < kLongFrameMs) { result = frame.render(eyes, settings); }
-
-    const FrameReport report{context.deviceName(), options, cameras, result};
-    writePictures(files, frame, settings);
-    writeText(files.staging() / "report.json", reportJson(report));
-    context.requireNoValidationMessages();
-    stopIfInterrupted();
-    files.publish();
-
-    fmt::print("{}", reportTable(report));
-    for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
+    if (path) {
+        const double units_per_metre = 1.0 / options.run.metres_per_unit;
+        report(PathReport{context.deviceName(), options, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)});
+    } else {
+        settings.keep_classes = true;
+        const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        const FrameResult result = renderTimed(frame, eyes, settings);
+        writePictures(files, frame, settings);
+        report(FrameReport{context.deviceName(), options, cameras, result});
+        for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
+    }
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
 }
 

@@ -95,7 +95,7 @@ TEST_CASE("either hand clicks on the panel") {
     const ViewRun run =
         runView(work, "left",
                 kSmall + hand("right", 0, {0.2, 1.2, -0.35}, {-0.45, 1.7, -0.9}) +
-                    "controller left 0 position -0.2 1.2 -0.35 look -0.383 1.516 -0.936\npress left trigger 0.2 0.25\nat 2 exit\n",
+                    "controller left 0 position -0.2 1.2 -0.35 look -0.286 1.774 -1.012\npress left trigger 0.2 0.25\nat 2 exit\n",
                 kScene);
     checkClean(run);
     CHECK(run.frames.size() < 60);

@@ -1,6 +1,7 @@
 // Facts about the viewer's panel and controls: a ray points, the trigger clicks, sticks and grips move, as a script's hands do it.
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
+#include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
 
 #include <doctest/doctest.h>
@@ -16,11 +17,6 @@ namespace {
 // The left hand points at the floor.
 const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
 const std::string kScene = "builtin:fence --load-first --hide-hands";
-
-// Widgets by their place on the panel, in shares of its width and height.
-const glm::dvec2 kCentreRoi(0.034, 0.314), kTint(0.552, 0.314), kReproject(0.664, 0.091), kPredicted(0.34, 0.131), kPaper(0.034, 0.131),
-    kRightEye(0.34, 0.203), kSave(0.05, 0.477), kLoad(0.145, 0.477), kQuit(0.627, 0.477), kShaders(0.91, 0.477), kMargin(0.3, 0.355),
-    kBudget(0.3, 0.395), kResolution(0.3, 0.436);
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {
@@ -116,7 +112,8 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
     const Panel panel = startPanel(work);
     // Near enough to the bars that holes open inside the picture.
     const std::string arguments = kScene + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3";
-    const ViewRun run = runView(work, "click", kSmall + clickOn(panel, {kTint, kCentreRoi, {0.9, 0.95}}), arguments);
+    const ViewRun run = runView(
+        work, "click", kSmall + clickOn(panel, {placeOf("Show what made it"), placeOf("Centre ROI (paper)"), {0.9, 0.95}}), arguments);
     checkClean(run);
     CHECK(says(run, "tint = true"));
     CHECK(says(run, "center-roi = true"));
@@ -129,7 +126,7 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
 TEST_CASE("method and dominant eye are switched, and the wearer may quit from the panel") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kSmall + clickOn(panel, {kReproject, kRightEye, kQuit, {0.9, 0.95}});
+    const std::string script = kSmall + clickOn(panel, {placeOf("reproject"), placeOf("right"), placeOf("Quit"), {0.9, 0.95}});
     const ViewRun run = runView(work, "click", script, kScene);
     checkClean(run);
     CHECK(says(run, "mode = \"reproject\""));
@@ -141,7 +138,9 @@ TEST_CASE("method and dominant eye are switched, and the wearer may quit from th
 TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "slide", kSmall + clickOn(panel, {kMargin, kBudget, kResolution, {0.9, 0.95}}), kScene);
+    const ViewRun run = runView(
+        work, "slide",
+        kSmall + clickOn(panel, {placeOf("margin (paper)"), placeOf("budget (predicted)"), placeOf("resolution"), {0.9, 0.95}}), kScene);
     checkClean(run);
     const auto valueOf = [&](const std::string& key) {
         const std::size_t at = run.outcome.output.find(key + " = ");
@@ -178,7 +177,8 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
     motion.close();
     std::string script = kSmall + "head-motion walk.csv\n";
     double time_s = 0.5;
-    for (const glm::dvec2& place : {kPaper, kCentreRoi, kPredicted, kRightEye, glm::dvec2(0.9, 0.95)}) {
+    for (const glm::dvec2& place :
+         {placeOf("paper"), placeOf("Centre ROI (paper)"), placeOf("predicted"), placeOf("right"), glm::dvec2(0.9, 0.95)}) {
         script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.2);
         script += fmt::format("press right trigger {} {}\n", time_s + 0.1, time_s + 0.15);
         time_s += 0.3;
@@ -225,7 +225,9 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     const std::string walk =
         "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 1\naxis left thumbstick 0.14 0 1\naxis left thumbstick 0.15 0 0\n";
     const ViewRun saved =
-        runView(work, "save", kSmall + walk + clickOn(panel, {kReproject, kSave, kPredicted, kLoad, {0.9, 0.95}}), kScene);
+        runView(work, "save",
+                kSmall + walk + clickOn(panel, {placeOf("reproject"), placeOf("Save"), placeOf("predicted"), placeOf("Load"), {0.9, 0.95}}),
+                kScene);
     checkClean(saved);
     const std::string& output = saved.outcome.output;
     const std::size_t at = output.find("saved as ");
@@ -275,7 +277,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     const std::string line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
     copyOf("broken", line, "    const uvec3 bytes = nonsense;");
     copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
-    const std::string script = kSmall + clickOn(panel, {kShaders, {0.9, 0.95}});
+    const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
     const auto click = [&](const std::string& name, const std::string& folder) {
         const ViewRun run = runView(work, name, script, kScene + " --mode shared --shaders '" + folder + "'");
         checkClean(run);
@@ -315,7 +317,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
 TEST_CASE("nobody reloads shaders who was not told where they are") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kSmall + clickOn(panel, {kShaders, {0.9, 0.95}});
+    const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
     const ViewRun run = runView(work, "none", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));

@@ -1,4 +1,5 @@
 // Where the panel stands and what lies on it, as docs/simulated_script.md says it to those who write scripts.
+#include "tests/panel_sketch.h"
 #include "tests/view_runs.h"
 
 #include <glm/geometric.hpp>
@@ -35,10 +36,25 @@ TEST_CASE("the documented line of a script clicks on Quit, on a panel of the doc
     const auto room = quad.at("stage_from_space").at("position").get<std::array<double, 3>>();
     const auto size = quad.at("size").get<std::array<double, 2>>();
     CHECK(page.find("the middle is at -0.45 1.5 -0.9") != std::string::npos);
-    CHECK(page.find("0.6 m wide and 0.7 m high") != std::string::npos);
+    CHECK(page.find("0.468 m wide and 0.585 m high") != std::string::npos);
     CHECK(glm::length(glm::dvec3(place[0] + room[0], place[1] + room[1], place[2] + room[2]) - glm::dvec3(-0.45, 1.5, -0.9)) < 1e-5);
-    CHECK(std::abs(size[0] - 0.6) < 1e-6);
-    CHECK(std::abs(size[1] - 0.7) < 1e-6);
+    CHECK(std::abs(size[0] - 0.468) < 1e-6);
+    CHECK(std::abs(size[1] - 0.585) < 1e-6);
+}
+
+TEST_CASE("the documented places of widgets are where they are") {
+    const std::string page = pageText();
+    const std::regex row("\\n\\| \\*([^*|]+)\\* \\| ([0-9.]+) \\| ([0-9.]+) \\|");
+    std::size_t rows = 0;
+    for (std::sregex_iterator match(page.begin(), page.end(), row); match != std::sregex_iterator{}; ++match, ++rows) {
+        const std::string name = (*match)[1];
+        CAPTURE(name);
+        const glm::dvec2 place = placeOf(name, true), said(std::stod((*match)[2]), std::stod((*match)[3]));
+        CAPTURE(place.x);
+        CAPTURE(place.y);
+        CHECK(glm::length(place - said) < 0.003);
+    }
+    CHECK(rows >= 20);
 }
 
 TEST_CASE("what the command line says of the simulated headset counts before the environment") {

@@ -1,11 +1,13 @@
 // Facts about what is to be seen: the next scene, scenes that cannot be read, pictures, and where the wearer stands in them.
 #include "engine/picture/metrics.h"
+#include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 using namespace binosplat;
 using namespace binosplat::test;
@@ -15,9 +17,7 @@ namespace {
 // The left hand points at the floor.
 const std::string kSmall = "rate 90\nsize 160 160\nframes every 10\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
 
-// Widgets by their place on the panel, in shares of its width and height.
-const glm::dvec2 kNextScene(0.355, 0.634), kPicture(0.49, 0.634), kRecentre(0.765, 0.477), kLevel(0.79, 0.572), kSave(0.05, 0.477),
-    kBeside(0.9, 0.95);
+const glm::dvec2 kBeside(0.9, 0.95);
 
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
 
@@ -40,8 +40,11 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     REQUIRE(work.run("scene step-edge --out c.ply").exit_code == 0);
     std::ofstream(work.path / "notes.txt") << "no scene";
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "next", kSmall + clickAt(panel, kNextScene, 0.2) + clickAt(panel, kNextScene, 1.5) + "at 6 exit\n",
-                                "a.ply --load-first");
+    const glm::dvec2 next = placeOfScene("Next scene", work.path.string());
+    const ViewRun run =
+        runView(work, "next",
+                kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, next, 0.4) + clickAt(panel, next, 1.5) + "at 6 exit\n",
+                "a.ply --load-first");
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::size_t first = output.find("shows a.ply"), broken = output.find("b.ply:"), third = output.find("shows c.ply");
@@ -50,6 +53,31 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     CHECK(third != std::string::npos);
     // There was always something to see.
     for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
+}
+
+TEST_CASE("a scene is chosen on the panel, in the folder of the one that is shown, and both are remembered") {
+    const Workplace work;
+    const std::filesystem::path folder = work.path / "scenes";
+    std::filesystem::create_directory(folder);
+    REQUIRE(work.run("scene fence --out scenes/room10.ply").exit_code == 0);
+    REQUIRE(work.run("scene step-edge --out scenes/room9.ply").exit_code == 0);
+    std::ofstream(folder / "room1.ply") << "ply\nnonsense\n";
+    const Panel panel = startPanel(work);
+    const glm::dvec2 broken = placeOfScene("room1.ply", folder.string()), other = placeOfScene("room9.ply", folder.string());
+    const ViewRun run =
+        runView(work, "choose",
+                kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, broken, 0.4) + clickAt(panel, other, 1.5) + "at 6 exit\n",
+                "scenes/room10.ply --load-first");
+    checkClean(run);
+    const std::string& output = run.outcome.output;
+    const std::string place = (folder / "room9.ply").string(), bad = (folder / "room1.ply").string();
+    CHECK(output.find("shows scenes/room10.ply") < output.find(bad + ":"));
+    CHECK(output.find(bad + ":") < output.find("shows " + place));
+    CHECK(output.find("shows " + place) != std::string::npos);
+    std::ifstream file(work.base / "config" / "binosplat" / "recent-scenes.txt");
+    const std::string recent(std::istreambuf_iterator<char>(file), {});
+    CHECK(recent.starts_with(place + "\n" + (folder / "room10.ply").string() + "\n"));
+    CHECK(recent.find(bad) == std::string::npos);
 }
 
 TEST_CASE("the scene of the command line that cannot be read ends it, with one") {
@@ -63,8 +91,8 @@ TEST_CASE("the scene of the command line that cannot be read ends it, with one")
 TEST_CASE("a picture of both eyes is a file that is not overwritten") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run =
-        runView(work, "shots", kSmall + clickOn(panel, {kPicture, kPicture, kBeside}), "builtin:fence --load-first --mode shared");
+    const ViewRun run = runView(work, "shots", kSmall + clickOn(panel, {placeOf("Picture"), placeOf("Picture"), kBeside}),
+                                "builtin:fence --load-first --mode shared");
     checkClean(run);
     CHECK(says(run, "picture binosplat-0001.png"));
     CHECK(says(run, "picture binosplat-0002.png"));
@@ -91,7 +119,8 @@ TEST_CASE("the wearer recentres by the panel's button") {
     const Workplace work;
     const Panel panel = startPanel(work);
     const std::string head = "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.4 1.5 0.3 turn 50 0\n";
-    const ViewRun run = runView(work, "recentre", kSmall + head + clickOn(panel, {kRecentre, kBeside}), "builtin:fence --load-first");
+    const ViewRun run =
+        runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}), "builtin:fence --load-first");
     checkClean(run);
     CHECK(says(run, "the wearer's place is the room's, 1.50 m above the floor"));
     const std::size_t last = run.frames.size() - 5;
@@ -126,6 +155,6 @@ TEST_CASE("a scene that two hands tilted is levelled again") {
         FAIL("nothing was saved");
         return 0.0;
     };
-    CHECK(tiltAfter("tilted", clickAt(panel, kSave, 0.5)) > 0.2);
-    CHECK(tiltAfter("levelled", clickAt(panel, kLevel, 0.5) + clickAt(panel, kSave, 0.7)) < 1e-6);
+    CHECK(tiltAfter("tilted", clickAt(panel, placeOf("Save"), 0.5)) > 0.2);
+    CHECK(tiltAfter("levelled", clickAt(panel, placeOf("Level"), 0.5) + clickAt(panel, placeOf("Save"), 0.7)) < 1e-6);
 }

@@ -1,6 +1,7 @@
 // Facts about the window beside the headset, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
+#include "tests/panel_sketch.h"
 #include "tests/view_runs.h"
 
 #include <doctest/doctest.h>
@@ -24,9 +25,7 @@ constexpr int kPatienceMs = 60'000;  // until a program that is silent counts as
 constexpr glm::ivec2 kScreenPx(1400, 800);
 // The dominant eye is shown on the left, the panel beside it.
 constexpr int kEyePx = 720;
-constexpr glm::dvec2 kPanelPx(kEyePx * 768.0 / 896.0, kEyePx);
-// Widgets by their place on the panel, in shares of its width and height.
-constexpr glm::dvec2 kCentreRoi(0.034, 0.314), kSave(0.05, 0.477);
+const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x) / kPanelPx.y, kEyePx);
 
 bool haveScreen() {
     const bool have = std::system("command -v Xvfb xdotool > /dev/null") == 0;
@@ -101,7 +100,10 @@ public:
     explicit Screen(const std::filesystem::path& folder)
         : folder_(folder),
           server_(folder,
-                  {"Xvfb", "-displayfd", "1", "-screen", "0", fmt::format("{}x{}x24", kScreenPx.x, kScreenPx.y), "-fbdir", folder.string()},
+                  // Of numbers that are taken it complains first.
+                  {"/bin/sh", "-c",
+                   fmt::format("exec Xvfb -displayfd 1 -screen 0 {}x{}x24 -fbdir '{}' 2> /dev/null", kScreenPx.x, kScreenPx.y,
+                               folder.string())},
                   "") {
         std::string line = server_.waitFor("\n");
         line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c < '0' || c > '9'; }), line.end());
@@ -155,7 +157,7 @@ public:
         REQUIRE(std::system(command.c_str()) == 0);
     }
     static std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
-    static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelPx); }
+    static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx); }
 
     // The panel goes or comes: by then everything before has reached the viewer.
     std::string tab() {
@@ -173,7 +175,7 @@ public:
     }
     // Where the wearer's room lies now, as the viewer saves it.
     Pose placement(const Workplace& work) {
-        click(kSave);
+        click(placeOf("Save", true));
         REQUIRE(program_.waitFor("fence.view.toml") != "");
         std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
         const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -230,8 +232,10 @@ Image lastLeftEye(const std::filesystem::path& folder) {
 
 std::size_t coloursOfPanel(const Image& screen) {
     std::set<std::array<float, 3>> colours;
-    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(kPanelPx.y); ++y) {
-        for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(kPanelPx.x); ++x) { colours.insert(colourAt(screen, {kEyePx + x, y})); }
+    for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(kPanelInWindowPx.y); ++y) {
+        for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(kPanelInWindowPx.x); ++x) {
+            colours.insert(colourAt(screen, {kEyePx + x, y}));
+        }
     }
     return colours.size();
 }
@@ -246,9 +250,9 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and the same again.
-    viewer.click(kCentreRoi);
+    viewer.click(placeOf("Centre ROI (paper)", true));
     CHECK(program.waitFor("center-roi = true") != "");
-    viewer.click(kCentreRoi);
+    viewer.click(placeOf("Centre ROI (paper)", true));
     CHECK(program.waitFor("center-roi = false") != "");
 
     // A drag of 100 pixels to the left turns by 0.4 radians, however many frames it takes; the scene follows the mouse, to the left.

@@ -53,17 +53,6 @@ double meanChange(const Image& a, const Image& b) {
     return sum / static_cast<double>(difference.values.size());
 }
 
-// The same eyes on a head that moved.
-Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {
-    Cameras moved = start;
-    moved.middle.world_from_camera = world_from_middle;
-    for (std::size_t side = 0; side < 2; ++side) {
-        const Pose middle_from_eye = compose(inverse(start.middle.world_from_camera), start.eyes[side].world_from_camera);
-        moved.eyes[side].world_from_camera = compose(world_from_middle, middle_from_eye);
-    }
-    return moved;
-}
-
 // One scene, view and size: all poses, and at each all methods.
 class MotionPoint {
 public:

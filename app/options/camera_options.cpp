@@ -77,4 +77,14 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
     return {middle, stereoPair(middle, eye_distance), eye_distance, view};
 }
 
+Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {
+    Cameras moved = start;
+    moved.middle.world_from_camera = world_from_middle;
+    for (std::size_t side = 0; side < 2; ++side) {
+        const Pose middle_from_eye = compose(inverse(start.middle.world_from_camera), start.eyes[side].world_from_camera);
+        moved.eyes[side].world_from_camera = compose(world_from_middle, middle_from_eye);
+    }
+    return moved;
+}
+
 }  // namespace binosplat

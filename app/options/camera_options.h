@@ -32,4 +32,7 @@ struct Cameras {
 // What the options leave open comes from the files, then from the scene. Throws Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
+// The same eyes on a head that moved.
+Cameras moveCameras(const Cameras& start, const Pose& world_from_middle);
+
 }  // namespace binosplat

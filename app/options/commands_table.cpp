@@ -42,8 +42,13 @@ RunOptions readRun(const Settings& line, const std::set<std::string>& foreign, s
 }
 
 Options makeRender(const Settings& line) {
-    RenderOptions render{wordOf(line, "SCENE"), {}, readRun(line, {"view"})};
+    RenderOptions render;
+    render.scene = wordOf(line, "SCENE");
+    render.run = readRun(line, {"view"});
     readRows(renderRows(), line, render);
+    for (const char* key : {"path-axes", "rate"}) {
+        if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
+    }
     return render;
 }
 
@@ -128,7 +133,12 @@ constexpr const char* kCompareFooter =
 std::span<const Command> commands() {
     const Word scene{"SCENE", "file, directory or builtin:NAME"};
     static const std::vector<Command> rows{
-        {"render", kRender, "Render one frame and write its pictures", {scene}, with(describe(renderRows()), kConfig), makeRender},
+        {"render",
+         kRender,
+         "Render one frame, or one for each pose of a path, and write the pictures",
+         {scene},
+         with(describe(renderRows()), kConfig),
+         makeRender},
         {"bench",
          kBench,
          "Measure modes over scenes, splat counts and picture sizes",

@@ -128,6 +128,11 @@ const OptionRow<RunOptions>* findRunRow(std::string_view key) {
 std::span<const OptionRow<RenderOptions>> renderRows() {
     static const std::vector<OptionRow<RenderOptions>> rows{
         {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::text<&RenderOptions::out>()},
+        {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
+         field::text<&RenderOptions::path>()},
+        {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::choice<&RenderOptions::path_axes>({"openxr", "unity"})},
+        {{"rate", "", kRender, "HZ", "frames in a second of --path, between its poses", "one for each pose"},
+         field::number<&RenderOptions::rate_hz>(0.001, 10'000.0)},
     };
     return rows;
 }

@@ -74,6 +74,9 @@ struct RenderOptions {
     std::string scene;
     std::filesystem::path out;
     RunOptions run;
+    std::string path;                  // --path: head poses to render, relative to the camera; empty: one frame
+    std::string path_axes = "openxr";  // --path-axes: of the recording
+    std::optional<double> rate_hz;     // --rate: frames in a second of the path; absent: one for each of its poses
 };
 
 struct BenchOptions {

@@ -58,7 +58,39 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["size"] = fmt::format("{}x{}", cameras.middle.size_px.x, cameras.middle.size_px.y);
     json["view"] = options.run.camera.cameras_file.empty() ? Json() : Json(options.run.camera.view);
     json["ipd"] = cameras.eye_distance * options.run.metres_per_unit;
+    json["path"] = options.path.empty() ? Json() : Json(options.path);
+    json["path-axes"] = options.path.empty() ? Json() : Json(options.path_axes);
+    json["rate"] = options.rate_hz ? Json(*options.rate_hz) : Json();
     return json;
+}
+
+Json eyesJson(const Cameras& cameras, bool mono) {
+    if (mono) { return {{"mono", eyeJson(cameras.middle)}}; }
+    return {{"left", eyeJson(cameras.eyes[kLeft])}, {"right", eyeJson(cameras.eyes[kRight])}};
+}
+
+// `json` and what a frame took.
+Json withCosts(Json json, const FrameResult& frame) {
+    Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
+    for (const auto& [name, ms] : addUp(frame.gpu_ms)) { passes[name] = ms; }
+    for (const auto& [name, count] : frame.counters) { counters[name] = count; }
+    for (const auto& [name, count] : frame.stereo_bytes_per_pixel) { bytes[name] = count; }
+    json["gpu_ms"] = passes;
+    json["gpu_total_ms"] = frame.gpu_total_ms;
+    json["counters"] = counters;
+    json["stereo_bytes_per_pixel"] = bytes;
+    json["tiles_rendered"] = frame.tiles_rendered;
+    json["work_rendered"] = frame.work_rendered;
+    return json;
+}
+
+std::string printed(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::vector<double> sortedTotals(const PathReport& report) {
+    std::vector<double> totals;
+    for (const PathFrame& frame : report.frames) { totals.push_back(frame.frame.gpu_total_ms); }
+    std::ranges::sort(totals);
+    return totals;
 }
 
 }  // namespace
@@ -77,29 +109,38 @@ std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<st
 }
 
 std::string reportJson(const FrameReport& report) {
-    Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
-    for (const auto& [name, ms] : addUp(report.frame.gpu_ms)) { passes[name] = ms; }
-    for (const auto& [name, count] : report.frame.counters) { counters[name] = count; }
-    for (const auto& [name, count] : report.frame.stereo_bytes_per_pixel) { bytes[name] = count; }
-    Json eyes = Json::object();
-    if (report.options.run.stereo.mode == Mode::kMono) {
-        eyes["mono"] = eyeJson(report.cameras.middle);
-    } else {
-        eyes["left"] = eyeJson(report.cameras.eyes[kLeft]);
-        eyes["right"] = eyeJson(report.cameras.eyes[kRight]);
+    const bool mono = report.options.run.stereo.mode == Mode::kMono;
+    Json root = withCosts(
+        {{"device", report.device}, {"options", optionsJson(report.options, report.cameras)}, {"eyes", eyesJson(report.cameras, mono)}},
+        report.frame);
+    root["peak_gpu_bytes"] = report.frame.peak_gpu_bytes;
+    root["left_out"] = report.frame.left_out;
+    return printed(root);
+}
+
+std::string reportJson(const PathReport& report) {
+    const bool mono = report.options.run.stereo.mode == Mode::kMono;
+    Json frames = Json::array();
+    std::uint64_t peak_bytes = 0;
+    for (const PathFrame& frame : report.frames) {
+        frames.push_back(withCosts({{"time_s", frame.time_s}, {"eyes", eyesJson(frame.cameras, mono)}}, frame.frame));
+        peak_bytes = std::max(peak_bytes, frame.frame.peak_gpu_bytes);
     }
-    const Json root{{"device", report.device},
-                    {"options", optionsJson(report.options, report.cameras)},
-                    {"eyes", eyes},
-                    {"gpu_ms", passes},
-                    {"gpu_total_ms", report.frame.gpu_total_ms},
-                    {"counters", counters},
-                    {"stereo_bytes_per_pixel", bytes},
-                    {"tiles_rendered", report.frame.tiles_rendered},
-                    {"work_rendered", report.frame.work_rendered},
-                    {"peak_gpu_bytes", report.frame.peak_gpu_bytes},
-                    {"left_out", report.frame.left_out}};
-    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::vector<double> totals = sortedTotals(report);
+    return printed({{"device", report.device},
+                    {"options", optionsJson(report.options, report.start)},
+                    {"median_gpu_total_ms", totals[totals.size() / 2]},
+                    {"most_gpu_total_ms", totals.back()},
+                    {"peak_gpu_bytes", peak_bytes},
+                    {"frames", frames}});
+}
+
+std::string reportTable(const PathReport& report) {
+    const std::vector<double> totals = sortedTotals(report);
+    return fmt::format("{}, {}, {}x{} per eye, on {}\n  {} frames along {}, {:.3f} ms each in the middle, {:.3f} ms the longest\n",
+                       report.options.scene, nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x,
+                       report.start.middle.size_px.y, report.device, totals.size(), report.options.path, totals[totals.size() / 2],
+                       totals.back());
 }
 
 std::string reportTable(const FrameReport& report) {

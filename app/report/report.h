@@ -18,6 +18,20 @@ struct FrameReport {
     FrameResult frame;  // passes of the same name are added up
 };
 
+// One of many frames along a path.
+struct PathFrame {
+    double time_s;  // since the path's first pose
+    Cameras cameras;
+    FrameResult frame;
+};
+
+struct PathReport {
+    std::string device;
+    RenderOptions options;
+    Cameras start;
+    std::vector<PathFrame> frames;  // at least one
+};
+
 // Times by name; entries of the same name are added up, in order of first appearance.
 std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times);
 
@@ -25,5 +39,9 @@ std::string reportJson(const FrameReport& report);
 
 // The same on a terminal, a line per pass.
 std::string reportTable(const FrameReport& report);
+
+// Likewise of a path: what each frame took, and in a line what they took in all.
+std::string reportJson(const PathReport& report);
+std::string reportTable(const PathReport& report);
 
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 // Dear ImGui's Vulkan backend, set up for one picture.
 #include "app/view/canvas.h"
 
+#include "app/view/panel_style.h"
 #include "engine/error.h"
 
 #include <imgui.h>
@@ -13,20 +14,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kFontPx = 22.0f;
-
 void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the overlay cannot be drawn: {}", vk::to_string(vk::Result(result))); }
-
-void chooseStyle() {
-    ImGui::StyleColorsDark();
-    ImGuiStyle& style = ImGui::GetStyle();
-    style.ScaleAllSizes(1.6f);  // a ray points less finely than a mouse
-    style.WindowRounding = 0.0f;
-    style.Colors[ImGuiCol_WindowBg].w = 1.0f;
-    ImFontConfig font;
-    font.SizePixels = kFontPx;
-    ImGui::GetIO().Fonts->AddFontDefault(&font);
-}
 
 }  // namespace
 
@@ -87,7 +75,7 @@ void Canvas::startImGui() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.DisplaySize = ImVec2(static_cast<float>(size_px_.x), static_cast<float>(size_px_.y));
-    chooseStyle();
+    font_complaint_ = stylePanel();
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = *context_.instance();
     info.PhysicalDevice = *context_.physicalDevice();

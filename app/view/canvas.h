@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 
 #include <optional>
+#include <string>
 
 namespace binosplat {
 
@@ -32,6 +33,8 @@ public:
     void record(Commands& commands);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
+    // Why the small built-in font is used; empty: it is not. See stylePanel.
+    [[nodiscard]] const std::string& fontComplaint() const { return font_complaint_; }
     [[nodiscard]] vk::Image image() const { return *image_; }
 
 private:
@@ -41,6 +44,7 @@ private:
 
     const Context& context_;
     glm::uvec2 size_px_;
+    std::string font_complaint_;
     vk::raii::DeviceMemory memory_{nullptr};
     vk::raii::Image image_{nullptr};
     vk::raii::ImageView view_{nullptr};

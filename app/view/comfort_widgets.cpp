@@ -5,16 +5,16 @@
 
 namespace binosplat {
 
-void drawComfort(ViewSettings& settings, bool can_pass_through) {
+void drawComfort(PanelWidgets& widgets, ViewSettings& settings, bool can_pass_through) {
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::Checkbox("Teleport", &settings.teleport);
+    widgets.checkbox("Teleport", &settings.teleport);
     ImGui::SameLine(0.25f * width);
-    ImGui::Checkbox("Vignette", &settings.vignette);
+    widgets.checkbox("Vignette", &settings.vignette);
     ImGui::SameLine(0.5f * width);
-    ImGui::Checkbox("Hands", &settings.hands);
+    widgets.checkbox("Hands", &settings.hands);
     if (!can_pass_through) { return; }
     ImGui::SameLine(0.7f * width);
-    ImGui::Checkbox("Passthrough", &settings.passthrough);
+    widgets.checkbox("Passthrough", &settings.passthrough);
 }
 
 }  // namespace binosplat

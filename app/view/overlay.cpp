@@ -4,6 +4,7 @@
 #include "app/options/modes.h"
 #include "app/report/report.h"
 #include "app/view/comfort_widgets.h"
+#include "engine/platform.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <iterator>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -23,58 +25,62 @@ constexpr float kLabelShare = 0.62f;  // of the width, for sliders beside their 
 
 void text(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }
 
-// A row of names of which one is chosen.
-template <std::size_t N>
-void chooseFrom(const char* label, const std::array<const char*, N>& names, std::string& chosen, std::size_t per_row) {
-    text(label);
-    for (std::size_t i = 0; i < N; ++i) {
-        if (i % per_row != 0) {
-            ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
-        }
-        if (ImGui::RadioButton(names[i], chosen == names[i])) { chosen = names[i]; }
+// As much of its end as fits into a line: of a path the end says more.
+std::string endOf(std::string line) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    if (ImGui::CalcTextSize(line.c_str()).x <= room) { return line; }
+    // A letter's first byte, not one of those that continue it.
+    const auto begins = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
+    while (!line.empty() && ImGui::CalcTextSize(("..." + line).c_str()).x > room) {
+        line.erase(0, 1);
+        while (!line.empty() && !begins(line.front())) { line.erase(0, 1); }
     }
+    return "..." + line;
 }
 
 // By the table of names; one eye last.
-void chooseMode(Mode& mode) {
+void chooseMode(PanelWidgets& widgets, Mode& mode) {
     std::string chosen(nameOf(mode));
     std::array<const char*, kModeNames.size()> names{};
     std::ranges::transform(kModeNames, names.begin(), [](std::string_view name) { return name.data(); });
     std::ranges::rotate(names, names.begin() + 1);
-    chooseFrom("Method", names, chosen, 3);
+    widgets.chooseFrom("Method", names, chosen, 3);
     mode = static_cast<Mode>(std::ranges::find(kModeNames, chosen) - kModeNames.begin());
 }
 
-void drawMethod(ViewSettings& settings) {
+void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     StereoOptions& stereo = settings.stereo;
-    chooseMode(stereo.mode);
+    chooseMode(widgets, stereo.mode);
     std::string side = stereo.dominant == kLeft ? "left" : "right";
-    chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
+    widgets.chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
     stereo.dominant = side == "left" ? kLeft : kRight;
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 2.0f / 3.0f);  // the row's last third is free
     bool by_distance = stereo.order == "distance";
-    if (ImGui::Checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? "distance" : "depth"; }
-    chooseFrom("Depth of a pixel", std::array{"sum", "mean", "inverse"}, stereo.depth, 3);
-    ImGui::Checkbox("Centre ROI (paper)", &stereo.center_roi);
+    if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? "distance" : "depth"; }
+    widgets.chooseFrom("Depth of a pixel", std::array{"sum", "mean", "inverse"}, stereo.depth, 3);
+    widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
-    ImGui::Checkbox("Show what made it", &settings.tint);
+    widgets.checkbox("Show what made it", &settings.tint);
     int margin = static_cast<int>(stereo.margin_px);
     if (ImGui::SliderInt("margin (paper)", &margin, 0, 128, "%d px")) {
         stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, 0, 128));
     }
+    widgets.noteSlider("margin (paper)");
     auto budget = static_cast<float>(100.0 * stereo.budget);
     if (ImGui::SliderFloat("budget (predicted)", &budget, 0.0f, 100.0f, "%.0f %% of an eye")) {
         stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, 0.0, 1.0);
     }
+    widgets.noteSlider("budget (predicted)");
 }
 
 // The images are made anew for another resolution, so it changes once the slider is let go.
-void drawResolution(ViewSettings& settings) {
+void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
     static constexpr float kLeast = 0.25f, kMost = 1.5f;
     ImGuiStorage* storage = ImGui::GetStateStorage();
     const ImGuiID id = ImGui::GetID("resolution being chosen");
     auto scale = storage->GetFloat(id, static_cast<float>(settings.resolution_scale));
     ImGui::SliderFloat("resolution", &scale, kLeast, kMost, "%.2f");
+    widgets.noteSlider("resolution");
     if (ImGui::IsItemActive()) {
         storage->SetFloat(id, scale);
         return;
@@ -84,9 +90,9 @@ void drawResolution(ViewSettings& settings) {
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
 }
 
-void drawQuality(ViewSettings& settings) {
+void drawQuality(PanelWidgets& widgets, ViewSettings& settings) {
     std::string chosen = kQualityNames[static_cast<std::size_t>(settings.quality)];
-    chooseFrom("Hold the frame rate", std::array{"off", "sharp", "balanced", "fast"}, chosen, 4);
+    widgets.chooseFrom("Hold the frame rate", std::array{"off", "sharp", "balanced", "fast"}, chosen, 4);
     settings.quality = static_cast<Quality>(std::ranges::find(kQualityNames, chosen) - std::begin(kQualityNames));
 }
 
@@ -112,16 +118,23 @@ void drawTimes(const OverlayStatus& status) {
                      100.0 * count("tiles_patched") / std::max(tiles - 0.5 * hidden, 1.0),
                      100.0 * count("pixels_hole") / std::max(made, 1.0),
                      std::max({count("splats_visible"), count("splats_visible_left"), count("splats_visible_right")}) / 1000.0));
-    if (hidden > 0.0) {
-        text(fmt::format("the lenses hide {:.0f} and {:.0f} of {:.0f} tiles", count("tiles_hidden_left"), count("tiles_hidden_right"),
-                         tiles));
+}
+
+void drawStages(const FrameResult& frame) {
+    const auto count = [&](const std::string& name) {
+        const auto found = frame.counters.find(name);
+        return found == frame.counters.end() ? std::uint64_t{0} : found->second;
+    };
+    if (count("tiles_hidden_left") + count("tiles_hidden_right") > 0) {
+        text(fmt::format("the lenses hide {} and {} of {} tiles", count("tiles_hidden_left"), count("tiles_hidden_right"),
+                         std::max(count("tiles_left"), count("tiles_right"))));
     }
-    if (const double cut_short = count("frames_cut_short"); cut_short > 0.0) {
-        text(fmt::format("{:.0f} frames had no room in their lists, {:.0f} were drawn again", cut_short, count("frames_done_again")));
+    if (const std::uint64_t cut_short = count("frames_cut_short"); cut_short > 0) {
+        text(fmt::format("{} frames had no room in their lists, {} were drawn again", cut_short, count("frames_done_again")));
     }
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);
-    for (const auto& [name, ms] : addUp(status.frame->gpu_ms)) {
+    for (const auto& [name, ms] : addUp(frame.gpu_ms)) {
         text(fmt::format("{:>6.2f} {}", ms, name));
         ImGui::NextColumn();
     }
@@ -129,52 +142,126 @@ void drawTimes(const OverlayStatus& status) {
     ImGui::EndChild();
 }
 
+// What came of what was done, and what goes on; it may take several lines, and moves nothing that is pointed at.
+void drawSaid(const OverlayStatus& status) {
+    writeWrapped(status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message);
+    if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
+    if (!status.governor.empty()) { writeWrapped(status.governor); }
+}
+
+void drawSettings(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
+    drawMethod(widgets, settings);
+    drawResolution(widgets, settings);
+    drawQuality(widgets, settings);
+    widgets.checkbox("Two hands may tilt the scene", &settings.tilt);
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.75f);
+    actions.level_scene = widgets.button("Level");
+    actions.recentre = widgets.button("Recentre");
+    ImGui::SameLine();
+    actions.reset_scene = widgets.button("Scene back to its place");
+    actions.save = widgets.button("Save");
+    ImGui::SameLine();
+    actions.load = widgets.button("Load");
+    ImGui::SameLine();
+    actions.take_picture = widgets.button("Picture");
+    if (status.can_reload_shaders) {
+        ImGui::SameLine();
+        actions.reload_shaders = widgets.button("Shaders");
+    }
+    drawComfort(widgets, settings, status.can_pass_through);
+    drawSaid(status);
+    drawTimes(status);
+}
+
+void drawChooser(PanelWidgets& widgets, SceneChooser& chooser, OverlayActions& actions) {
+    ImGui::BeginDisabled(chooser.list().above.empty());
+    if (widgets.button("Up")) { chooser.goUp(); }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    const std::string home = environment("HOME");
+    ImGui::BeginDisabled(home.empty());
+    if (widgets.button("Home")) { chooser.showFolder(home); }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (widgets.button("Built-in")) { chooser.showFolder(kBuiltinFolder); }
+    ImGui::SameLine();
+    if (widgets.button("Recent")) { chooser.showRecent(); }
+    ImGui::SameLine();
+    if (widgets.button("<")) { chooser.turn(-1); }
+    ImGui::SameLine();
+    if (widgets.button(">")) { chooser.turn(1); }
+    ImGui::SameLine();
+    text(fmt::format("{} of {}", chooser.page() + 1, chooser.pageCount()));
+    // As many lines as there may be entries, so that what is below stays where it is.
+    const float rows = static_cast<float>(SceneChooser::kRows) * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
+    ImGui::BeginChild("scenes", ImVec2(0.0f, rows));
+    text(endOf(withoutControls(chooser.list().title)));
+    if (!chooser.list().trouble.empty()) { writeWrapped(chooser.list().trouble); }
+    if (chooser.list().trouble.empty() && chooser.list().entries.empty()) { text("No scenes and no folders"); }
+    const SceneEntry* pressed = nullptr;
+    for (const SceneEntry& entry : chooser.shown()) {
+        if (widgets.entry(entry.is_folder ? entry.name + "/" : entry.name, entry.trouble)) { pressed = &entry; }
+    }
+    if (pressed != nullptr) { actions.chosen_scene = chooser.open(*pressed); }
+    ImGui::EndChild();
+}
+
+void drawScenes(PanelWidgets& widgets, SceneChooser& chooser, const OverlayStatus& status, OverlayActions& actions) {
+    drawChooser(widgets, chooser, actions);
+    if (widgets.button("Scene before")) { actions.scene_step = -1; }
+    ImGui::SameLine();
+    if (widgets.button("Next scene")) { actions.scene_step = 1; }
+    drawSaid(status);
+}
+
+void drawFacts(const OverlayStatus& status) {
+    for (const auto& [name, value] : status.facts) {
+        text(name);
+        ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.3f);
+        writeWrapped(value);
+    }
+    drawSaid(status);
+    if (status.frame != nullptr) { drawStages(*status.frame); }
+}
+
+// Which page is shown; each is drawn anew when it is asked for.
+void drawPageButtons(PanelWidgets& widgets, OverlayPages& pages, const OverlayStatus& status) {
+    using Page = OverlayPages::Page;
+    for (const auto& [name, page] :
+         {std::pair("Settings", Page::kSettings), std::pair("Scenes", Page::kScenes), std::pair("Scene info", Page::kFacts)}) {
+        const bool shown = pages.shown == page;
+        if (shown) { ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive)); }
+        if (widgets.button(name)) {
+            pages.shown = page;
+            if (page == Page::kScenes) { pages.chooser.refresh(status.scene); }
+        }
+        if (shown) { ImGui::PopStyleColor(); }
+        ImGui::SameLine();
+    }
+}
+
 }  // namespace
 
-OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const OverlayStatus& status) {
+OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status) {
     OverlayActions actions;
+    PanelWidgets widgets;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
     ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kLabelShare);
-    text(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene));
-    const auto drawLoading = [&] {
-        if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
-    };
+    // Quit stands at the right, away from what is pressed often.
+    if (status.has_scene) { drawPageButtons(widgets, pages, status); }
+    ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.885f);
+    actions.quit = widgets.button("Quit");
+    text(endOf(withoutControls(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
     if (!status.has_scene) {
-        drawLoading();
+        if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
+    } else if (pages.shown == OverlayPages::Page::kSettings) {
+        drawSettings(widgets, settings, status, actions);
+    } else if (pages.shown == OverlayPages::Page::kScenes) {
+        drawScenes(widgets, pages.chooser, status, actions);
     } else {
-        drawMethod(settings);
-        drawResolution(settings);
-        actions.save = ImGui::Button("Save");
-        ImGui::SameLine();
-        actions.load = ImGui::Button("Load");
-        ImGui::SameLine();
-        actions.reset_scene = ImGui::Button("Scene back to its place");
-        ImGui::SameLine();
-        actions.quit = ImGui::Button("Quit");
-        ImGui::SameLine();
-        actions.recentre = ImGui::Button("Recentre");
-        if (status.can_reload_shaders) {
-            ImGui::SameLine();
-            actions.reload_shaders = ImGui::Button("Shaders");
-        }
-        drawQuality(settings);
-        ImGui::Checkbox("Two hands may tilt the scene", &settings.tilt);
-        ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.75f);
-        actions.level_scene = ImGui::Button("Level");
-        if (ImGui::Button("Scene before")) { actions.scene_step = -1; }
-        ImGui::SameLine();
-        if (ImGui::Button("Next scene")) { actions.scene_step = 1; }
-        ImGui::SameLine();
-        actions.take_picture = ImGui::Button("Picture");
-        drawComfort(settings, status.can_pass_through);
-        // What is said may take several lines, and moves nothing that is pointed at.
-        ImGui::TextWrapped("%s",
-                           status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message.c_str());
-        drawLoading();
-        if (!status.governor.empty()) { ImGui::TextWrapped("%s", status.governor.c_str()); }
-        drawTimes(status);
+        drawFacts(status);
     }
     ImGui::PopItemWidth();
     // The ray's end.
@@ -182,6 +269,7 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, const Ove
         ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
     }
     ImGui::End();
+    actions.places = widgets.places();
     return actions;
 }
 

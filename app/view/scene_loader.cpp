@@ -36,12 +36,14 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
         reading(1.0);
         drawAs(options.load, scene, notes);
         const Similarity start = startPlacement(options, scene);
+        SceneFacts facts = factsOf(scene, notes, scene_);
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         });
         loaded_->name = scene_;
         loaded_->start = start;
+        loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
     } catch (const Cancelled&) {  // nobody waits
     } catch (...) { error_ = std::current_exception(); }

@@ -3,6 +3,7 @@
 
 #include "app/options/options.h"
 #include "app/view/placement.h"
+#include "app/view/scene_facts.h"
 #include "engine/frame.h"
 
 #include <atomic>
@@ -22,6 +23,7 @@ struct LoadedScene {
     StereoFrame frame;
     Similarity start;  // see startPlacement
     LoadNotes notes;
+    SceneFacts facts;
 };
 
 // Loads on a thread of its own.
@@ -32,6 +34,9 @@ public:
     SceneLoader& operator=(const SceneLoader&) = delete;
     // Gives up where it can, and waits for the rest.
     ~SceneLoader();
+
+    // It is to give up where it can; then it is done, with nothing to take.
+    void cancel() { cancelled_ = true; }
 
     [[nodiscard]] const std::string& scene() const { return scene_; }
     // Share done, 0 to 1.

@@ -17,6 +17,12 @@ ShownScene::ShownScene(const Context& context, const ViewOptions& options, const
 std::optional<double> ShownScene::loading() const { return loader_ ? std::optional(loader_->progress()) : std::nullopt; }
 
 void ShownScene::begin(const std::string& scene) {
+    // Nobody waits for one that gives up.
+    std::erase_if(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return loader->isDone(); });
+    if (loader_) {
+        loader_->cancel();
+        given_up_.push_back(std::move(loader_));
+    }
     asked_ = scene;
     loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run);
 }
@@ -33,7 +39,9 @@ std::string ShownScene::take(ViewSettings& settings) {
         }
         scene_ = std::move(taken);
     } catch (const Error& error) {
-        if (!scene_) { throw; }  // nothing to show instead
+        if (scene_) { return error.what(); }
+        if (asked_ == options_.scene) { throw; }  // nothing to show instead
+        begin(options_.scene);                    // which another one had pushed aside
         return error.what();
     }
     log_.say("shows " + scene_->name);

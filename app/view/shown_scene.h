@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace binosplat {
 
@@ -29,7 +30,8 @@ public:
     // The one `step` further on in the folder of the one that was asked for last.
     void beginBeside(int step);
     // Shows the next one, waiting for it, and places the wearer: where `settings` say, which are of the first scene alone, or where
-    // the scene was saved. Returns what went wrong, empty if nothing did; throws it where no scene is there to stay.
+    // the scene was saved. Returns what went wrong, empty if nothing did; throws it where that of the options cannot be loaded
+    // and none is there to stay.
     [[nodiscard]] std::string take(ViewSettings& settings);
 
     Similarity scene_from_room;
@@ -42,6 +44,7 @@ private:
     const FrameLog& log_;
     std::string asked_;  // the last one, whether it could be loaded or not
     std::unique_ptr<LoadedScene> scene_;
+    std::vector<std::unique_ptr<SceneLoader>> given_up_;
     std::unique_ptr<SceneLoader> loader_;  // last: its thread ends first
 };
 

@@ -13,11 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path configFolder() {
-    const fs::path folder = userConfigFolder();
-    check(!folder.empty(), "HOME: no folder for settings, must be set");
-    return folder / "binosplat" / "scenes";
-}
+fs::path configFolder() { return viewFolder() / "scenes"; }
 
 // FNV-1a: another scene has another one, and the same scene always this.
 std::uint64_t fingerprint(const std::string& text) {
@@ -35,6 +31,12 @@ std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) 
 }
 
 }  // namespace
+
+fs::path viewFolder() {
+    const fs::path folder = userConfigFolder();
+    check(!folder.empty(), "HOME: no folder for settings, must be set");
+    return folder / "binosplat";
+}
 
 fs::path viewSettingsFile(const std::string& scene) {
     if (isBuiltin(scene)) { return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml"); }

@@ -9,6 +9,9 @@
 
 namespace binosplat {
 
+// Of the user's configuration (XDG_CONFIG_HOME, or ~/.config). Throws Error where there is no such folder.
+std::filesystem::path viewFolder();
+
 // A file of the user's configuration folder (XDG_CONFIG_HOME, or ~/.config) for this scene alone: of a file by its place and its size, so
 // that another one in its place begins anew; of a folder by its place, of builtin:NAME by its name. Throws Error where there is no such
 // folder.

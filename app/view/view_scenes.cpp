@@ -1,6 +1,7 @@
 // Looking about in a folder.
 #include "app/view/view_scenes.h"
 
+#include "app/view/natural_order.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+}  // namespace
+
 bool looksLikeScene(const fs::path& path) {
     static constexpr std::array<std::string_view, 4> kExtensions{".ply", ".splat", ".spz", ".sog"};
     std::error_code ignored;
@@ -25,8 +28,6 @@ bool looksLikeScene(const fs::path& path) {
     return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
-}  // namespace
-
 std::vector<std::string> scenesBeside(const std::string& scene) {
     std::vector<std::string> scenes;
     if (isBuiltin(scene)) {
@@ -37,11 +38,13 @@ std::vector<std::string> scenesBeside(const std::string& scene) {
         const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
         std::error_code ignored;
         for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-            if (looksLikeScene(entry.path())) { scenes.push_back((place.parent_path() / entry.path().filename()).string()); }
+            if (!entry.path().filename().string().starts_with('.') && looksLikeScene(entry.path())) {
+                scenes.push_back((place.parent_path() / entry.path().filename()).string());
+            }
         }
         if (std::ranges::find(scenes, place.string()) == scenes.end()) { scenes.push_back(place.string()); }
     }
-    std::ranges::sort(scenes);
+    std::ranges::sort(scenes, comesBefore);
     return scenes;
 }
 

@@ -1,12 +1,17 @@
 // Which scene comes next: those that lie beside one another.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace binosplat {
 
-// Scenes in the folder of a file or folder, by name, or all built-in ones; with `scene` among them.
+// A file by its name; a folder by what lies in it.
+bool looksLikeScene(const std::filesystem::path& path);
+
+// Scenes in the folder of a file or folder, in the order of people (natural_order.h), or all built-in ones; hidden ones are left out, but
+// `scene` is among them.
 std::vector<std::string> scenesBeside(const std::string& scene);
 
 // The scene `step` further on, and round the end.

@@ -2,7 +2,9 @@
 #include "app/view/viewer.h"
 
 #include "app/interrupt.h"
+#include "app/view/panel_style.h"
 #include "app/view/picture_pair.h"
+#include "app/view/recent_scenes.h"
 #include "app/view/shader_reload.h"
 #include "app/view/view_eyes.h"
 #include "app/view/view_files.h"
@@ -14,8 +16,6 @@ namespace binosplat {
 
 namespace {
 
-constexpr glm::uvec2 kCanvasPx(768, 896);
-constexpr double kPanelWidthMetres = 0.6;
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr std::size_t kPlottedFrames = 120;
@@ -32,14 +32,15 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       instance_(instance),
       context_(context),
       settings_(settings),
-      stay_(std::make_unique<HeadsetStay>(instance, context, kCanvasPx)),
+      stay_(std::make_unique<HeadsetStay>(instance, context, kPanelPx)),
       format_(stay_->format),
       renderer_(instance, context, options_.run, log_, format_),
-      canvas_(context_, kCanvasPx, format_),
-      panel_(kCanvasPx, kPanelWidthMetres),
+      canvas_(context_, kPanelPx, format_),
+      panel_(kPanelPx, kPanelWidthMetres),
       commands_(context_),
       scenes_(context_, options_, log_) {
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
+    if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
     if (mirrored) { openWindow(); }
     renderer_.fitImages(*stay_, settings_);
     if (options.load_first) { takeScene(); }
@@ -99,7 +100,7 @@ void Viewer::renewStay(const std::string& why) {
     waitForQueue();
     panel_now_ = nullptr;
     stay_.reset();
-    stay_ = std::make_unique<HeadsetStay>(instance_, context_, kCanvasPx);
+    stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
     if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why + ": the next one has other formats of images"); }
     renderer_.fitImages(*stay_, settings_);
 }
@@ -219,8 +220,14 @@ void Viewer::drawWindowAlone(const std::string& why) {
 void Viewer::takeScene() {
     const LoadedScene* before = scenes_.get();
     const std::string complaint = scenes_.take(settings_);
-    if (scenes_.get() != before) { renderer_.forgetLastFrame(); }
     if (!complaint.empty()) { say(complaint); }
+    if (scenes_.get() == before) { return; }
+    renderer_.forgetLastFrame();
+    try {
+        rememberScene(scenes_.name());
+    } catch (const Error& error) {
+        if (error.what() != complaint) { log_.say(error.what()); }
+    }
 }
 
 void Viewer::openWindow() {
@@ -258,11 +265,12 @@ void Viewer::layOutPanel(bool hung) {
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
     status_.can_pass_through = instance_.canSeeThrough();
+    if (status_.has_scene) { status_.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
     canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
-    obey(drawOverlay(kCanvasPx, settings_, status_));
+    obey(drawOverlay(kPanelPx, settings_, pages_, status_));
 }
 
 void Viewer::recordPanel(Commands& commands) {
@@ -270,7 +278,7 @@ void Viewer::recordPanel(Commands& commands) {
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
-    if (panel_now_) { commands.copyImage(canvas_.image(), panel_now_, kCanvasPx); }
+    if (panel_now_) { commands.copyImage(canvas_.image(), panel_now_, kPanelPx); }
     if (window_) { window_->record(commands); }
 }
 
@@ -311,6 +319,7 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
         settings_.panel = true;  // it was just pressed
     }
     if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step); }
+    if (!actions.chosen_scene.empty()) { scenes_.begin(actions.chosen_scene); }
     if (actions.take_picture) { takePicture(); }
 }
 

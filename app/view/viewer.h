@@ -77,6 +77,7 @@ private:
     Vignette vignette_;
     Commands commands_;
     OverlayStatus status_;
+    OverlayPages pages_;
     Pose room_from_head_;  // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
     int losses_ = 0;  // since a frame was shown

@@ -1,0 +1,103 @@
+// Frames along a recorded way of the head.
+#include "app/render_path.h"
+
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "engine/error.h"
+#include "engine/picture/image_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace binosplat {
+
+namespace {
+
+// As many as six digits count.
+constexpr double kMostFrames = 1e6;
+
+std::string pictureName(std::size_t number, std::string_view eye) { return fmt::format("frame_{:06}_{}", number, eye); }
+
+std::vector<std::string_view> eyeNames(bool mono) {
+    return mono ? std::vector<std::string_view>{"mono"} : std::vector<std::string_view>{"left", "right"};
+}
+
+std::vector<double> frameTimes(const HeadMotion& motion, const RenderOptions& options) {
+    std::vector<double> times_s;
+    if (!options.rate_hz) {
+        for (const HeadSample& sample : motion.samples()) { times_s.push_back(sample.time_s); }
+        check(static_cast<double>(times_s.size()) <= kMostFrames, "{}: holds {} poses, must be at most {:.0f}", options.path,
+              times_s.size(), kMostFrames);
+        return times_s;
+    }
+    // The last pose counts where it lies on the beat but for what rounding makes of it.
+    const double last = std::floor(motion.duration_s() * *options.rate_hz + 1e-6);
+    check(last < kMostFrames, "{}: makes {:.0f} frames of --rate {}, must be at most {:.0f}", options.path, last + 1.0, *options.rate_hz,
+          kMostFrames);
+    for (double i = 0.0; i <= last; ++i) { times_s.push_back(i / *options.rate_hz); }
+    return times_s;
+}
+
+// The number and the eye of a picture that a path wrote; empty where it is something else.
+bool isReplaced(std::string_view name, std::size_t frames, bool mono) {
+    static constexpr std::string_view kBegin = "frame_";
+    const std::string_view number = name.substr(std::min(kBegin.size(), name.size()));
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error != std::errc{} || value >= frames) { return false; }
+    return std::ranges::any_of(eyeNames(mono), [&](std::string_view eye) { return name == pictureName(value, eye); });
+}
+
+void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bool mono) {
+    const std::string extension = extensionOf(PictureKind::kDisplay);
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().stem().string();
+        const bool numbered =
+            name.starts_with("frame_") && (name.ends_with("_left") || name.ends_with("_right") || name.ends_with("_mono"));
+        if (!numbered || entry.path().extension() != extension) { continue; }
+        check(isReplaced(name, frames, mono),
+              "{}: is a frame of another path, which this one's {} frames would not replace; must be taken away", entry.path().string(),
+              frames);
+    }
+}
+
+}  // namespace
+
+HeadPath readHeadPath(const RenderOptions& options) {
+    HeadMotion motion = readHeadMotion(options.path, options.path_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr);
+    std::vector<double> times_s = frameTimes(motion, options);
+    requireNoOthers(options.out, times_s.size(), options.run.stereo.mode == Mode::kMono);
+    return {std::move(motion), std::move(times_s)};
+}
+
+std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& settings, const Cameras& start, double units_per_metre,
+                                  const HeadPath& path, OutputFiles& files) {
+    const bool mono = settings.mode == Mode::kMono;
+    std::vector<PathFrame> frames;
+    ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));
+    for (const double time_s : path.times_s) {
+        const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
+        const Cameras cameras = moveCameras(start, world_from_middle);
+        const std::span<const Eye> eyes = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        // The first frame of a device makes its kernels, which the report is not about.
+        if (frames.empty()) { frame.render(eyes, settings); }
+        line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
+        FrameResult result = frame.render(eyes, settings);
+        int eye = 0;
+        for (const std::string_view name : eyeNames(mono)) {
+            stopIfInterrupted();
+            writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay, frame.readPicture(eye++));
+        }
+        frames.push_back({time_s, cameras, std::move(result)});
+    }
+    return frames;
+}
+
+}  // namespace binosplat

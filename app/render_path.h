@@ -1,0 +1,27 @@
+// Frames along a recorded way of the head: numbered pictures of what each eye sees, and what each frame took.
+#pragma once
+
+#include "app/options/camera_options.h"
+#include "app/options/options.h"
+#include "app/report/report.h"
+#include "engine/setup/head_motion.h"
+#include "engine/setup/output_files.h"
+
+#include <vector>
+
+namespace binosplat {
+
+struct HeadPath {
+    HeadMotion motion;
+    std::vector<double> times_s;  // of the frames, since the motion's first pose
+};
+
+// --path, at each of its poses or --rate times a second. Throws Error where the file cannot be used, or where the output folder holds
+// numbered pictures that the new ones would not replace: nobody could tell them apart.
+HeadPath readHeadPath(const RenderOptions& options);
+
+// Every frame's pictures, staged in `files`; cameras start as `start` and move with the head.
+std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& settings, const Cameras& start, double units_per_metre,
+                                  const HeadPath& path, OutputFiles& files);
+
+}  // namespace binosplat

@@ -1,0 +1,67 @@
+// ImGui's widgets, with their places noted down.
+#include "app/view/panel_widgets.h"
+
+namespace binosplat {
+
+bool PanelWidgets::button(const char* name) {
+    const bool pressed = ImGui::Button(name);
+    noteMiddle(name);
+    return pressed;
+}
+
+bool PanelWidgets::checkbox(const char* name, bool* value) {
+    const bool changed = ImGui::Checkbox(name, value);
+    noteBox(name);
+    return changed;
+}
+
+bool PanelWidgets::entry(const std::string& name, const std::string& trouble) {
+    // ImGui takes ## in a label for the beginning of what is not shown: the text is drawn by itself, on a button without any.
+    ImGui::PushID(name.c_str());
+    ImGui::BeginDisabled(!trouble.empty());
+    const bool pressed = ImGui::Button("##entry", ImVec2(-1.0f, 0.0f));
+    ImGui::EndDisabled();
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), padding = ImGui::GetStyle().FramePadding;
+    const std::string shown = withoutControls(trouble.empty() ? name : name + "   " + trouble);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.PushClipRect(low, high, true);
+    draw.AddText(ImVec2(low.x + padding.x, low.y + padding.y), ImGui::GetColorU32(trouble.empty() ? ImGuiCol_Text : ImGuiCol_TextDisabled),
+                 shown.c_str());
+    draw.PopClipRect();
+    noteMiddle(name);
+    ImGui::PopID();
+    return pressed;
+}
+
+void PanelWidgets::noteSlider(const char* name) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places_[name] = {low.x + 0.5f * ImGui::CalcItemWidth(), 0.5f * (low.y + high.y)};
+}
+
+void PanelWidgets::noteMiddle(const std::string& name) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places_[name] = {0.5f * (low.x + high.x), 0.5f * (low.y + high.y)};
+}
+
+void PanelWidgets::noteBox(const char* name) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    places_[name] = {low.x + 0.5f * (high.y - low.y), 0.5f * (low.y + high.y)};
+}
+
+std::string withoutControls(std::string_view text) {
+    std::string clean;
+    for (const char letter : text) {
+        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+        clean += control ? "\xef\xbf\xbd" : std::string(1, letter);
+    }
+    return clean;
+}
+
+void writeWrapped(std::string_view text) {
+    const std::string clean = withoutControls(text);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(clean.data(), clean.data() + clean.size());
+    ImGui::PopTextWrapPos();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,52 @@
+// What the panel is made of, and where each piece came to lie.
+#pragma once
+
+#include <imgui.h>
+#include <glm/glm.hpp>
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace binosplat {
+
+// Where to point at a widget, in pixels of the panel, by its name.
+using WidgetPlaces = std::map<std::string, glm::dvec2>;
+
+// ImGui's widgets between ImGui::Begin and End; each is in `places` once it is drawn.
+class PanelWidgets {
+public:
+    bool button(const char* name);
+    bool checkbox(const char* name, bool* value);
+    // A row of its own for a name that is shown letter by letter, whatever it holds; `trouble` makes it grey and follows it.
+    bool entry(const std::string& name, const std::string& trouble);
+    // To be called after a slider: it is where the next column would begin.
+    void noteSlider(const char* name);
+    // A row of names of which one is chosen.
+    template <std::size_t N>
+    void chooseFrom(const char* label, const std::array<const char*, N>& names, std::string& chosen, std::size_t per_row) {
+        ImGui::TextUnformatted(label);
+        for (std::size_t i = 0; i < N; ++i) {
+            if (i % per_row != 0) {
+                ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
+            }
+            if (ImGui::RadioButton(names[i], chosen == names[i])) { chosen = names[i]; }
+            noteBox(names[i]);
+        }
+    }
+
+    [[nodiscard]] const WidgetPlaces& places() const { return places_; }
+
+private:
+    void noteMiddle(const std::string& name);
+    void noteBox(const char* name);
+
+    WidgetPlaces places_;
+};
+
+// Text that may hold anything: wrapped, its control characters shown as boxes.
+void writeWrapped(std::string_view text);
+std::string withoutControls(std::string_view text);
+
+}  // namespace binosplat

@@ -1,0 +1,27 @@
+// What a scene is, in words, for whoever stands in it.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+struct SceneFacts {
+    std::uint64_t splats = 0, left_out = 0;  // left_out: broken ones of the file
+    std::string kind;                        // what is drawn, and what it was made of
+    int sh_degree = 0, sh_degree_in_file = 0;
+    std::uint64_t device_bytes = 0;
+    std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program
+};
+
+// Of a scene as it was loaded from `source`.
+SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string& source);
+
+// Names and values. `metres_per_unit` is as the wearer stands in it now.
+std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts, double metres_per_unit);
+
+}  // namespace binosplat

@@ -1,0 +1,254 @@
+// Facts about the panel's pages: what can be read and pointed at, whatever stands on them.
+#include "app/view/scene_facts.h"
+#include "engine/error.h"
+#include "tests/panel_sketch.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+using Page = OverlayPages::Page;
+
+// Where the vector font is, if this machine has it.
+std::string vectorFont() {
+    for (const fs::path& file : fontFiles()) {
+        if (fs::exists(file)) {
+            std::ifstream stream(file, std::ios::binary);
+            return {std::istreambuf_iterator<char>(stream), {}};
+        }
+    }
+    return {};
+}
+
+bool isFont(const std::string& bytes) { return looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}); }
+
+void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path, std::ios::binary) << text; }
+
+}  // namespace
+
+TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Greek and Cyrillic are there") {
+    REQUIRE_FALSE(vectorFont().empty());
+    PanelSketch sketch;
+    CHECK(sketch.complaint.empty());
+    sketch.draw();
+    ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
+    const ImFontGlyph* capital = font.FindGlyphNoFallback('H');
+    REQUIRE(capital != nullptr);
+    const double distance_m = std::sqrt(0.45 * 0.45 + 0.1 * 0.1 + 0.9 * 0.9);
+    const double height_m = (capital->Y1 - capital->Y0) * kPanelWidthMetres / kPanelPx.x;
+    CHECK(glm::degrees(2.0 * std::atan(0.5 * kPanelWidthMetres / distance_m)) == doctest::Approx(26.0).epsilon(0.005));
+    CHECK(glm::degrees(std::atan(height_m / distance_m)) >= 0.5);
+    for (const int letter : {0x41, 0xe4, 0x159, 0x3a9, 0x436, 0x451, 0x1ea1, 0x301, 0x2013, 0x20ac}) {
+        CAPTURE(letter);
+        CHECK(font.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
+    }
+    // What is not there is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
+    const ImFontGlyph* box = font.FindGlyphNoFallback(0x25a1);
+    REQUIRE(box != nullptr);
+    CHECK(font.FindGlyph(0x4e2d) == box);
+    CHECK(font.FindGlyph(0xfffd) == box);
+}
+
+TEST_CASE("without a font that can be used the small built-in one is, and one line says why") {
+    const Workplace work;
+    const std::string whole = vectorFont();
+    write(work.path / "text.ttf", "no font at all");
+    write(work.path / "short.ttf", whole.substr(0, whole.size() / 2));
+    fs::create_directory(work.path / "folder.ttf");
+    for (const char* name : {"nowhere.ttf", "text.ttf", "short.ttf", "folder.ttf"}) {
+        CAPTURE(name);
+        setenv("BINOSPLAT_FONT", (work.path / name).c_str(), 1);
+        PanelSketch sketch;
+        CHECK(sketch.complaint.starts_with("the panel is written in a small built-in font: "));
+        CHECK(sketch.complaint.find(name) != std::string::npos);
+        CHECK(sketch.complaint.find('\n') == std::string::npos);
+        CHECK(sketch.click("shared").places.contains("Quit"));
+        CHECK(sketch.settings.stereo.mode == Mode::kShared);
+    }
+    unsetenv("BINOSPLAT_FONT");
+}
+
+TEST_CASE("a font is taken only if the tables it has lie within it") {
+    const std::string whole = vectorFont();
+    REQUIRE(isFont(whole));
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{12}, std::size_t{40}, whole.size() - 1}) {
+        CAPTURE(bytes);
+        CHECK_FALSE(isFont(whole.substr(0, bytes)));
+    }
+    std::string nameless = whole;
+    nameless.replace(nameless.find("cmap"), 4, "xxxx");
+    CHECK_FALSE(isFont(nameless));
+    CHECK_FALSE(isFont("ttcf" + whole.substr(4)));
+}
+
+TEST_CASE("every widget lies on the panel, none on another, on each page") {
+    for (const bool shaders : {false, true}) {
+        PanelSketch sketch;
+        sketch.status.can_reload_shaders = shaders;
+        for (const Page page : {Page::kSettings, Page::kScenes, Page::kFacts}) {
+            sketch.pages.shown = page;
+            sketch.pages.chooser.showFolder(kBuiltinFolder);
+            const WidgetPlaces places = sketch.draw().places;
+            CHECK(places.size() >= 4);
+            for (const auto& [name, place] : places) {
+                CAPTURE(name);
+                CHECK(place.x > 0.0);
+                CHECK(place.y > 0.0);
+                CHECK(place.x < kPanelPx.x);
+                CHECK(place.y < kPanelPx.y);
+                for (const auto& [other, there] : places) {
+                    if (name < other) { CHECK_MESSAGE(glm::length(place - there) > 20.0, other); }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages") {
+    PanelSketch sketch;
+    CHECK(sketch.click("paper").places.contains("Centre ROI (paper)"));
+    CHECK(sketch.settings.stereo.mode == Mode::kPaper);
+    sketch.click("Centre ROI (paper)");
+    CHECK(sketch.settings.stereo.center_roi);
+    CHECK(sketch.click("Save").save);
+    CHECK(sketch.click("Quit").quit);
+    CHECK(sketch.click("Level").level_scene);
+    CHECK(sketch.click("Recentre").recentre);
+    CHECK(sketch.click("Picture").take_picture);
+    sketch.click("budget (predicted)");
+    CHECK(sketch.settings.stereo.budget == doctest::Approx(0.5).epsilon(0.02));
+    sketch.click("Scene info");
+    CHECK(sketch.pages.shown == Page::kFacts);
+    CHECK(sketch.click("Quit").quit);
+    sketch.click("Scenes");
+    CHECK(sketch.pages.shown == Page::kScenes);
+    CHECK(sketch.click("Next scene").scene_step == 1);
+    CHECK(sketch.click("Scene before").scene_step == -1);
+    sketch.click("Settings");
+    CHECK(sketch.pages.shown == Page::kSettings);
+}
+
+TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does nothing") {
+    const Workplace work;
+    fs::create_directories(work.path / "inner");
+    for (int i = 0; i < 14; ++i) { write(work.path / "inner" / fmt::format("room{}.ply", i)); }
+    write(work.path / "a##b.ply");
+    fs::create_symlink("nowhere", work.path / "gone.ply");
+    setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
+    PanelSketch sketch;
+    sketch.status.scene = (work.path / "a##b.ply").string();
+    // The page opens where the scene that is shown lies.
+    sketch.click("Scenes");
+    CHECK(sketch.pages.chooser.list().title == work.path.string());
+    CHECK(sketch.click("gone.ply").chosen_scene.empty());
+    CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
+    CHECK(sketch.click("inner/").chosen_scene.empty());
+    CHECK(sketch.pages.chooser.list().title == (work.path / "inner").string());
+    CHECK(sketch.pages.chooser.pageCount() == 2);
+    CHECK_FALSE(sketch.draw().places.contains("room13.ply"));
+    sketch.click(">");
+    sketch.click(">");
+    CHECK(sketch.pages.chooser.page() == 1);
+    CHECK(sketch.click("room13.ply").chosen_scene == (work.path / "inner" / "room13.ply").string());
+    sketch.click("<");
+    CHECK(sketch.click("room0.ply").chosen_scene == (work.path / "inner" / "room0.ply").string());
+    sketch.click("Up");
+    CHECK(sketch.pages.chooser.list().title == work.path.string());
+    sketch.click("Built-in");
+    CHECK(sketch.click("fence").chosen_scene == "builtin:fence");
+    sketch.click("Up");  // there is none above
+    CHECK(sketch.pages.chooser.list().title == "Built-in scenes");
+    sketch.click("Recent");
+    CHECK(sketch.pages.chooser.list().entries.empty());
+    // A file that came meanwhile is there when the page is opened again.
+    sketch.pages.chooser.showFolder(work.path.string());
+    write(work.path / "new.ply");
+    sketch.click("Scenes");
+    CHECK(sketch.draw().places.contains("new.ply"));
+    unsetenv("XDG_CONFIG_HOME");
+}
+
+TEST_CASE("names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
+    const Workplace work;
+    const std::string longest = std::string(240, 'w') + ".ply";
+    for (const std::string& name : {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"), std::string("%s%n.ply"),
+                                    std::string("\xff\xfe.ply"), longest}) {
+        write(work.path / name);
+    }
+    PanelSketch sketch;
+    sketch.pages.shown = Page::kScenes;
+    sketch.pages.chooser.showFolder(work.path.string());
+    CHECK(sketch.draw().places.size() == 12 + 5);
+    CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
+    CHECK(withoutControls("a\nb\x1b[1m\x7f") ==
+          "a\xef\xbf\xbd"
+          "b\xef\xbf\xbd[1m\xef\xbf\xbd");
+    // What is said moves nothing that can be pointed at.
+    for (const Page page : {Page::kSettings, Page::kScenes}) {
+        sketch.pages.shown = page;
+        sketch.status.message.clear();
+        const WidgetPlaces before = sketch.draw().places;
+        for (int i = 0; i < 40; ++i) { sketch.status.message += "/a/long/way/to/a/file "; }
+        sketch.status.message += longest;
+        CHECK(sketch.draw().places == before);
+    }
+}
+
+TEST_CASE("a scene is described in words: how much, of what kind, how large") {
+    SceneFacts facts;
+    facts.splats = 1234567;
+    facts.left_out = 3;
+    facts.kind = "3D Gaussians";
+    facts.sh_degree = 1;
+    facts.sh_degree_in_file = 3;
+    facts.device_bytes = 64u << 20;
+    facts.file_bytes = 2048;
+    const auto lines = describeFacts(facts, 0.25);
+    const auto valueOf = [&](const std::string& name) {
+        const auto found = std::ranges::find(lines, name, &std::pair<std::string, std::string>::first);
+        REQUIRE(found != lines.end());
+        return found->second;
+    };
+    CHECK(valueOf("Splats") == "1 234 567, 3 broken ones left out");
+    CHECK(valueOf("Kind") == "3D Gaussians");
+    CHECK(valueOf("Colours (SH)") == "degree 1, 3 in the file");
+    CHECK(valueOf("In memory") == "64.0 MiB");
+    CHECK(valueOf("File") == "2.0 KiB");
+    CHECK(valueOf("Scale") == "0.25 metres a scene unit");
+    CHECK(describeFacts({}, 1.0).at(0).second == "0");
+    // From what loading met.
+    const Workplace work;
+    fs::create_directory(work.path / "sog");
+    write(work.path / "sog" / "meta.json", std::string(100, 'x'));
+    write(work.path / "sog" / "means.webp", std::string(1000, 'x'));
+    Scene scene;
+    scene.positions.resize(2);
+    scene.thicknesses.resize(2);
+    scene.sh_degree = 2;
+    LoadNotes notes;
+    notes.three_scales = true;
+    notes.skipped_not_finite = 4;
+    notes.sh_degree_in_file = 2;
+    const SceneFacts folder = factsOf(scene, notes, (work.path / "sog").string());
+    CHECK(folder.splats == 2);
+    CHECK(folder.left_out == 4);
+    CHECK(folder.kind == "3D Gaussians");
+    CHECK(folder.file_bytes == 1100);
+    CHECK(folder.device_bytes > 0);
+    CHECK(factsOf(scene, notes, "builtin:fence").file_bytes == 0);
+    CHECK(factsOf(scene, notes, (work.path / "sog" / "meta.json").string()).file_bytes == 100);
+    scene.thicknesses.clear();
+    CHECK(factsOf(scene, notes, "x").kind == "3D Gaussians, drawn as discs");
+    notes.three_scales = false;
+    CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
+}

@@ -1,0 +1,85 @@
+// The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them does.
+#pragma once
+
+#include "app/view/overlay.h"
+#include "app/view/panel_style.h"
+
+#include <doctest/doctest.h>
+#include <imgui.h>
+
+#include <limits>
+#include <string>
+
+namespace binosplat::test {
+
+class PanelSketch {
+public:
+    PanelSketch() {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = ImVec2(static_cast<float>(kPanelPx.x), static_cast<float>(kPanelPx.y));
+        complaint = stylePanel();
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        status.has_scene = true;
+        status.scene = "scene.ply";
+    }
+    PanelSketch(const PanelSketch&) = delete;
+    PanelSketch& operator=(const PanelSketch&) = delete;
+    ~PanelSketch() { ImGui::DestroyContext(); }
+
+    // One frame, with something that points and presses, or nothing.
+    OverlayActions draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
+        ImGuiIO& io = ImGui::GetIO();
+        constexpr float kNowhere = -std::numeric_limits<float>::max();
+        io.MousePos =
+            pointer != nullptr ? ImVec2(static_cast<float>(pointer->x), static_cast<float>(pointer->y)) : ImVec2(kNowhere, kNowhere);
+        io.MouseDown[0] = pressed;
+        io.DeltaTime = 0.01f;
+        ImGui::NewFrame();
+        OverlayActions actions = drawOverlay(kPanelPx, settings, pages, status);
+        ImGui::Render();
+        return actions;
+    }
+    // What came of a press that is let go.
+    OverlayActions click(const std::string& name) {
+        const OverlayActions before = draw();
+        REQUIRE_MESSAGE(before.places.contains(name), name);
+        const glm::dvec2 place = before.places.at(name);
+        draw(&place);
+        draw(&place, true);
+        return draw(&place);
+    }
+
+    std::string complaint;
+    ViewSettings settings;
+    OverlayPages pages;
+    OverlayStatus status;
+};
+
+// Where to point at a widget of the first page, in shares of the panel's width and height.
+inline glm::dvec2 placeOf(const std::string& name, bool with_shaders = false) {
+    static const std::array<WidgetPlaces, 2> places = [] {
+        PanelSketch sketch;
+        const WidgetPlaces plain = sketch.draw().places;
+        sketch.status.can_reload_shaders = true;
+        return std::array{plain, sketch.draw().places};
+    }();
+    const WidgetPlaces& all = places[with_shaders ? 1 : 0];
+    REQUIRE_MESSAGE(all.contains(name), name);
+    return all.at(name) / glm::dvec2(kPanelPx);
+}
+
+// The same of the page of scenes, with `folder` open.
+inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
+    PanelSketch sketch;
+    sketch.pages.shown = OverlayPages::Page::kScenes;
+    sketch.pages.chooser.showFolder(folder);
+    const WidgetPlaces all = sketch.draw().places;
+    REQUIRE_MESSAGE(all.contains(name), name);
+    return all.at(name) / glm::dvec2(kPanelPx);
+}
+
+}  // namespace binosplat::test

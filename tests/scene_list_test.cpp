@@ -1,0 +1,143 @@
+// Facts about looking for a scene: what a folder holds, in which order, and which scenes were shown last.
+#include "app/view/scene_list.h"
+#include "app/view/natural_order.h"
+#include "app/view/recent_scenes.h"
+#include "app/view/view_scenes.h"
+#include "engine/error.h"
+#include "tests/run_program.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using binosplat::test::Workplace;
+
+namespace {
+
+void write(const fs::path& path) { std::ofstream(path) << "x"; }
+
+std::vector<std::string> namesOf(const SceneList& list) {
+    std::vector<std::string> names;
+    for (const SceneEntry& entry : list.entries) { names.push_back(entry.name + (entry.is_folder ? "/" : "")); }
+    return names;
+}
+
+const SceneEntry& entryOf(const SceneList& list, const std::string& name) {
+    const auto found = std::ranges::find(list.entries, name, &SceneEntry::name);
+    REQUIRE(found != list.entries.end());
+    return *found;
+}
+
+}  // namespace
+
+TEST_CASE("numbers in names count as numbers, capitals do not count, and every two names have an order") {
+    const std::vector<std::string> ordered{"",    "2",       "10",        "a",          "A1", "a2",       "a02b",
+                                           "a10", "a00010c", "room2.ply", "Room10.ply", "z",  "\xc3\xa4", "\xd0\x96"};
+    for (std::size_t i = 0; i < ordered.size(); ++i) {
+        for (std::size_t j = 0; j < ordered.size(); ++j) {
+            CAPTURE(ordered[i]);
+            CAPTURE(ordered[j]);
+            CHECK(comesBefore(ordered[i], ordered[j]) == (i < j));
+        }
+    }
+    // Longer than any number a machine has.
+    CHECK(comesBefore("a99999999999999999999999998", "a99999999999999999999999999"));
+    CHECK(comesBefore("A", "a") != comesBefore("a", "A"));
+    CHECK(comesBefore("a1", "a01") != comesBefore("a01", "a1"));
+}
+
+TEST_CASE("a folder is listed with its folders and scenes, and without what is hidden or something else") {
+    const Workplace work;
+    for (const char* name : {"room10.ply", "room2.PLY", "a.spz", ".hidden.ply", "notes.txt", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"}) {
+        write(work.path / name);
+    }
+    for (const char* name : {"zoo", "Attic", ".git", "statue", "folder.ply"}) { fs::create_directory(work.path / name); }
+    write(work.path / "statue" / "meta.json");
+    const SceneList list = listFolder(work.path.string());
+    CHECK(list.trouble.empty());
+    CHECK(list.title == work.path.string());
+    CHECK(list.above == work.base.string());
+    CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "zoo/", "a.spz", "room2.PLY", "room10.ply", "statue",
+                                                    "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
+    for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
+    CHECK(entryOf(list, "zoo").place == (work.path / "zoo").string());
+    // The viewer's next scene goes the same way.
+    CHECK(sceneBeside((work.path / "room2.PLY").string(), 1) == (work.path / "room10.ply").string());
+    CHECK(sceneBeside((work.path / "room10.ply").string(), 1) == (work.path / "statue").string());
+}
+
+TEST_CASE("what cannot be opened is listed with the reason, and nothing waits for a pipe") {
+    const Workplace work;
+    REQUIRE(mkfifo((work.path / "pipe.ply").c_str(), 0600) == 0);
+    fs::create_symlink("nowhere.ply", work.path / "gone.ply");
+    fs::create_symlink("loop.ply", work.path / "loop.ply");
+    write(work.path / "good.ply");
+    const SceneList list = listFolder(work.path.string());
+    CHECK_FALSE(entryOf(list, "pipe.ply").trouble.empty());
+    CHECK(entryOf(list, "gone.ply").trouble == "is not there");
+    CHECK_FALSE(entryOf(list, "loop.ply").trouble.empty());
+    CHECK(entryOf(list, "good.ply").trouble.empty());
+    CHECK_FALSE(listFolder((work.path / "nowhere").string()).trouble.empty());
+    CHECK_FALSE(listFolder((work.path / "good.ply").string()).trouble.empty());
+    CHECK(listFolder((work.path / "nowhere").string()).above == work.path.string());
+}
+
+TEST_CASE("the way up ends at the top, and built-in scenes have a place of their own") {
+    CHECK(listFolder("/").above.empty());
+    CHECK(listFolder("/").title == "/");
+    CHECK(folderOf("builtin:fence") == kBuiltinFolder);
+    CHECK(folderOf("a/b/../c.ply") == (fs::current_path() / "a").string());
+    CHECK(folderOf("a/statue/") == (fs::current_path() / "a").string());
+    CHECK(folderOf("c.ply") == fs::current_path().string());
+    const SceneList builtin = listFolder(kBuiltinFolder);
+    CHECK(builtin.above.empty());
+    CHECK(entryOf(builtin, "fence").place == "builtin:fence");
+}
+
+TEST_CASE("the latest scenes come first, each once, ten at most") {
+    std::vector<std::string> scenes;
+    for (int i = 0; i < 12; ++i) { scenes = withLatest(scenes, fmt::format("{}.ply", i)); }
+    CHECK(scenes.size() == kMostRecentScenes);
+    CHECK(scenes.front() == "11.ply");
+    CHECK(scenes.back() == "2.ply");
+    scenes = withLatest(scenes, "5.ply");
+    CHECK(scenes.size() == kMostRecentScenes);
+    CHECK(scenes.front() == "5.ply");
+    CHECK(std::ranges::count(scenes, "5.ply") == 1);
+}
+
+TEST_CASE("recent scenes are kept in the user's folder, whole or as they were, and missing ones are marked") {
+    const Workplace work;
+    setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
+    CHECK(recentScenes().empty());
+    write(work.path / "a.ply");
+    rememberScene((work.path / "a.ply").string());
+    rememberScene((work.path / "sub" / ".." / "gone.ply").string());
+    rememberScene("builtin:fence");
+    const std::vector<std::string> kept{"builtin:fence", (work.path / "gone.ply").string(), (work.path / "a.ply").string()};
+    CHECK(recentScenes() == kept);
+    const SceneList list = listScenes("Recent scenes", recentScenes());
+    CHECK(namesOf(list) == std::vector<std::string>{"builtin:fence", "gone.ply", "a.ply"});
+    CHECK(list.entries[0].trouble.empty());
+    CHECK(list.entries[1].trouble == "is not there");
+    CHECK(list.entries[2].trouble.empty());
+    CHECK(list.entries[2].place == kept[2]);
+    // A name of two lines would be two scenes.
+    rememberScene((work.path / "two\nlines.ply").string());
+    CHECK(recentScenes() == kept);
+    // Nothing but the list lies there, and one that cannot be written stays as it was.
+    const fs::path folder = work.base / "config" / "binosplat";
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
+    fs::remove(folder / "recent-scenes.txt");
+    fs::create_directory(folder / "recent-scenes.txt");
+    CHECK(recentScenes().empty());
+    CHECK_THROWS_AS(rememberScene("builtin:fence"), Error);
+    CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 1);
+    unsetenv("XDG_CONFIG_HOME");
+}

@@ -1,0 +1,196 @@
+// Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
+#include "app/view/shown_scene.h"
+#include "app/view/view_files.h"
+#include "engine/error.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/scene.h"
+#include "tests/gpu_fixture.h"
+#include "tests/run_program.h"
+
+#ifdef BINOSPLAT_OPENIMAGEIO
+#include "tests/sog_scenes.h"
+#endif
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+using namespace binosplat::test;
+
+namespace {
+
+struct Shown : Gpu, Workplace {
+    using Workplace::run;
+
+    Shown() {
+        setenv("XDG_CONFIG_HOME", (base / "config").c_str(), 1);
+        options.scene = "builtin:step-edge";
+    }
+    ~Shown() { unsetenv("XDG_CONFIG_HOME"); }
+
+    // One line, and the scene stays as it was.
+    void checkRefused(ShownScene& scenes, const fs::path& place, const std::string& part) {
+        CAPTURE(place);
+        const LoadedScene* before = scenes.get();
+        scenes.begin(place.string());
+        const std::string complaint = scenes.take(settings);
+        INFO(complaint);
+        CHECK(complaint.starts_with(place.string() + ": "));
+        CHECK(complaint.find(part) != std::string::npos);
+        CHECK(complaint.find('\n') == std::string::npos);
+        CHECK(scenes.get() == before);
+    }
+
+    ViewOptions options;
+    ViewSettings settings;
+    FrameLog log;
+};
+
+bool same(const Similarity& a, const Similarity& b) {
+    return glm::length(a.position - b.position) < 1e-6 && std::abs(a.scale - b.scale) < 1e-6 &&
+           std::abs(std::abs(glm::dot(a.orientation, b.orientation)) - 1.0) < 1e-6;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Shown, "what is no scene is said in one line and keeps what is shown") {
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(settings).empty());
+    CHECK(scenes.name() == "builtin:step-edge");
+    std::ofstream(path / "notes.txt") << "no scene";
+    fs::create_directory(path / "pictures");
+    REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
+    checkRefused(scenes, path / "notes.txt", "not a scene file of a known format");
+    checkRefused(scenes, path / "pictures", "is a directory, expected a scene");
+    checkRefused(scenes, path / "pipe.ply", "is not a regular file");
+    checkRefused(scenes, path / "gone.ply", "no such file");
+    CHECK_FALSE(scenes.loading().has_value());
+}
+
+#ifdef BINOSPLAT_OPENIMAGEIO
+TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or without a slash at its end") {
+    fs::create_directory(path / "statue");
+    for (const auto& [name, bytes] : makeSog()) { std::ofstream(path / "statue" / name, std::ios::binary) << bytes; }
+    ShownScene scenes(context(), options, log);
+    REQUIRE(scenes.take(settings).empty());
+    for (const std::string& place :
+         {(path / "statue").string(), (path / "statue").string() + "/", (path / "statue" / "meta.json").string()}) {
+        CAPTURE(place);
+        scenes.begin(place);
+        CHECK(scenes.take(settings).empty());
+        CHECK(scenes.name() == place);
+        CHECK(scenes.get()->facts.splats == 8);
+        CHECK(scenes.get()->facts.file_bytes > 0);
+    }
+}
+#endif
+
+TEST_CASE_FIXTURE(Shown,
+                  "one that was asked for while another one came takes its place, and if it cannot be read the first comes after all") {
+    ShownScene scenes(context(), options, log);
+    scenes.begin("builtin:fence");
+    scenes.begin("builtin:slanted-wall");
+    CHECK(scenes.take(settings).empty());
+    CHECK(scenes.name() == "builtin:slanted-wall");
+    CHECK_FALSE(scenes.loading().has_value());
+    ShownScene others(context(), options, log);
+    others.begin((path / "gone.ply").string());
+    CHECK(others.take(settings).find("gone.ply: no such file") != std::string::npos);
+    CHECK(others.get() == nullptr);
+    CHECK(others.take(settings).empty());
+    CHECK(others.name() == "builtin:step-edge");
+    // That of the command line has nothing to fall back to.
+    options.scene = (path / "gone.ply").string();
+    ShownScene none(context(), options, log);
+    CHECK_THROWS_AS(static_cast<void>(none.take(settings)), Error);
+}
+
+TEST_CASE_FIXTURE(
+    Shown, "a remembered place that cannot be used is one line, the scene is shown at its start, and saving replaces a broken file") {
+    const fs::path file = viewSettingsFile(options.scene);
+    const auto showAgain = [&](std::string& complaint) {
+        ShownScene scenes(context(), options, log);
+        complaint = scenes.take(settings);
+        const bool at_start = same(scenes.scene_from_room, scenes.get()->start);
+        scenes.scene_from_room.position += glm::dvec3(1.0, 2.0, 3.0);
+        settings.scene_from_room = scenes.scene_from_room;
+        return at_start;
+    };
+    std::string complaint;
+    CHECK(showAgain(complaint));
+    CHECK(complaint.empty());
+    const ViewSettings moved = settings;
+    settings.scene_from_room.reset();
+    const auto spoil = [&](const std::string& text) {
+        fs::remove_all(file);
+        fs::create_directories(file.parent_path());
+        std::ofstream(file, std::ios::binary) << text;
+    };
+    const auto checkSaid = [&] {
+        settings.scene_from_room.reset();
+        CHECK(showAgain(complaint));
+        INFO(complaint);
+        CHECK(complaint.find(file.string()) != std::string::npos);
+        CHECK(complaint.find('\n') == std::string::npos);
+        settings.scene_from_room.reset();
+    };
+    for (const std::string& text :
+         {std::string("[view\n"), std::string("[view]\nnonsense = 1\n"), std::string("[view]\nscene-position = [1, 2]\n"),
+          std::string("[view]\nunits-per-metre = 2\n"), std::string("\xff\xfe\0\0", 4), std::string("[view]\nunits-per-metre = nan\n")}) {
+        CAPTURE(text);
+        spoil(text);
+        checkSaid();
+        // The next save makes it whole.
+        CHECK(saveViewSettings(options.scene, moved) == "saved as " + file.string());
+        CHECK_FALSE(showAgain(complaint));
+        CHECK(complaint.empty());
+    }
+    // What is no file stays, also when it is saved, and nothing waits for a pipe.
+    fs::remove(file);
+    fs::create_directory(file);
+    checkSaid();
+    CHECK(saveViewSettings(options.scene, moved).find("is a directory") != std::string::npos);
+    CHECK(fs::is_directory(file));
+    fs::remove(file);
+    REQUIRE(mkfifo(file.c_str(), 0600) == 0);
+    checkSaid();
+    CHECK(fs::is_fifo(file));
+    // Nothing half-written lies about.
+    CHECK(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file's end, and so does the way to the device") {
+    struct Enough {};
+    REQUIRE(run("scene atelier --splats 200000 --out many.ply").exit_code == 0);
+    REQUIRE(run("convert many.ply many.spz").exit_code == 0);
+    for (const char* name : {"many.ply", "many.spz"}) {
+        CAPTURE(name);
+        double furthest = 0.0;
+        const auto stop = [&](double share) {
+            furthest = std::max(furthest, share);
+            if (share > 0.0) { throw Enough(); }
+        };
+        CHECK_THROWS_AS(static_cast<void>(loadScene((path / name).string(), 0, nullptr, stop)), Enough);
+        CHECK(furthest < 0.6);
+    }
+    const Scene scene = loadScene((path / "many.ply").string());
+    double furthest = 0.0;
+    const auto stop = [&](double share) {
+        furthest = std::max(furthest, share);
+        throw Enough();
+    };
+    CHECK_THROWS_AS(GpuScene(context(), scene, stop), Enough);
+    CHECK(furthest < 0.6);
+}
+
+TEST_CASE_FIXTURE(Shown, "a loader that was told to give up is done in the end, whether it was in time or not") {
+    SceneLoader loader(context(), "builtin:fence", options.run);
+    loader.cancel();
+    const std::unique_ptr<LoadedScene> taken = loader.take();
+    CHECK(loader.isDone());
+    CHECK((taken == nullptr || taken->name == "builtin:fence"));
+}
