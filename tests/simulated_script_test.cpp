@@ -419,3 +419,13 @@ TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {
         CHECK(page.find(std::string("`").append(extension.name).append("`")) != std::string::npos);
     }
 }
+
+TEST_CASE("everyScriptThatComesAlongIsOne") {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated")) {
+        CAPTURE(entry.path().string());
+        CHECK_NOTHROW(Script::load(entry.path()));
+        ++count;
+    }
+    CHECK(count >= 2);
+}

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Pictures of the viewer's panel in each of its states, as docs/headset.md shows them: `docs/panel_pictures.py build/release/bin/binosplat docs/panel`.
+
+Each is the panel's part of the viewer's window on a display without a screen (Xvfb), beside the simulated headset, which a script
+brings into the state; frames go by the clock. A state lasts until the picture has been taken, but for the one in which the scene loads."""
+
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+LAST = "rate 90\nsize 64 64\nframes none\n"
+LEFT_AWAY = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n"
+# Pulls the trigger on Next scene once.
+NEXT_SCENE = (
+    "controller right 0 position 0.2 1.2 -0.35 look -0.528 1.407 -0.869\npress right trigger 3 4\n" + LEFT_AWAY
+)
+STATES = {
+    "loading": ("builtin:atelier", LAST),
+    "scene": ("builtin:fence --load-first", LAST),
+    "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
+    "lost": ("builtin:fence --load-first", LAST + "at 3 head off\n"),
+    "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
+}
+SCREEN = (1400, 800)
+EYE_PX = 720  # the window shows an eye of this size, and the panel beside it
+PANEL_PX = (EYE_PX * 768 // 896, EYE_PX)
+PATIENCE_S, LOADS_S, SETTLES_S = 120, 0.7, 12
+
+
+def screen_rows(path):
+    """An X window dump of 32 bits a pixel, as Xvfb keeps it: rows of (red, green, blue)."""
+    with open(path, "rb") as file:
+        data = file.read()
+    head = struct.unpack(">25I", data[:100])
+    start = head[0] + 12 * head[19]
+    for y in range(head[5]):
+        row = data[start + y * head[12] : start + (y + 1) * head[12]]
+        yield [(row[4 * x + 2], row[4 * x + 1], row[4 * x]) for x in range(head[4])]
+
+
+def shows_window(path):
+    """The screen is black but for a mouse until the window is there."""
+    with open(path, "rb") as file:
+        data = file.read()
+    return len(data) - data.count(0) > PANEL_PX[0] * PANEL_PX[1]
+
+
+def write_png(path, rows):
+    """With a palette; channels are rounded until 256 colours are enough."""
+    for step in (1, 4, 8, 17, 36, 51):
+        rounded = [[tuple(min(255, (c + step // 2) // step * step) for c in pixel) for pixel in row] for row in rows]
+        colours = sorted({pixel for row in rounded for pixel in row})
+        if len(colours) <= 256:
+            break
+    index = {colour: i for i, colour in enumerate(colours)}
+    raw = b"".join(b"\0" + bytes(index[pixel] for pixel in row) for row in rounded)
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 3, 0, 0, 0)))
+        file.write(chunk(b"PLTE", b"".join(bytes(colour) for colour in colours)))
+        file.write(chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
+
+
+def take(program, folder, name, scene, script):
+    with tempfile.TemporaryDirectory() as work:
+        with open(os.path.join(work, "state.script"), "w") as file:
+            file.write(script)
+        subprocess.run([program, "scene", "fence", "--out", "a.ply"], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        with open(os.path.join(work, "b.ply"), "w") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex many\n")
+        size = "{}x{}x24".format(*SCREEN)
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", "1", "-screen", "0", size, "-fbdir", work], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        )
+        viewer = None
+        try:
+            display = ":" + server.stdout.readline().decode().strip()
+            environment = dict(os.environ, DISPLAY=display, XDG_CONFIG_HOME=work)
+            environment.pop("WAYLAND_DISPLAY", None)
+            command = [program, "view", *scene.split(), "--simulate", "state.script"]
+            viewer = subprocess.Popen(command, cwd=work, env=environment, stdout=subprocess.DEVNULL)
+            # Until the window is there, and then as long as the script takes to bring the state.
+            end = time.monotonic() + PATIENCE_S
+            while time.monotonic() < end and not shows_window(os.path.join(work, "Xvfb_screen0")):
+                time.sleep(0.02)
+            time.sleep(LOADS_S if name == "loading" else SETTLES_S)
+            rows = list(screen_rows(os.path.join(work, "Xvfb_screen0")))
+            # Without a window manager a window begins in the screen's corner.
+            part = [row[EYE_PX : EYE_PX + PANEL_PX[0]] for row in rows[: PANEL_PX[1]]]
+            write_png(os.path.join(folder, f"{name}.png"), part)
+        finally:
+            for process in (viewer, server):
+                if process is not None:
+                    process.terminate()
+                    process.wait()
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    for name in sys.argv[3:] or STATES:
+        take(program, folder, name, *STATES[name])
+
+
+if __name__ == "__main__":
+    main()
