@@ -166,7 +166,9 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 
 void Viewer::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
-    if (log_.frame > 0) { status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count()); }
+    if (last_end_ != std::chrono::steady_clock::time_point()) {
+        status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
+    }
     if (status_.frame_ms.size() > kPlottedFrames) { status_.frame_ms.erase(status_.frame_ms.begin()); }
     last_end_ = now;
 }
