@@ -59,15 +59,16 @@ public:
     OverlayStatus status;
 };
 
-// Where to point at a widget of the first page, in shares of the panel's width and height.
-inline glm::dvec2 placeOf(const std::string& name, bool with_shaders = false) {
+// Where to point at a widget of the first page, in shares of the panel's width and height; `with_all`: also at those that not every
+// device or headset has.
+inline glm::dvec2 placeOf(const std::string& name, bool with_all = false) {
     static const std::array<WidgetPlaces, 2> places = [] {
         PanelSketch sketch;
         const WidgetPlaces plain = sketch.draw().places;
-        sketch.status.can_reload_shaders = true;
+        sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
         return std::array{plain, sketch.draw().places};
     }();
-    const WidgetPlaces& all = places[with_shaders ? 1 : 0];
+    const WidgetPlaces& all = places[with_all ? 1 : 0];
     REQUIRE_MESSAGE(all.contains(name), name);
     return all.at(name) / glm::dvec2(kPanelPx);
 }

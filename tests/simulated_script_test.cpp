@@ -408,7 +408,7 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 26);
+    CHECK(commands == 28);
 }
 
 TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {

@@ -259,8 +259,7 @@ TEST_CASE("how one moves and what is seen is chosen on the panel") {
     const Workplace work;
     const std::string small = kSmall + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
     const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", kScene), 8);
-    const ViewRun run =
-        runView(work, "choose", small + clickOn(panel, {{0.036, 0.7}, {0.283, 0.7}, {0.529, 0.7}, {0.727, 0.7}}), kScene);
+    const ViewRun run = runView(work, "choose", small + clickOn(panel, {{0.036, 0.7}, {0.263, 0.7}, {0.505, 0.7}, {0.7, 0.7}}), kScene);
     checkClean(run);
     for (const char* change : {"locomotion = \"teleport\"", "vignette = false", "hands = false", "passthrough = true"}) {
         INFO(change << " in " << run.outcome.output);

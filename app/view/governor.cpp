@@ -142,6 +142,13 @@ void Governor::learn(double now_ms) {
     ratio.forget_s = std::min(std::max(2.0 * ratio.forget_s, kForgetRatioSeconds), kLongestBlockSeconds);
 }
 
+void Governor::takeBack() {
+    if (!left_ || now_s_ - changed_s_ >= kProvenSeconds) { return; }
+    Level& failed = levels_[current_];
+    failed.block_length_s = std::min(std::max(2.0 * failed.block_length_s, kFirstBlockSeconds), kLongestBlockSeconds);
+    failed.blocked_s = now_s_ + failed.block_length_s;
+}
+
 std::optional<std::size_t> Governor::worthTrying(double now_ms) const {
     for (std::size_t m = 1; m < ratios_.size(); ++m) {
         // A smaller share of the work is looked at once a larger one has paid.
@@ -190,12 +197,7 @@ void Governor::measure(const GovernedFrame& frame) {
 
 void Governor::makeItFit(double now_ms) {
     const Level& level = levels_[current_];
-    // A step upwards that failed is not tried again soon.
-    if (left_ && now_s_ - changed_s_ < kProvenSeconds) {
-        Level& failed = levels_[current_];
-        failed.block_length_s = std::min(std::max(2.0 * failed.block_length_s, kFirstBlockSeconds), kLongestBlockSeconds);
-        failed.blocked_s = now_s_ + failed.block_length_s;
-    }
+    takeBack();
     // What a lossy method saves is no longer known once its cost has changed: what loses nothing is asked first.
     if (level.method != 0 && ratios_[level.method].measured_s) {
         const double before_ms = ratios_[level.method].own_ms;
@@ -242,6 +244,7 @@ void Governor::giveBack(double now_ms) {
         }
         // Under the period, but with less to spare than a tenth.
         if (now_ms > kTarget * period_ms_ && next != current_) {
+            takeBack();
             left_.reset();
             step(next, now_ms, fmt::format("{:.1f} of {:.1f} ms left too little room", now_ms, period_ms_));
             return;
