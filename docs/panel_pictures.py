@@ -14,9 +14,11 @@ import zlib
 
 LAST = "rate 90\nsize 64 64\nframes none\n"
 LEFT_AWAY = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n"
-# Pulls the trigger on Next scene once.
+# Opens the page of scenes, and pulls the trigger on Next scene once.
 NEXT_SCENE = (
-    "controller right 0 position 0.2 1.2 -0.35 look -0.528 1.407 -0.869\npress right trigger 3 4\n" + LEFT_AWAY
+    "controller right 0 position 0.2 1.2 -0.35 look -0.582 1.774 -0.864\npress right trigger 4 7\n"
+    "controller right 8 position 0.2 1.2 -0.35 look -0.582 1.774 -0.864\n"
+    "controller right 9 position 0.2 1.2 -0.35 look -0.526 1.411 -0.852\npress right trigger 11 14\n" + LEFT_AWAY
 )
 STATES = {
     "loading": ("builtin:atelier", LAST),
@@ -27,8 +29,8 @@ STATES = {
 }
 SCREEN = (1400, 800)
 EYE_PX = 720  # the window shows an eye of this size, and the panel beside it
-PANEL_PX = (EYE_PX * 768 // 896, EYE_PX)
-PATIENCE_S, LOADS_S, SETTLES_S = 120, 0.7, 12
+PANEL_PX = (EYE_PX * 768 // 960, EYE_PX)
+PATIENCE_S, LOADS_S, SETTLES_S = 120, 1.5, 20
 
 
 def screen_rows(path):
