@@ -3,6 +3,7 @@
 
 #include "app/options/commands_table.h"
 #include "app/version.h"
+#include "app/view/view_settings.h"
 #include "engine/error.h"
 
 #include <algorithm>
@@ -93,6 +94,15 @@ std::string markdown() {
             text += fmt::format("\n### [{}]\n\n| option | | range | default | commands |\n|---|---|---|---|---|\n", table);
         }
         text += markdownRow(describe(row), commandsWith(row.text));
+    }
+    text +=
+        "\n### [view]\n\nConfig files alone, and what the panel saves; beside these, `scene-position`, `scene-orientation` (w, x, y, z) "
+        "and "
+        "`units-per-metre`, all\nthree or none.\n\n| key | | range | default |\n|---|---|---|---|\n";
+    for (const OptionRow<ViewSettings>& row : viewSettingsRows()) {
+        const OptionDescription key = describe(row);
+        text +=
+            fmt::format("| `{}` | {} | {} | {} |\n", key.text.key, key.text.help, key.range, key.standard.empty() ? "false" : key.standard);
     }
     return text;
 }

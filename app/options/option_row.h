@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <type_traits>
@@ -39,6 +40,7 @@ struct OptionField {
     std::function<void(const Setting&, Owner&)> read;  // throws Error (bad input)
     std::function<OptionValue(const Owner&)> value;
     std::string range;
+    std::optional<double> least, most;  // of a number
 };
 
 // What people are told about an option.
@@ -108,12 +110,18 @@ auto make(std::string range, auto parse) {
     using At = Path<Members...>;
     using Owner = typename At::Owner;
     return OptionField<Owner>{[parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); },
-                              [](const Owner& owner) { return toValue(At::in(owner)); }, std::move(range)};
+                              [](const Owner& owner) { return toValue(At::in(owner)); },
+                              std::move(range),
+                              {},
+                              {}};
 }
 
 template <auto... Members>
 auto number(double least, double most) {
-    return make<Members...>(fmt::format("{} to {}", least, most), [=](const Setting& s) { return readNumber(s, least, most); });
+    auto made = make<Members...>(fmt::format("{} to {}", least, most), [=](const Setting& s) { return readNumber(s, least, most); });
+    made.least = least;
+    made.most = most;
+    return made;
 }
 
 template <auto... Members>
@@ -133,7 +141,10 @@ auto count(std::uint64_t least, std::uint64_t most) {
         }
     };
     const bool unlimited = most >= std::numeric_limits<std::uint32_t>::max();
-    return make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most), parse);
+    auto made = make<Members...>(unlimited ? fmt::format("{} or more", least) : fmt::format("{} to {}", least, most), parse);
+    made.least = static_cast<double>(least);
+    made.most = static_cast<double>(most);
+    return made;
 }
 
 template <auto... Members>
@@ -180,6 +191,19 @@ template <auto... Members>
 auto mode() {
     const std::vector<std::string_view> names(kModeNames.begin(), kModeNames.end());
     return make<Members...>(fmt::format("{}", fmt::join(names, ", ")), readMode);
+}
+
+// Of an enum, or of a bool, by the names of its values from 0 on.
+template <auto... Members>
+auto named(std::vector<std::string_view> names) {
+    using At = Path<Members...>;
+    using Owner = typename At::Owner;
+    using Field = std::remove_cvref_t<decltype(At::in(std::declval<Owner&>()))>;
+    const auto read = [names](const Setting& s, Owner& owner) {
+        At::in(owner) = static_cast<Field>(std::ranges::find(names, readChoice(s, names)) - names.begin());
+    };
+    const auto value = [names](const Owner& owner) -> OptionValue { return std::string(names[static_cast<std::size_t>(At::in(owner))]); };
+    return OptionField<Owner>{read, value, fmt::format("{}", fmt::join(names, ", ")), {}, {}};
 }
 
 template <auto... Members>

@@ -2,6 +2,7 @@
 #include "app/view/overlay.h"
 
 #include "app/options/modes.h"
+#include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/comfort_widgets.h"
 #include "engine/platform.h"
@@ -48,6 +49,8 @@ void chooseMode(PanelWidgets& widgets, Mode& mode) {
     mode = static_cast<Mode>(std::ranges::find(kModeNames, chosen) - kModeNames.begin());
 }
 
+double leastOf(std::string_view option) { return *findRunRow(option)->field.least; }
+
 void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     StereoOptions& stereo = settings.stereo;
     chooseMode(widgets, stereo.mode);
@@ -61,14 +64,18 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
     widgets.checkbox("Show what made it", &settings.tint);
+    // More is for the command line.
+    static constexpr int kMostMarginPx = 128;
     int margin = static_cast<int>(stereo.margin_px);
-    if (ImGui::SliderInt("margin (paper)", &margin, 0, 128, "%d px")) {
-        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, 0, 128));
+    if (ImGui::SliderInt("margin (paper)", &margin, static_cast<int>(leastOf("margin")), kMostMarginPx, "%d px")) {
+        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, static_cast<int>(leastOf("margin")), kMostMarginPx));
     }
     widgets.noteSlider("margin (paper)");
     auto budget = static_cast<float>(100.0 * stereo.budget);
-    if (ImGui::SliderFloat("budget (predicted)", &budget, 0.0f, 100.0f, "%.0f %% of an eye")) {
-        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, 0.0, 1.0);
+    const double least = leastOf("budget"), most = *findRunRow("budget")->field.most;
+    if (ImGui::SliderFloat("budget (predicted)", &budget, static_cast<float>(100.0 * least), static_cast<float>(100.0 * most),
+                           "%.0f %% of an eye")) {
+        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, least, most);
     }
     widgets.noteSlider("budget (predicted)");
 }

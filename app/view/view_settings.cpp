@@ -14,8 +14,6 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kLeastResolutionScale = 0.1, kMostResolutionScale = 2.0, kMostRefreshRate = 1000.0;
-
 glm::dquat readRotation(const Setting& setting) {
     std::vector<double> values;
     for (const std::string& item : setting.items) {
@@ -28,67 +26,65 @@ glm::dquat readRotation(const Setting& setting) {
     return glm::normalize(rotation);
 }
 
-// The settings of [stereo] and [view], by key, as TOML writes their values.
+// A key, and its value as TOML writes it.
+template <typename Owner>
+std::pair<std::string, std::string> lineOf(const OptionRow<Owner>& row, const Owner& owner) {
+    const OptionValue value = row.field.value(owner);
+    const std::string text = textOf(value);
+    return {row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text};
+}
+
 std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions& stereo) {
     RunOptions options;
     options.stereo = stereo;
     std::vector<std::pair<std::string, std::string>> lines;
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
-        const OptionValue value = row.field.value(options);
-        const std::string text = textOf(value);
-        lines.emplace_back(row.text.key, std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", text) : text);
+        lines.push_back(lineOf(row, options));
     }
     return lines;
 }
 
 std::vector<std::pair<std::string, std::string>> viewLines(const ViewSettings& settings) {
-    return {{"resolution-scale", fmt::format("{}", settings.resolution_scale)},
-            {"tint", settings.tint ? "true" : "false"},
-            {"panel", settings.panel ? "true" : "false"},
-            {"visibility-mask", settings.visibility_mask ? "true" : "false"},
-            {"tilt", settings.tilt ? "true" : "false"},
-            {"refresh-rate", fmt::format("{:g}", settings.refresh_rate)},
-            {"hands", settings.hands ? "true" : "false"},
-            {"locomotion", settings.teleport ? "\"teleport\"" : "\"walk\""},
-            {"vignette", settings.vignette ? "true" : "false"},
-            {"passthrough", settings.passthrough ? "true" : "false"},
-            {"quality", fmt::format("\"{}\"", kQualityNames[static_cast<std::size_t>(settings.quality)])}};
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { lines.push_back(lineOf(row, settings)); }
+    return lines;
 }
 
 }  // namespace
 
+std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
+    using S = ViewSettings;
+    static const std::vector<OptionRow<S>> rows{
+        {{"resolution-scale", "view", kView, "FACTOR", "pixels each way, of what the headset recommends"},
+         field::number<&S::resolution_scale>(0.1, 2.0)},
+        {{"tint", "view", kView, "", "show what made the affiliated picture"}, field::flag<&S::tint>()},
+        {{"panel", "view", kView, "", "show the panel at the start", "true"}, field::flag<&S::panel>()},
+        {{"visibility-mask", "view", kView, "", "ask the runtime what the lenses hide", "true"}, field::flag<&S::visibility_mask>()},
+        {{"tilt", "view", kView, "", "two hands may tilt the scene"}, field::flag<&S::tilt>()},
+        {{"refresh-rate", "view", kView, "HZ", "one of the headset's rates; 0: the runtime's choice"},
+         field::number<&S::refresh_rate>(0.0, 1000.0)},
+        {{"hands", "view", kView, "", "draw hands, or the controllers they hold", "true"}, field::flag<&S::hands>()},
+        {{"locomotion", "view", kView, "KIND", "what the left stick does"}, field::named<&S::teleport>({"walk", "teleport"})},
+        {{"vignette", "view", kView, "", "darken the edge of the view while a stick moves the wearer", "true"},
+         field::flag<&S::vignette>()},
+        {{"passthrough", "view", kView, "", "the room behind the scene, where the headset shows it"}, field::flag<&S::passthrough>()},
+        {{"quality", "view", kView, "PRESET", "how the frame rate is held, see headset.md"},
+         field::named<&S::quality>({std::begin(kQualityNames), std::end(kQualityNames)})},
+    };
+    return rows;
+}
+
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings) {
+    const std::span<const OptionRow<ViewSettings>> rows = viewSettingsRows();
     Similarity placement;
     int placed = 0;
     for (const SettingsTable& table : tables) {
         for (const auto& [key, setting] : table.settings) {
-            if (key == "resolution-scale") {
-                settings.resolution_scale = readNumber(setting, kLeastResolutionScale, kMostResolutionScale);
-            } else if (key == "tint") {
-                settings.tint = readFlag(setting);
-            } else if (key == "panel") {
-                settings.panel = readFlag(setting);
-            } else if (key == "quality") {
-                const auto* const found = std::ranges::find(kQualityNames, setting.text());
-                check(found != std::end(kQualityNames), "{} is {}, must be off, sharp, balanced or fast", setting.origin, setting.text());
-                settings.quality = static_cast<Quality>(found - std::begin(kQualityNames));
-            } else if (key == "refresh-rate") {
-                settings.refresh_rate = readNumber(setting, 0.0, kMostRefreshRate);
-            } else if (key == "tilt") {
-                settings.tilt = readFlag(setting);
-            } else if (key == "hands") {
-                settings.hands = readFlag(setting);
-            } else if (key == "locomotion") {
-                const bool teleports = setting.text() == "teleport";
-                check(teleports || setting.text() == "walk", "{} is {}, must be walk or teleport", setting.origin, setting.text());
-                settings.teleport = teleports;
-            } else if (key == "vignette") {
-                settings.vignette = readFlag(setting);
-            } else if (key == "passthrough") {
-                settings.passthrough = readFlag(setting);
-            } else if (key == "visibility-mask") {
-                settings.visibility_mask = readFlag(setting);
+            const auto row =
+                std::ranges::find(rows, key, [](const OptionRow<ViewSettings>& one) { return std::string_view(one.text.key); });
+            if (row != rows.end()) {
+                row->field.read(setting, settings);
             } else if (key == "scene-position") {
                 placement.position = readVector(setting);
                 ++placed;

@@ -1,11 +1,12 @@
 // What the wearer can change while looking, and the config that keeps it.
 #pragma once
 
-#include "app/options/options.h"
+#include "app/options/option_row.h"
 #include "app/view/governor.h"
 #include "app/view/placement.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,11 @@ struct ViewSettings {
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };
 
-// The config's [view] over `settings`: keys resolution-scale, tint, panel, visibility-mask, tilt, hands, locomotion, vignette,
-// passthrough, quality, refresh-rate, scene-position, scene-orientation (w, x, y, z), units-per-metre. Throws Error with file and line.
+// The keys of [view] beside those that place the scene.
+std::span<const OptionRow<ViewSettings>> viewSettingsRows();
+
+// The config's [view] over `settings`: viewSettingsRows(), and together scene-position, scene-orientation (w, x, y, z) and
+// units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
 // A config that --config takes, also of `render`.
