@@ -3,7 +3,7 @@
 
 #include "app/options/commands_table.h"
 #include "app/version.h"
-#include "app/view/view_settings.h"
+#include "app/view/view_settings_table.h"
 #include "engine/error.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include "app/view/view_settings.h"
 
 #include "app/options/option_table.h"
+#include "app/view/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/setup/values.h"
 

@@ -1,12 +1,11 @@
 // What the wearer can change while looking, and the config that keeps it.
 #pragma once
 
-#include "app/options/option_row.h"
+#include "app/options/options.h"
 #include "app/view/governor.h"
 #include "app/view/placement.h"
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -31,10 +30,7 @@ struct ViewSettings {
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };
 
-// The keys of [view] beside those that place the scene.
-std::span<const OptionRow<ViewSettings>> viewSettingsRows();
-
-// The config's [view] over `settings`: viewSettingsRows(), and together scene-position, scene-orientation (w, x, y, z) and
+// The config's [view] over `settings`: the rows of view_settings_table.h, and together scene-position, scene-orientation (w, x, y, z) and
 // units-per-metre. Throws Error with file and line.
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings);
 
