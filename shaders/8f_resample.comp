@@ -1,8 +1,8 @@
 // 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
-// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels the spread of
-// their disparity times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
+// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
+// their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -105,6 +105,18 @@ Resolved resolve(StereoView stereo, uint row, uvec2 at) {
     }
     if (left >= 0 && (right < 0 || left_depth <= right_depth)) { return Resolved(uint(left), kHole, left_depth, 0); }
     return right >= 0 ? Resolved(uint(right), kHole, right_depth, 0) : Resolved(at.x, kHole, 0, 0);
+}
+
+// How uncertain a pixel's inverse depth is, as a variance: it blends several, and where its neighbours have others it may belong to these.
+float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
+    const float own = kSpreadWeight * resolved.spread * resolved.inverse_depth;
+    float step = 0;
+    [[unroll]] for (uint side = 0; side < 2; ++side) {
+        const uint beside = x + 2 * side - 1;  // beyond either end: no column
+        const uint arrival = beside < width ? arrivalAt(row, beside) : 0;
+        if (arrival != 0) { step = max(step, abs(inverseDepthOf(arrival) - resolved.inverse_depth)); }
+    }
+    return own * own + step * step;
 }
 
 vec4 dominantAt(uint i) { return colourAt(pass.dominant, pass.half_dominant, i); }
@@ -241,8 +253,8 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     if (pixel_class == kHole) { return holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
     // These pixels are many and alike: every other row stands for two.
     if ((at.y & 1) != 0) { return 0; }
-    const float spread_px = min(resolved.spread * resolved.inverse_depth * disparity_px, kMaxSpread);
-    return 2 * (spread_px * spread_px * dot(found.gradient, found.gradient) + found.lost) / 3;
+    const float variance_px2 = min(uncertaintyOf(row, at.x, stereo.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
+    return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
 // Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which.

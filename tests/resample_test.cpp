@@ -128,8 +128,8 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are 
             device.writeTileErrors(std::vector<gpu::uint>(device.tileCount(), newcomers));
             device.resample({.errors = true});
             const auto errors = device.readTileErrors();
-            const auto expected =
-                reference::expectErrors(reference::resolve(arrived.arrivals, c.eyes, c.settings), c.dominant, kinds, c.eyes, c.settings);
+            const auto expected = reference::expectErrors(reference::resolve(arrived.arrivals, c.eyes, c.settings), arrived.arrivals,
+                                                          c.dominant, kinds, c.eyes, c.settings);
             for (std::size_t t = 0; t < errors.size(); ++t) {
                 if (kinds[t] != TileKind::kNone) {
                     CHECK(errors[t] == newcomers);
@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones t
             // Of a column in the thousands, 2e-4 px: so much are colours off, and what lies between pixels.
             CHECK(worst <= 1e-3);
             const auto errors = device.readTileErrors();
-            const auto expected_errors = reference::expectErrors(resolved, c.dominant, kinds, c.eyes, c.settings);
+            const auto expected_errors = reference::expectErrors(resolved, arrived.arrivals, c.dominant, kinds, c.eyes, c.settings);
             for (std::size_t t = 0; t < errors.size(); ++t) {
                 CHECK(test::isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 1e-3,
                                    32.0 / static_cast<double>(gpu::kErrorSteps)));

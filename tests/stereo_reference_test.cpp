@@ -190,19 +190,20 @@ TEST_CASE("a tile's pairs are those where its middle comes from") {
     CHECK(other == std::vector<std::uint64_t>{36, 36, 56, 66, 76, 76, 37, 37, 57, 67, 77, 77});
 }
 
-TEST_CASE("expected errors of blended depths: squared spread in pixels times squared gradient, on every other row for two") {
-    // A ramp of 1/100 a pixel in green; 2 px of disparity at inverse depth 0.2, a spread of 1/8 of it.
+TEST_CASE("expected errors of blended depths: half the spread in pixels times the gradient, squared, on every other row for two") {
+    // A ramp of 1/100 a pixel in green; 2 px of disparity at inverse depth 0.2, a spread of 1/4 of it.
     const glm::uvec2 size_px(48, 16);
     Picture picture = makePicture(size_px, 0.2);
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         picture.rgba[i].y = 0.01 * static_cast<double>(i % 48);
-        spread(picture, i, spreadCode(0.125));
+        spread(picture, i, spreadCode(0.25));
     }
     const EyePair eyes = parallelEyes(size_px);
     const StereoSettings settings{.hole_error = 0.0};
-    const auto resolved = resolve(reproject(picture, eyes, settings), eyes, settings);
+    const auto arrivals = reproject(picture, eyes, settings);
+    const auto resolved = resolve(arrivals, eyes, settings);
     std::vector<TileKind> kinds(3, TileKind::kNone);
-    const auto errors = expectErrors(resolved, picture, kinds, eyes, settings);
+    const auto errors = expectErrors(resolved, arrivals, picture, kinds, eyes, settings);
     const double pixel = 0.25 * 0.25 * 0.01 * 0.01 / 3.0;
     CHECK(errors[1] == doctest::Approx(256.0 * pixel));
     // Two columns of holes at the right; beside them the source's last two pixels, where the gradient ends in itself.
@@ -211,12 +212,35 @@ TEST_CASE("expected errors of blended depths: squared spread in pixels times squ
     auto spreadless = resolved;
     for (Resolved& r : spreadless) { r.spread = 0; }
     kinds[2] = TileKind::kCheap;
-    const auto without = expectErrors(spreadless, picture, kinds, eyes, settings);
+    const auto without = expectErrors(spreadless, arrivals, picture, kinds, eyes, settings);
     CHECK(without[0] + without[1] < 1e-24);
     CHECK(without[2] == 0.0);
     // Four pixels are the most.
     for (Resolved& r : spreadless) { r.spread = 31; }
-    CHECK(expectErrors(spreadless, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+    CHECK(expectErrors(spreadless, arrivals, picture, kinds, eyes, settings)[1] == doctest::Approx(256.0 * 16.0 * 1e-4 / 3.0));
+}
+
+TEST_CASE("expected errors of steps in depth: the greater of both, in pixels, times the gradient, on both sides of it") {
+    // A ramp of 1/100 a pixel in green; 10 px of disparity at inverse depth 1, so that a step of 0.1 is one pixel.
+    const glm::uvec2 size_px(48, 16);
+    Picture picture = makePicture(size_px, 0.2);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = 0.01 * static_cast<double>(i % 48); }
+    const EyePair eyes = parallelEyes(size_px);
+    const auto arrivals = reproject(picture, eyes, {});
+    const auto resolved = resolve(arrivals, eyes, {});
+    const std::vector<TileKind> kinds(3, TileKind::kNone);
+    const auto errorsOf = [&](const std::vector<Arrival>& beside) { return expectErrors(resolved, beside, picture, kinds, eyes, {}); };
+    CHECK(errorsOf(arrivals)[1] < 1e-24);
+    // One column of another depth beside each pixel of two: what a pixel itself is taken for stays.
+    auto stepped = arrivals;
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 24].inverse_depth = 0.3; }
+    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * 2.0 * 0.01 * 0.01 / 3.0));
+    // The greater step decides, whichever side it is on.
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22].inverse_depth = 0.0; }
+    CHECK(errorsOf(stepped)[1] == doctest::Approx(16.0 * (1.0 + 4.0 + 4.0) * 0.01 * 0.01 / 3.0));
+    // Where nothing arrived there is no step.
+    for (std::size_t y = 0; y < 16; ++y) { stepped[y * 48 + 22] = stepped[y * 48 + 24] = {}; }
+    CHECK(errorsOf(stepped)[1] < 1e-24);
 }
 
 TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is lost halfway between two, and not on one") {
@@ -225,8 +249,8 @@ TEST_CASE("expected errors of sampling: what alternates from pixel to pixel is l
         Picture picture = makePicture(size_px, inverse_depth);
         for (std::size_t i = 0; i < picture.rgba.size(); ++i) { picture.rgba[i].y = (across ? i : i / 48) % 2 == 0 ? 0.55 : 0.45; }
         const EyePair eyes = parallelEyes(size_px);
-        const auto resolved = resolve(reproject(picture, eyes, {}), eyes, {});
-        return expectErrors(resolved, picture, std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
+        const auto arrivals = reproject(picture, eyes, {});
+        return expectErrors(resolve(arrivals, eyes, {}), arrivals, picture, std::vector<TileKind>(3, TileKind::kNone), eyes, {})[1];
     };
     // 10 px of disparity at inverse depth 1.
     CHECK(errorAt(0.25, true) == doctest::Approx(256.0 * 0.05 * 0.05 / 3.0));

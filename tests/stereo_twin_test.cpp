@@ -156,10 +156,11 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                     CHECK(other_classes <= 4);  // measured: three, canted
                     continue;
                 }
-                CHECK(other_kinds <= 1);  // measured: one, in one of all these frames
                 // Canted, one disc that comes through the near plane is a newcomer for the twin alone: the device's bounds of such discs
-                // are wider, and let the dominant eye see it.
-                if (seen.name != "room, canted") { CHECK(std::abs(exchanged_error) <= 0.005 * chosen_error); }
+                // are wider, and let the dominant eye see it. What its tile costs buys the device another one in place of a third.
+                const bool canted = seen.name == "room, canted";
+                CHECK(other_kinds <= (canted ? 3 : 1));  // measured: three and one, in one of all these frames each
+                if (!canted) { CHECK(std::abs(exchanged_error) <= 0.005 * chosen_error); }
                 CHECK(other_classes <= 2);  // measured: none
             }
         }

@@ -35,7 +35,7 @@ struct StereoOptions {
     std::optional<double> ipd_m;
     bool center_roi = false;
     std::uint32_t margin_px = 32;
-    double budget = 0.22;
+    double budget = 0.2;
     std::uint32_t move_cost = kDefaultMoveCost;
     std::string depth = "inverse";
     std::string order = "depth";

@@ -3,11 +3,12 @@
 #include "engine/reference/splat.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace binosplat::reference {
 namespace {
 
-constexpr double kMaxSpreadPx = 4.0;
+constexpr double kSpreadWeight = 0.5, kMaxSpreadPx = 4.0;
 constexpr double kMaxPixelError = 4.0, kLeastHoleError = 1e-4;
 
 glm::dvec3 colourAt(const Picture& picture, const glm::ivec2& pixel) {
@@ -22,17 +23,29 @@ double holeError(const Picture& dominant, const glm::ivec2& source, int distance
     return glm::dot(change, change) + kLeastHoleError;
 }
 
-// Squared disparity spread of what arrived at a pixel times the squared change of the picture along the disparity where it came from, a
-// mean over the channels.
-double mixedDepthError(const Picture& dominant, const EyeChange& target_from_source, const Resolved& pixel, const glm::ivec2& source) {
+// Variance of the inverse depth of the pixel in column x of `row`: half the spread of what it blends, and the greatest step from it to
+// what arrived beside it.
+double uncertainty(std::span<const Arrival> row, int x, const Resolved& pixel) {
+    double step = 0.0;
+    for (const int beside : {x - 1, x + 1}) {
+        if (beside < 0 || beside >= static_cast<int>(row.size())) { continue; }
+        const Arrival& neighbour = row[static_cast<std::size_t>(beside)];
+        if (neighbour.way != Arrival::kNone) { step = std::max(step, std::abs(neighbour.inverse_depth - pixel.inverse_depth)); }
+    }
+    const double own = kSpreadWeight * spreadOf(pixel.spread) * pixel.inverse_depth;
+    return own * own + step * step;
+}
+
+// The variance of a disparity times the squared change of the picture along it where the pixel came from, a mean over the channels.
+double uncertainDepthError(const Picture& dominant, const EyeChange& target_from_source, double variance, const glm::ivec2& source) {
     const glm::dvec2 disparity = target_from_source.disparity(glm::dvec2(source) + 0.5);
     const double length = glm::length(disparity);
     if (length == 0.0) { return 0.0; }
-    const double spread_px = std::min(spreadOf(pixel.spread) * pixel.inverse_depth * length, kMaxSpreadPx);
+    const double variance_px2 = std::min(variance * length * length, kMaxSpreadPx * kMaxSpreadPx);
     const glm::dvec3 across = (colourAt(dominant, source + glm::ivec2(1, 0)) - colourAt(dominant, source - glm::ivec2(1, 0))) / 2.0;
     const glm::dvec3 down = (colourAt(dominant, source + glm::ivec2(0, 1)) - colourAt(dominant, source - glm::ivec2(0, 1))) / 2.0;
     const glm::dvec3 change = (disparity.x * across + disparity.y * down) / length;
-    return spread_px * spread_px * glm::dot(change, change) / 3.0;
+    return variance_px2 * glm::dot(change, change) / 3.0;
 }
 
 // What alternates from pixel to pixel along `step` with an amplitude d has third differences of 8 d, and is lost by d halfway between two
@@ -54,13 +67,14 @@ double resamplingError(const Picture& dominant, const glm::dvec2& place) {
 
 }  // namespace
 
-std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, std::span<const TileKind> kinds,
-                                 const EyePair& eyes, const StereoSettings& settings) {
+std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
+                                 std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings) {
     const EyeChange target_from_source(eyes.target, eyes.source), source_from_target(eyes.source, eyes.target);
     const glm::ivec2 size(eyes.target.size_px);
     const glm::uvec2 tiles = tileGrid(eyes.target.size_px);
     std::vector<double> errors(std::size_t{tiles.x} * tiles.y, 0.0);
     for (int y = 0; y < size.y; ++y) {
+        const auto row = arrivals.subspan(static_cast<std::size_t>(y * size.x), static_cast<std::size_t>(size.x));
         for (int x = 0; x < size.x; ++x) {
             const Resolved& pixel = resolved[static_cast<std::size_t>(y * size.x + x)];
             const std::size_t tile = static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize);
@@ -71,8 +85,8 @@ std::vector<double> expectErrors(std::span<const Resolved> resolved, const Pictu
             const glm::dvec2 place = source_from_target.move({column + 0.5, y + 0.5}, pixel.inverse_depth).place_px;
             const glm::dvec2 in_reach = glm::clamp(glm::floor(place), glm::dvec2(-1e6), glm::dvec2(1e6));
             const double error = hole ? holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
-                                      : 2.0 * (mixedDepthError(dominant, target_from_source, pixel,
-                                                               glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1)) +
+                                      : 2.0 * (uncertainDepthError(dominant, target_from_source, uncertainty(row, x, pixel),
+                                                                   glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1)) +
                                                resamplingError(dominant, place));
             errors[tile] += std::min(error, kMaxPixelError);
         }

@@ -80,7 +80,7 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
     pictures.affiliated_depth = resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);
     if (predicts) {
         std::vector<double>& errors = pictures.tile_errors;
-        errors = expectErrors(pictures.resolved, pictures.dominant, pictures.tile_kinds, eyes, stereo);
+        errors = expectErrors(pictures.resolved, arrivals, pictures.dominant, pictures.tile_kinds, eyes, stereo);
         const EyeSplats target(scene, order, eyes.target, settings);
         addNewcomers(errors, target.splats, target.pairs, source.pairs, arrivals, pictures.tile_kinds, size_px, stereo.newcomer_error);
         select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs), pictures.tile_costs, budget_cost);

@@ -24,7 +24,7 @@ struct StereoSettings {
     int edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.22;         // share of an eye's work that is spent on tiles with an error
+    double budget = 0.2;         // share of an eye's work that is spent on tiles with an error
     std::uint32_t move_cost = 0;  // what moving a tile costs, in pairs; tiles of no more are rendered
     double hole_error = 1.0, newcomer_error = 0.3;
     // Tiles that nobody sees: a byte a tile, 1 for these; empty: there is none. The source has no picture there.
@@ -119,9 +119,9 @@ std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arr
 // Likewise 8f: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px);
-// Likewise 8f: the expected squared error of each unmarked tile: of holes, of pixels that blend several depths, and of sampling.
-std::vector<double> expectErrors(std::span<const Resolved> resolved, const Picture& dominant, std::span<const TileKind> kinds,
-                                 const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8f: the expected squared error of each unmarked tile: of holes, of pixels whose depth is uncertain, and of sampling.
+std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
+                                 std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
 
 // 8g: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
 // With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.

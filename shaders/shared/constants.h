@@ -130,7 +130,10 @@ BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
 // What a hole's pixel counts for at least, since what it hides need not look like what stands beside it: (1/100)^2, so little
 // that it decides only between tiles that nothing else tells apart.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
-// A spread of disparity beyond this many pixels is not a blur any more: the error stops growing with it.
+// How much the spread of the depths that a pixel blends counts: a part of it that moves by the mean is wrong by its distance from that,
+// but shows no more than its own weight of its texture. Between a quarter and three quarters choose equally well.
+BINOSPLAT_CONSTANT float kSpreadWeight = 0.5f;
+// A disparity uncertain by more pixels than these is not a blur any more: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 
 // A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio: a wall that goes
