@@ -67,7 +67,8 @@ double farthestDepth(const ViewedScene& view) {
 }
 
 // A frame must be the twin's but for rounding, and depths within 1e-3 wherever no threshold lies within 1e-5 of a value of the
-// twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'.
+// twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'; with Mesa 25
+// also 11 of 133,045, where two of playbot's 3D Gaussians change places.
 void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db = 55.0) {
     CAPTURE(view.name);
     const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
@@ -80,7 +81,7 @@ void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& se
     CHECK(difference.psnrDb() >= least_db);
     CHECK(difference.shareOff() <= 0.0002);
     CHECK(compare(frame.depth, frame.depth, 1).not_finite == 0);
-    CHECK(static_cast<double>(depth.off) <= 1.0 + 1e-5 * static_cast<double>(depth.opaque));
+    CHECK(static_cast<double>(depth.off) <= 1.0 + 1e-4 * static_cast<double>(depth.opaque));
     CHECK(depth.farthest_from_threshold <= 1e-5);
     CHECK(depth.greatest <= 0.0101 * farthestDepth(view));
     MESSAGE(view.name << ": " << difference.psnrDb() << " dB, largest " << difference.largest
