@@ -2,8 +2,8 @@
 #include "engine/picture/flip.h"
 
 #include "engine/error.h"
+#include "engine/parallel.h"
 #include "engine/picture/colour.h"
-#include "engine/reference/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -74,7 +74,7 @@ using Planes = std::array<Plane, 3>;
 // Calls convert(pixel) for all pixels, on some threads.
 template <typename Convert>
 void forPixels(std::size_t count, int threads, const Convert& convert) {
-    reference::forBlocks(count, kBlock, threads, [&](std::size_t begin, std::size_t end) {
+    forBlocks(count, kBlock, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t pixel = begin; pixel < end; ++pixel) { convert(pixel); }
     });
 }

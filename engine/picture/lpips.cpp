@@ -2,8 +2,8 @@
 #include "engine/picture/lpips.h"
 
 #include "engine/error.h"
+#include "engine/parallel.h"
 #include "engine/picture/planes.h"
-#include "engine/reference/parallel.h"
 
 #include <algorithm>
 #include <bit>
@@ -56,7 +56,7 @@ double scaleOf(const float* features, std::size_t channels) {
 double compareFeatures(const Image& a, const Image& b, const std::vector<float>& head, int threads) {
     const std::size_t width = a.size_px.x, channels = head.size();
     std::vector<double> rows(a.size_px.y, 0.0);
-    reference::forBlocks(rows.size(), 1, threads, [&](std::size_t y, std::size_t) {
+    forBlocks(rows.size(), 1, threads, [&](std::size_t y, std::size_t) {
         for (std::size_t x = 0; x < width; ++x) {
             const float* of_a = a.values.data() + (y * width + x) * channels;
             const float* of_b = b.values.data() + (y * width + x) * channels;

@@ -2,7 +2,7 @@
 #include "engine/picture/planes.h"
 
 #include "engine/error.h"
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ Plane filterPlane(const Plane& in, const Weights& across, const Weights& down, B
     const std::vector<float> scale_x = cuts ? cutWindowScales(across, width) : std::vector<float>{};
     const std::vector<float> scale_y = cuts ? cutWindowScales(down, height) : std::vector<float>{};
 
-    reference::forBlocks(height, kBandRows, threads, [&](std::size_t begin, std::size_t end) {
+    forBlocks(height, kBandRows, threads, [&](std::size_t begin, std::size_t end) {
         // Rows first_row to last_row exist; rows beyond are the nearest one, or nothing.
         const std::size_t first_row = begin > radius ? begin - radius : 0, last_row = std::min(height, end + radius);
         std::vector<float> padded(width + across.size()), rows((last_row - first_row) * width);

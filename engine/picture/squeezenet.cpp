@@ -1,7 +1,7 @@
 // SqueezeNet's layers on the CPU. Channels lie side by side, so that a row of a kernel meets one run of neighbouring values.
 #include "engine/picture/squeezenet.h"
 
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 
 #include <algorithm>
 #include <cassert>
@@ -105,7 +105,7 @@ void convolvePixels(const Image& in, const Convolution& convolution, std::size_t
 void convolve(const Image& in, const Convolution& convolution, Image& out, std::size_t first_channel, int threads) {
     assert(static_cast<std::size_t>(in.channels) == convolution.inputs);
     const std::size_t width = out.size_px.x, out_step = static_cast<std::size_t>(out.channels);
-    reference::forBlocks(out.size_px.y, kRowsAtATime, threads, [&](std::size_t begin, std::size_t end) {
+    forBlocks(out.size_px.y, kRowsAtATime, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
             // A block's weights stay in the cache for the whole row.
             for (std::size_t block = 0; block < convolution.outputs; block += kChannels) {
@@ -122,7 +122,7 @@ void convolve(const Image& in, const Convolution& convolution, Image& out, std::
 
 Image poolMaxima(const Image& in, int threads) {
     Image out = makeMap(in.size_px / 2u, static_cast<std::size_t>(in.channels));
-    reference::forBlocks(out.size_px.y, kRowsAtATime, threads, [&](std::size_t begin, std::size_t end) {
+    forBlocks(out.size_px.y, kRowsAtATime, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) {
             for (std::size_t x = 0; x < out.size_px.x; ++x) {
                 float* most = pixelAt(out, x, y);  // zeros, and behind a ReLU nothing is less

@@ -1,5 +1,5 @@
 // 5: the tiles in which a splat meets a pixel centre.
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 #include "engine/reference/reach.h"
 
 namespace binosplat::reference {

@@ -1,5 +1,5 @@
 // 2: the visible splats without gaps, and the camera z of their centres or their distance.
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 #include "engine/reference/splat.h"
 
 namespace binosplat::reference {

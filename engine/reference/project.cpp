@@ -1,6 +1,6 @@
 // 4: a splat as one eye sees it: pixel rows, their reduced form, colour and box.
+#include "engine/parallel.h"
 #include "engine/reference/harmonics.h"
-#include "engine/reference/parallel.h"
 #include "engine/reference/reach.h"
 
 namespace binosplat::reference {

@@ -1,6 +1,6 @@
 // 7: blending, front to back, one tile at a time.
+#include "engine/parallel.h"
 #include "engine/reference/blend.h"
-#include "engine/reference/parallel.h"
 #include "engine/reference/reach.h"
 
 namespace binosplat::reference {

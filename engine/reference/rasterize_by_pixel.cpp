@@ -1,6 +1,6 @@
 // 7 with each pixel's hits in their own order: what any order of whole splats is only near to.
+#include "engine/parallel.h"
 #include "engine/reference/blend.h"
-#include "engine/reference/parallel.h"
 #include "engine/reference/reach.h"
 
 namespace binosplat::reference {

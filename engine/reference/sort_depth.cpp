@@ -1,5 +1,5 @@
 // 3: front to back, ties by index: a radix sort of the depths' bits, stable over splats that come in ascending.
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 #include "engine/reference/reference.h"
 
 #include <bit>

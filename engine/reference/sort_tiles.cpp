@@ -1,5 +1,5 @@
 // 6: pairs by tile, the order of depth kept within, and where each tile's pairs lie.
-#include "engine/reference/parallel.h"
+#include "engine/parallel.h"
 #include "engine/reference/splat.h"
 
 namespace binosplat::reference {

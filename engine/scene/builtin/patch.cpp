@@ -2,12 +2,12 @@
 // them in any order and write to places known beforehand, so the scene does not depend on their number.
 #include "engine/scene/builtin/patch.h"
 
+#include "engine/parallel.h"
 #include "engine/scene/builtin/builtin.h"
 #include "engine/scene/builtin/gloss.h"
 #include "engine/scene/builtin/noise.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <thread>
 
@@ -201,17 +201,14 @@ private:
 
 // Runs work(0 .. count - 1) on all cores; only the calling thread reports.
 template <typename Work>
-void runParallel(std::size_t count, const Work& work, const Progress& progress, double from, double to) {
-    std::atomic<std::size_t> next{0};
-    const auto take = [&](bool reports) {
-        for (std::size_t i; (i = next.fetch_add(1)) < count;) {
-            work(i);
-            if (reports && progress) { progress(from + (to - from) * static_cast<double>(i + 1) / static_cast<double>(count)); }
+void forAll(std::size_t count, const Work& work, const Progress& progress, double from, double to) {
+    const auto caller = std::this_thread::get_id();
+    forBlocks(count, 1, static_cast<int>(std::thread::hardware_concurrency()), [&](std::size_t i, std::size_t end) {
+        work(i);
+        if (progress && std::this_thread::get_id() == caller) {
+            progress(from + (to - from) * static_cast<double>(end) / static_cast<double>(count));
         }
-    };
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); ++i) { others.emplace_back(take, false); }
-    take(true);
+    });
 }
 
 // Whether a patch lies in a wall, floor or ceiling and looks out of the room: the back of a picture frame, the underside of a pot.
@@ -250,7 +247,7 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
     starts.back() = count;
 
     std::vector<LightGrid> grids(patches_.size());
-    runParallel(
+    forAll(
         patches_.size(),
         [&](std::size_t i) {
             if (starts[i + 1] > starts[i]) { grids[i] = LightGrid(patches_[i], room, occluders_, starts[i + 1] - starts[i]); }
@@ -278,7 +275,7 @@ Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progres
             write(0);
             if (progress && i % 16 == 0) { progress(share(starts[i + 1])); }
         } else {
-            runParallel((splats + kChunk - 1) / kChunk, write, progress, share(starts[i]), share(starts[i + 1]));
+            forAll((splats + kChunk - 1) / kChunk, write, progress, share(starts[i]), share(starts[i + 1]));
         }
     }
     if (progress) { progress(1.0); }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace binosplat::reference {
+namespace binosplat {
 
 // Calls work(begin, end) for the blocks [0, block), [block, 2 block), ... of [0, count), each once, in no fixed order.
 // The first exception is thrown again on the calling thread.
@@ -61,4 +61,4 @@ void sortByBucket(std::span<const T> from, std::span<T> to, std::size_t bucket_c
     });
 }
 
-}  // namespace binosplat::reference
+}  // namespace binosplat
