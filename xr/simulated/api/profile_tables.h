@@ -68,8 +68,8 @@ inline constexpr std::string_view kIndex[] = {
 // Of 1.1, before it of extensions.
 inline constexpr std::string_view kCosmos[] = {"/input/shoulder/click",   "/input/squeeze/click",    "/input/trigger/click",
                                                "/input/trigger/value",    "/input/thumbstick/x",     "/input/thumbstick/y",
-                                               "/input/thumbstick/click", "/input/thumbstick/touch", "/input/grip/pose",
-                                               "/input/aim/pose",         "/output/haptic"};
+                                               "/input/thumbstick/click", "/input/thumbstick/touch", "/input/thumbrest/touch",
+                                               "/input/grip/pose",        "/input/aim/pose",         "/output/haptic"};
 inline constexpr std::string_view kCosmosLeft[] = {"/input/x/click", "/input/y/click", "/input/menu/click"};
 inline constexpr std::string_view kCosmosRight[] = {"/input/a/click", "/input/b/click", "/input/system/click"};
 inline constexpr std::string_view kFocus3[] = {
