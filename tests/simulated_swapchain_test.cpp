@@ -2,6 +2,7 @@
 #include "tests/simulated_fixture.h"
 
 #include <set>
+#include <string_view>
 
 using namespace binosplat::test;
 
@@ -9,6 +10,45 @@ namespace {
 
 struct SlowFixture : SessionFixture {
     SlowFixture() : SessionFixture("size 64 64\nframes none\nat 0 slow-images 2\n") {}
+};
+
+// Vulkan's loader, which notes what images are made with.
+struct ImageRecorder {
+    static inline PFN_vkGetDeviceProcAddr find_in_device = nullptr;
+    static inline PFN_vkCreateImage create_image = nullptr;
+    static inline std::vector<VkImageCreateInfo> made;
+
+    static VkResult createImage(VkDevice device, const VkImageCreateInfo* info, const VkAllocationCallbacks* allocator, VkImage* image) {
+        made.push_back(*info);
+        return create_image(device, info, allocator, image);
+    }
+    static PFN_vkVoidFunction findInDevice(VkDevice device, const char* name) {
+        if (std::string_view(name) == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(findInDevice);
+        const PFN_vkVoidFunction found = find_in_device(device, name);
+        if (std::string_view(name) != "vkCreateImage") return found;
+        create_image = reinterpret_cast<PFN_vkCreateImage>(found);
+        return reinterpret_cast<PFN_vkVoidFunction>(createImage);
+    }
+    static PFN_vkVoidFunction find(VkInstance instance, const char* name) {
+        const PFN_vkVoidFunction found = vkGetInstanceProcAddr(instance, name);
+        if (std::string_view(name) != "vkGetDeviceProcAddr") return found;
+        find_in_device = reinterpret_cast<PFN_vkGetDeviceProcAddr>(found);
+        return reinterpret_cast<PFN_vkVoidFunction>(findInDevice);
+    }
+};
+
+struct RecordedFixture : SessionFixture {
+    RecordedFixture() : SessionFixture(kQuietScript, {}, ImageRecorder::find) {}
+
+    VkImageCreateFlags flagsFor(XrSwapchainUsageFlags usage) const {
+        XrSwapchainCreateInfo info = swapchainInfo();
+        info.usageFlags |= usage;
+        XrSwapchain swapchain = XR_NULL_HANDLE;
+        ImageRecorder::made.clear();
+        REQUIRE(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
+        REQUIRE(!ImageRecorder::made.empty());
+        return ImageRecorder::made.front().flags;
+    }
 };
 
 // A clear of the image and back, as an application that draws would touch it; validation watches the layout it is found in.
@@ -116,6 +156,8 @@ TEST_CASE_FIXTURE(SessionFixture, "every format and use makes images that Vulkan
     XrSwapchain swapchain = XR_NULL_HANDLE;
     CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
 }
+
+TEST_CASE_FIXTURE(RecordedFixture, "images are made by the functions of the application's own loader") { CHECK(flagsFor(0) == 0); }
 
 TEST_CASE_FIXTURE(SessionFixture, "a swapchain of the largest view that is offered can be made") {
     XrViewConfigurationView views[2] = {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}};
