@@ -159,6 +159,12 @@ TEST_CASE_FIXTURE(SessionFixture, "every format and use makes images that Vulkan
 
 TEST_CASE_FIXTURE(RecordedFixture, "images are made by the functions of the application's own loader") { CHECK(flagsFor(0) == 0); }
 
+TEST_CASE_FIXTURE(RecordedFixture, "mutable images ask for extended usage, which came with Vulkan 1.1, for shaders that write alone") {
+    CHECK(flagsFor(XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
+    CHECK(flagsFor(XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) ==
+          (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
+}
+
 TEST_CASE_FIXTURE(SessionFixture, "a swapchain of the largest view that is offered can be made") {
     XrViewConfigurationView views[2] = {{XR_TYPE_VIEW_CONFIGURATION_VIEW}, {XR_TYPE_VIEW_CONFIGURATION_VIEW}};
     std::uint32_t count = 0;
