@@ -108,17 +108,23 @@ Priorities highestPriorities(const std::vector<AttachedAction>& actions, const s
 ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state, const std::vector<ActiveSet>& active,
                          const Priorities& highest) {
     ActionReading reading;
-    for (const BoundSource& source : action.sources) {
+    const std::optional<std::size_t> followed_before = action.readings.at(subaction_path).followed;
+    bool keeps_followed = false;
+    for (std::size_t i = 0; i < action.sources.size(); ++i) {
+        const BoundSource& source = action.sources[i];
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
         if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) continue;
+        keeps_followed = keeps_followed || followed_before == i;
         const ControllerState& controller = state.device(source.device);
         if (!controller.tracked) continue;
         reading.is_active = true;
+        if (!reading.followed) reading.followed = i;
         if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
         // Of several sources the strongest counts; for booleans that is "or".
         const glm::dvec2 value = valueOf(controller, source, action.type);
         if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) reading.value = value;
     }
+    if (keeps_followed || !reading.followed) reading.followed = followed_before;
     return reading;
 }
 
@@ -158,7 +164,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
 }
 
 void Attachment::bindSources(const Instance& instance) {
-    for (AttachedAction& action : actions) action.sources.clear();
+    for (AttachedAction& action : actions) {
+        action.sources.clear();
+        for (auto& [subaction_path, reading] : action.readings) reading.followed.reset();
+    }
     for (const SuggestedProfile& suggested : suggestions) {
         const Profile* const profile = findProfile(instance.paths.textOf(suggested.profile));
         for (const SuggestedBinding& binding : suggested.bindings) {
@@ -196,13 +205,11 @@ std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) continue;
         const auto reading = attached.readings.find(subaction_path);
-        if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
-        for (const BoundSource& source : attached.sources) {
-            if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-            const ControllerState& controller = state.device(source.device);
-            if (!controller.tracked) return std::nullopt;
-            return poseOf(controller, source);
-        }
+        if (reading == attached.readings.end() || !reading->second.is_active || !reading->second.followed) return std::nullopt;
+        const BoundSource& source = attached.sources[*reading->second.followed];
+        const ControllerState& controller = state.device(source.device);
+        if (!controller.tracked) return std::nullopt;
+        return poseOf(controller, source);
     }
     return std::nullopt;
 }

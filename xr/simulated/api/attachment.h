@@ -33,6 +33,9 @@ struct ActionReading {
     glm::dvec2 value{0.0, 0.0};  // booleans are 0 or 1, scalars have y = 0
     bool has_changed = false;
     XrTime changed_at = 0;
+    // Of the action's sources, the one that its spaces stand on if it is a pose. It is kept as long as xrSyncActions activates it, even if
+    // it is not tracked for a while.
+    std::optional<std::size_t> followed;
 };
 
 struct AttachedAction {
