@@ -157,6 +157,53 @@ TEST_CASE_FIXTURE(SessionFixture, "every format and use makes images that Vulkan
     CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
 }
 
+TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole, twice, and freed in between") {
+    constexpr XrSwapchainUsageFlags kUses[] = {0,
+                                               XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+                                               XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT,
+                                               XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_SAMPLED_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT};
+    std::uint32_t count = 0;
+    std::int64_t formats[32];
+    REQUIRE(xrEnumerateSwapchainFormats(session, 32, &count, formats) == XR_SUCCESS);
+    const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const bool is_depth = formats[i] == VK_FORMAT_D32_SFLOAT || formats[i] == VK_FORMAT_D16_UNORM ||
+                              formats[i] == VK_FORMAT_D24_UNORM_S8_UINT || formats[i] == VK_FORMAT_D32_SFLOAT_S8_UINT;
+        for (const XrSwapchainUsageFlags use : kUses) {
+            for (const std::uint32_t shape : {0, 1, 2, 3}) {
+                XrSwapchainCreateInfo info = swapchainInfo();
+                info.format = formats[i];
+                info.usageFlags = use;
+                info.usageFlags |= is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+                info.arraySize = shape == 1 ? 2 : 1;
+                info.mipCount = shape == 2 ? 2 : 1;
+                info.createFlags = shape == 3 ? XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT : 0;
+                INFO("format ", formats[i], " use ", use, " shape ", shape);
+                XrSwapchain swapchain = XR_NULL_HANDLE;
+                const XrResult made = xrCreateSwapchain(session, &info, &swapchain);
+                // Not every device writes every format from shaders.
+                if ((use & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0 && made == XR_ERROR_FEATURE_UNSUPPORTED) continue;
+                REQUIRE(made == XR_SUCCESS);
+                const std::size_t images = imagesOf(swapchain).size();
+                REQUIRE(images == (shape == 3 ? 1 : 3));
+                for (int round = 0; round < (shape == 3 ? 1 : 2); ++round) {
+                    std::uint32_t index = 0;
+                    for (std::size_t held = 0; held < images; ++held)
+                        CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
+                    for (std::size_t held = 0; held < images; ++held) {
+                        CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+                        CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+                    }
+                }
+                CHECK(xrDestroySwapchain(swapchain) == XR_SUCCESS);
+            }
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(RecordedFixture, "images are made by the functions of the application's own loader") { CHECK(flagsFor(0) == 0); }
 
 TEST_CASE_FIXTURE(RecordedFixture, "mutable images ask for extended usage, which came with Vulkan 1.1, for shaders that write alone") {
