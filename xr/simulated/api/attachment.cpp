@@ -200,18 +200,26 @@ AttachedAction& getAttached(Session& session, XrAction action) {
     return *attached;
 }
 
-std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
-    if (!session.attachment || !session.is_running) return std::nullopt;
+namespace {
+
+// What a pose action is read from; null while it is inactive.
+const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    if (!session.attachment || !session.is_running) return nullptr;
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) continue;
         const auto reading = attached.readings.find(subaction_path);
-        if (reading == attached.readings.end() || !reading->second.is_active || !reading->second.followed) return std::nullopt;
-        const BoundSource& source = attached.sources[*reading->second.followed];
-        const ControllerState& controller = state.device(source.device);
-        if (!controller.tracked) return std::nullopt;
-        return poseOf(controller, source);
+        if (reading == attached.readings.end() || !reading->second.is_active) return nullptr;
+        return reading->second.followed ? &attached.sources[*reading->second.followed] : nullptr;
     }
-    return std::nullopt;
+    return nullptr;
+}
+
+}  // namespace
+
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    if (source == nullptr || !state.device(source->device).tracked) return std::nullopt;
+    return poseOf(state.device(source->device), *source);
 }
 
 }  // namespace simulated
