@@ -2,6 +2,8 @@
 #include "tests/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
+#include <array>
+#include <cmath>
 #include <set>
 
 using namespace binosplat::test;
@@ -36,6 +38,7 @@ std::vector<Bound> bindingsOf(const Profile& profile, std::string_view user_path
     add(profile.components);
     if (user_path == "/user/hand/left") add(profile.left_components);
     if (user_path == "/user/hand/right") add(profile.right_components);
+    if (user_path.starts_with("/user/hand/")) add(std::array<std::string_view, 1>{"/input/grip_surface/pose"});
     for (const std::string& vector : vectors) bindings.push_back({vector, XR_ACTION_TYPE_VECTOR2F_INPUT});
     return bindings;
 }
@@ -103,6 +106,13 @@ struct Played : HeadlessSession {
             REQUIRE(setVector(session, user_path, source, {value, -value}) == XR_SUCCESS);
         }
         sync();
+    }
+
+    XrSpace spaceOf(const Bound& bound) const {
+        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, bound.action, user_path, kIdentity};
+        XrSpace made = XR_NULL_HANDLE;
+        REQUIRE(xr<PFN_xrCreateActionSpace>("xrCreateActionSpace")(session, &info, &made) == XR_SUCCESS);
+        return made;
     }
 
     struct Reading {
@@ -187,6 +197,34 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
                 const Played::Reading released = played.read(bound);
                 CHECK_MESSAGE((released.x == 0 && released.y == 0 && released.has_changed), bound.path);
                 CHECK_MESSAGE(released.changed_at > moved.changed_at, bound.path);
+            }
+        }
+    }
+}
+
+TEST_CASE("every pose of every profile is where it is put") {
+    constexpr float kHalf = 0.70710678f;
+    for (const Profile& profile : simulated::allProfiles()) {
+        for (const std::string_view user : profile.user_paths) {
+            const Played played(profile, user);
+            const XrSpace stage = played.space(XR_REFERENCE_SPACE_TYPE_STAGE);
+            played.switchTo(true);
+            for (const Bound& bound : played.bindings) {
+                if (bound.type != XR_ACTION_TYPE_POSE_INPUT) continue;
+                INFO(std::string(profile.path), " ", bound.path);
+                const XrPosef wanted{{0, kHalf, 0, kHalf}, {1, 2, 3}};
+                REQUIRE(played.xr<PFN_xrSetInputDeviceLocationEXT>("xrSetInputDeviceLocationEXT")(
+                            played.session, played.user_path, played.path(bound.path.c_str()), stage, wanted) == XR_SUCCESS);
+                played.sync();
+                XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
+                REQUIRE(played.xr<PFN_xrLocateSpace>("xrLocateSpace")(played.spaceOf(bound), stage, 1'000'000'000, &location) ==
+                        XR_SUCCESS);
+                CHECK((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0);
+                const XrPosef& found = location.pose;
+                CHECK(found.position.x == doctest::Approx(1));
+                CHECK(found.position.y == doctest::Approx(2));
+                CHECK(found.position.z == doctest::Approx(3));
+                CHECK(std::abs(found.orientation.y * kHalf + found.orientation.w * kHalf) == doctest::Approx(1));
             }
         }
     }

@@ -71,15 +71,10 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
     return {value, 0.0};
 }
 
-// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
-// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
-    constexpr double kPalm_m = 0.02;
     if (source.source == "aim") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
-    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
-    grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
-    return compose(controller.stage_from_grip, grip_from_palm);
+    return compose(controller.stage_from_grip, gripFromPalm(source.device));
 }
 
 bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
@@ -129,6 +124,13 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
 }
 
 }  // namespace
+
+Pose gripFromPalm(std::size_t device) {
+    constexpr double kPalm_m = 0.02;
+    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
+    grip_from_palm.position.x = device == kLeftHand ? -kPalm_m : kPalm_m;
+    return grip_from_palm;
+}
 
 AttachedAction* Attachment::find(std::uint64_t action) {
     const auto found = std::find_if(actions.begin(), actions.end(), [&](const auto& attached) { return attached.number == action; });

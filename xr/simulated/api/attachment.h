@@ -70,6 +70,10 @@ struct Attachment {
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };
 
+// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
+// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
+Pose gripFromPalm(std::size_t device);
+
 // XR_ERROR_ACTIONSET_NOT_ATTACHED.
 AttachedAction& getAttached(Session& session, XrAction action);
 
