@@ -3,7 +3,11 @@
 
 #include <atomic>
 #include <barrier>
+#include <condition_variable>
+#include <cstdlib>
 #include <functional>
+#include <mutex>
+#include <queue>
 #include <thread>
 
 using namespace binosplat::test;
@@ -132,4 +136,40 @@ TEST_CASE_FIXTURE(SessionFixture, "each thread makes, uses and destroys its own,
         --at_work;
     });
     CHECK(failures.count == 0);
+}
+
+TEST_CASE_FIXTURE(SessionFixture,
+                  "one thread waits for frames while another ends the ones before, and each is displayed a period after the other") {
+    begin();
+    constexpr int kFrames = 30;
+    std::mutex lock;
+    std::condition_variable changed;
+    std::queue<XrFrameState> waited;
+    std::vector<XrTime> displayed;
+    Failures failures;
+    std::jthread waiting([&] {
+        for (int i = 0; i < kFrames; ++i) {
+            XrFrameState state{XR_TYPE_FRAME_STATE};
+            failures.expect(XR_SUCCEEDED(xrWaitFrame(session, nullptr, &state)));
+            const std::lock_guard guard(lock);
+            waited.push(state);
+            changed.notify_one();
+        }
+    });
+    XrDuration period = 0;
+    for (int i = 0; i < kFrames; ++i) {
+        std::unique_lock guard(lock);
+        changed.wait(guard, [&] { return !waited.empty(); });
+        const XrFrameState state = waited.front();
+        waited.pop();
+        guard.unlock();
+        CHECK(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+        // From here on the other thread may have the next one.
+        CHECK(endFrame(state.predictedDisplayTime) == XR_SUCCESS);
+        displayed.push_back(state.predictedDisplayTime);
+        period = state.predictedDisplayPeriod;
+    }
+    waiting.join();
+    CHECK(failures.count == 0);
+    for (std::size_t i = 1; i < displayed.size(); ++i) CHECK(std::abs(displayed[i] - displayed[i - 1] - period) <= 1);
 }
