@@ -1,5 +1,5 @@
 // 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
-// known where the eye looks, an error counts for what the eye sees of it.
+// known where the eye looks, an error counts for what the eye sees of it, so that the tiles beside that place must be dearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -28,18 +28,18 @@ void main() {
     if (tile >= size_tiles.x * size_tiles.y) { return; }
     // Where sums stop growing (8e), the order of threads decides by how much they went beyond.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
-    float seen = float(error);
-    if (kFoveated) {
-        const float share = seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x));
-        seen *= share;
-        if (share < 1 && seen < kLeastSeenError * kErrorSteps) { seen = 0; }
-    }
     uint price = 0;
-    if (pass.tile_kinds.at[tile] == 0 && seen > 0) {
+    if (pass.tile_kinds.at[tile] == 0 && error > 0) {
         const uint cost = pass.tile_costs.at[tile];
-        const uint bin = binOf(seen / float(cost));
+        const uint bin = binOf(float(error) / float(cost));
         price = bin << 22 | cost;
+        // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
         atomicAdd(pass.price_bins.at[bin], cost);
+        if (kFoveated) {
+            const float share = seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)), seen = share * float(error);
+            const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
+            price = unnoticed ? 0 : binOf(seen / float(cost)) << 22 | cost;
+        }
     }
     pass.tile_prices.at[tile] = price;
 }

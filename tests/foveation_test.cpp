@@ -17,7 +17,7 @@ using test::StereoOnDevice;
 
 namespace {
 
-// The middle of a tile, as far from where an eye looks as its corners are at most.
+// From where an eye looks to the middle of a tile.
 double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
     const Intrinsics& lens = eye.intrinsics;
     const std::size_t columns = (eye.size_px.x + 15) / 16;
@@ -26,7 +26,7 @@ double angleOf(const Eye& eye, std::size_t tile, const Gaze& gaze) {
     return std::acos(std::clamp(glm::dot(glm::normalize(ray), glm::normalize(gaze.direction)), -1.0, 1.0));
 }
 
-// Tiles of an eye 8 tiles wide and the errors that moving would leave, over nine decades.
+// Tiles and the errors that moving would leave, over nine decades.
 struct Errors {
     std::vector<gpu::uint> kinds, errors, costs;
 
@@ -99,19 +99,23 @@ TEST_CASE_FIXTURE(Gpu, "8h_price counts of an error what the twin's eye sees, wh
         const std::vector<gpu::uint> prices = device.readTilePrices(), bins = device.readBins();
         const auto shares = reference::findSeenShares(eye, {gaze.direction, gaze.clear_rad});
         const auto expected = reference::price(test::kindsOf(tiles.kinds), twin_errors, twin_costs, shares);
+        const auto whole = reference::price(test::kindsOf(tiles.kinds), twin_errors, twin_costs);
         std::size_t priced = 0, other_bins = 0, unnoticed = 0;
         std::vector<gpu::uint> expected_bins(gpu::kPriceBins, 0);
         for (std::size_t t = 0; t < prices.size(); ++t) {
             CHECK((prices[t] != 0) == expected[t].has_value());
+            if (whole[t]) { expected_bins[*whole[t]] += tiles.costs[t]; }
             unnoticed += tiles.kinds[t] == 0 && tiles.errors[t] != 0 && prices[t] == 0 ? 1 : 0;
             if (prices[t] == 0) { continue; }
             ++priced;
-            expected_bins[prices[t] >> 22] += tiles.costs[t];
             const int off = static_cast<int>(prices[t] >> 22) - static_cast<int>(expected[t].value_or(0));
             CHECK(std::abs(off) <= 1);
             other_bins += off != 0 ? 1 : 0;
         }
-        CHECK(bins == expected_bins);
+        // Division may be off by a few roundings.
+        std::size_t off_bins = 0;
+        for (std::size_t b = 0; b < bins.size(); ++b) { off_bins += bins[b] != expected_bins[b] ? 1 : 0; }
+        CHECK(off_bins <= 2);
         CHECK(priced > 100);
         CHECK(unnoticed > 100);
         CHECK(other_bins <= 3);  // a place that rounds to the next bin
@@ -135,6 +139,7 @@ TEST_CASE_FIXTURE(
                 gained_far += !near && isChosen(there, t) && !isChosen(everywhere, t) ? 1 : 0;
             }
             CHECK(lost_near == 0);
+            CHECK(gained_far == 0);
             MESSAGE(everywhere.result.counters.at("tiles_predicted")
                     << " and " << there.result.counters.at("tiles_predicted") << " tiles, "
                     << everywhere.result.counters.at("work_rendered") << " and " << there.result.counters.at("work_rendered") << " pairs, "
@@ -146,6 +151,42 @@ TEST_CASE_FIXTURE(
             CHECK(room.psnrNear(there, gaze, gaze.clear_rad) >= room.psnrNear(everywhere, gaze, gaze.clear_rad));
         }
     }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's") {
+    const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000);
+    const auto eyes = test::headsetEyes(room.eye, glm::radians(5.0));
+    const GpuScene scene(context(), room.scene);
+    StereoFrame frame(context(), scene);
+    std::size_t chosen = 0, chosen_everywhere = 0;
+    for (const Side dominant : {kLeft, kRight}) {
+        CAPTURE(static_cast<int>(dominant));
+        // So few pixels show less than an eye resolves but far from where it looks.
+        const Gaze gaze{{dominant == kLeft ? -2.0 : 2.0, 0.5, 1.0}, 0.05};
+        reference::StereoSettings twin_settings{.budget = 0.3};
+        twin_settings.target_gaze = reference::Gaze{gaze.direction, gaze.clear_rad};
+        const auto twin = reference::renderStereo(room.scene, {eyes[dominant], eyes[1 - dominant]}, twin_settings, {});
+        FrameSettings settings;
+        settings.dominant = dominant;
+        settings.stereo = test::settingsOf(twin_settings);
+        const AffiliatedFrame everywhere = test::makeAffiliated(frame, eyes, settings);
+        settings.gazes[static_cast<std::size_t>(1 - dominant)] = gaze;
+        const AffiliatedFrame made = test::makeAffiliated(frame, eyes, settings);
+        std::size_t other_kinds = 0;
+        for (std::size_t t = 0; t < twin.tile_kinds.size(); ++t) {
+            other_kinds += made.tile_kinds[t] != static_cast<std::uint32_t>(twin.tile_kinds[t]) ? 1 : 0;
+        }
+        CHECK(other_kinds <= 1);
+        chosen += made.result.counters.at("tiles_predicted");
+        chosen_everywhere += everywhere.result.counters.at("tiles_predicted");
+        // The dominant eye's gaze says nothing of the affiliated eye's tiles.
+        settings.gazes = {};
+        settings.gazes[static_cast<std::size_t>(dominant)] = gaze;
+        CHECK(test::makeAffiliated(frame, eyes, settings).tile_kinds == everywhere.tile_kinds);
+    }
+    MESSAGE(chosen << " tiles of " << chosen_everywhere);
+    CHECK(chosen > 0);
+    CHECK(chosen < chosen_everywhere);
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere gets the picture of one of which nothing is known") {

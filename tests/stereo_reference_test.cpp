@@ -308,6 +308,23 @@ TEST_CASE("the dearest errors are mended first, in the order of tiles where they
     CHECK(chosen(111) == "ppeppp");
 }
 
+TEST_CASE("the budget ends where it would if all errors were seen whole, and what is seen of an error must be worth that") {
+    using Prices = std::vector<std::optional<std::uint32_t>>;
+    const Prices whole{9, 8, 8, 5, 5, 1};
+    const std::vector<std::uint64_t> costs{20, 20, 20, 20, 20, 20};
+    const auto chosen = [&](const Prices& seen, std::uint64_t budget) {
+        std::vector<TileKind> kinds(6, TileKind::kNone);
+        select(kinds, seen, costs, budget, whole);
+        return letters(kinds);
+    };
+    CHECK(chosen(whole, 80) == "pppp..");
+    CHECK(chosen({9, 8, 4, 5, 5, 1}, 80) == "pp.p..");  // the third is not replaced by the fifth
+    CHECK(chosen({9, 8, 5, 5, 5, 1}, 80) == "ppp...");  // it comes before the fourth, for which it is worth as much
+    CHECK(chosen({4, std::nullopt, 4, 5, 4, 1}, 80) == "...p..");
+    CHECK(chosen({1, std::nullopt, 1, 1, 1, 1}, 120) == "p.pppp");
+    CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
+}
+
 TEST_CASE("a newcomer stands in front of the farther of what is beside it, and wherever nothing is moved") {
     // Three tiles; pixels 8 and 40 are reached at 1/2 and 1/4. One splat each at pixels 20 and 44, in its own tile.
     const glm::uvec2 size_px(48, 1);

@@ -146,8 +146,10 @@ std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds,
 std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 
 // 8i: from the greatest price down, the first of equals first, the tiles that together cost no more than `budget_cost`.
+// `whole_prices`: what they would be if all errors were seen whole; empty: as they are. The budget ends where it would among these, and
+// what is worth less than that is not rendered.
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
-            std::uint64_t budget_cost);
+            std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {

@@ -112,7 +112,7 @@ BINOSPLAT_CONSTANT uint kMaxTileCost = 0x3fffffu;
 // angle from there: the more careful of the two slopes of Guenter et al. 2012, Foveated 3D Graphics.
 BINOSPLAT_CONSTANT float kFovealCycle = 0.000363610f;
 BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
-// A tile beside where the eye looks is moved, whatever the budget, if the eye sees less than this of its squared error: a hundredth of
+// A tile beside where the eye looks is moved, whatever the budget is, if the eye sees less than this of its squared error: a hundredth of
 // what lies between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 // The spread of a moving pixel's inverse depth is told in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
