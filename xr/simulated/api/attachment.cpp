@@ -75,7 +75,7 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
 // finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
     constexpr double kPalm_m = 0.02;
-    if (source.source == "aim") return controller.stage_from_aim;
+    if (source.source == "aim" || source.source == "gaze_ext") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
     Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
     grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
@@ -146,7 +146,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
             break;
         }
     }
-    std::array<const Profile*, kDevices> chosen{hands, hands, nullptr, nullptr};
+    std::array<const Profile*, kDevices> chosen{hands, hands};
+    const Profile* const tracker = findProfile("/interaction_profiles/ext/eye_gaze_interaction");
+    const bool tracks_eyes = instance.simulation->script.gaze.tracker != EyeTracking::kOff;
+    if (tracks_eyes && isSuggested(instance, *tracker)) chosen[kGaze] = tracker;
     for (std::size_t device = 0; device < kDevices; ++device) {
         const Profile* const wanted = automation.devices[device].profile;
         if (wanted != nullptr) chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr;
@@ -191,20 +194,33 @@ AttachedAction& getAttached(Session& session, XrAction action) {
     return *attached;
 }
 
-std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
-    if (!session.attachment || !session.is_running) return std::nullopt;
+namespace {
+
+// What a pose action is read from; null while it is inactive.
+const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    if (!session.attachment || !session.is_running) return nullptr;
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) continue;
         const auto reading = attached.readings.find(subaction_path);
-        if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
+        if (reading == attached.readings.end() || !reading->second.is_active) return nullptr;
         for (const BoundSource& source : attached.sources) {
-            if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-            const ControllerState& controller = state.device(source.device);
-            if (!controller.tracked) return std::nullopt;
-            return poseOf(controller, source);
+            if (subaction_path == XR_NULL_PATH || source.user_path == subaction_path) return &source;
         }
     }
-    return std::nullopt;
+    return nullptr;
+}
+
+}  // namespace
+
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    if (source == nullptr || !state.device(source->device).tracked) return std::nullopt;
+    return poseOf(state.device(source->device), *source);
+}
+
+bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    return source != nullptr && source->device == kGaze;
 }
 
 }  // namespace simulated

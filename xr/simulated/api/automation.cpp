@@ -112,7 +112,8 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
             stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));
         require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "nobody knows where the space is");
         const Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
-        (input.name == "aim/pose" ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
+        const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
+        (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
         return successOf(owner);
     });
 }

@@ -58,7 +58,9 @@ private:
                                                                            {"controller", &Parser::parseController},
                                                                            {"extension", &Parser::parseExtension},
                                                                            {"eye", &Parser::parseEye},
+                                                                           {"eye-tracking", &Parser::parseEyeTrackingLine},
                                                                            {"frames", &Parser::parseFrames},
+                                                                           {"gaze", &Parser::parseGazeLine},
                                                                            {"head", &Parser::parseHead},
                                                                            {"head-motion", &Parser::parseHeadMotionLine},
                                                                            {"headset", &Parser::parseHeadsetLine},
@@ -153,6 +155,12 @@ private:
             script_.cant_rad[side] = glm::radians(words.number("the turn outwards in degrees", -45.0, 45.0));
         }
     }
+
+    void parseEyeTrackingLine(Words& words) {
+        requireFirst(words, "eye-tracking");
+        parseEyeTracking(words, script_.gaze);
+    }
+    void parseGazeLine(Words& words) { parseGazeKey(words, script_.gaze); }
 
     void parseHeadsetLine(Words& words) {
         for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant"}) {
@@ -293,7 +301,7 @@ private:
         last_at_s_ = time_s;
         const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
         switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                              "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load"})) {
+                                              "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "gaze"})) {
             case 0:
                 return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
             case 1:
@@ -337,8 +345,10 @@ private:
             case 13:
                 script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.number(kRateMeaning, kLeastRate, kMostRate)});
                 return;
-            default:
+            case 14:
                 return addStep(words, script_.gpu_load, time_s, parseLoad(words));
+            default:
+                return parseGazeTracking(words, time_s, script_.gaze);
         }
     }
 
