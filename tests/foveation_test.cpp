@@ -163,7 +163,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's") {
         CAPTURE(static_cast<int>(dominant));
         // So few pixels show less than an eye resolves but far from where it looks.
         const Gaze gaze{{dominant == kLeft ? -2.0 : 2.0, 0.5, 1.0}, 0.05};
-        reference::StereoSettings twin_settings{.budget = 0.3};
+        reference::StereoSettings twin_settings{.budget = 0.8};
         twin_settings.target_gaze = reference::Gaze{gaze.direction, gaze.clear_rad};
         const auto twin = reference::renderStereo(room.scene, {eyes[dominant], eyes[1 - dominant]}, twin_settings, {});
         FrameSettings settings;
