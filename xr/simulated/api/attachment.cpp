@@ -72,7 +72,7 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
 }
 
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
-    if (source.source == "aim") return controller.stage_from_aim;
+    if (source.source == "aim" || source.source == "gaze_ext") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
     return compose(controller.stage_from_grip, gripFromPalm(source.device));
 }
@@ -154,7 +154,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
             break;
         }
     }
-    std::array<const Profile*, kDevices> chosen{hands, hands, nullptr, nullptr};
+    std::array<const Profile*, kDevices> chosen{hands, hands};
+    const Profile* const tracker = findProfile("/interaction_profiles/ext/eye_gaze_interaction");
+    const bool tracks_eyes = instance.simulation->script.gaze.tracker != EyeTracking::kOff;
+    if (tracks_eyes && isSuggested(instance, *tracker)) chosen[kGaze] = tracker;
     for (std::size_t device = 0; device < kDevices; ++device) {
         const Profile* const wanted = automation.devices[device].profile;
         if (wanted != nullptr) chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr;
@@ -222,6 +225,11 @@ std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action
     const BoundSource* const source = sourceOf(session, action, subaction_path);
     if (source == nullptr || !state.device(source->device).tracked) return std::nullopt;
     return poseOf(state.device(source->device), *source);
+}
+
+bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    return source != nullptr && source->device == kGaze;
 }
 
 }  // namespace simulated

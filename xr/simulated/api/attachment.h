@@ -79,5 +79,7 @@ AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
 std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
+// Whether that source is the eye tracker.
+bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path);
 
 }  // namespace simulated

@@ -114,7 +114,8 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
         Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
         if (input.name == "grip_surface/pose" || input.name == "palm_ext/pose")
             stage_from_pose = compose(stage_from_pose, inverse(gripFromPalm(checkedDevice(owner, topLevelPath))));
-        (input.name == "aim/pose" ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
+        const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
+        (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
         return successOf(owner);
     });
 }

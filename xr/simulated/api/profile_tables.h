@@ -9,6 +9,9 @@ namespace simulated {
 inline constexpr std::string_view kHands[] = {"/user/hand/left", "/user/hand/right"};
 inline constexpr std::string_view kHeadPaths[] = {"/user/head"};
 inline constexpr std::string_view kGamepadPaths[] = {"/user/gamepad"};
+inline constexpr std::string_view kEyesPaths[] = {"/user/eyes_ext"};
+
+inline constexpr std::string_view kGazeComponents[] = {"/input/gaze_ext/pose"};
 
 inline constexpr std::string_view kSimple[] = {"/input/select/click", "/input/menu/click", "/input/grip/pose", "/input/aim/pose",
                                                "/output/haptic"};
@@ -243,6 +246,14 @@ inline constexpr Profile kProfiles[] = {
      "XR_ML_ml2_controller_interaction"},
     {"/interaction_profiles/htc/vive_pro", "Vive Pro headset", kHeadPaths, kVivePro, {}, {}},
     {"/interaction_profiles/microsoft/xbox_controller", "Xbox controller", kGamepadPaths, kXbox, {}, {}},
+    {"/interaction_profiles/ext/eye_gaze_interaction",
+     "Eye tracker",
+     kEyesPaths,
+     kGazeComponents,
+     {},
+     {},
+     Since::kNone,
+     "XR_EXT_eye_gaze_interaction"},
 };
 
 }  // namespace simulated

@@ -47,6 +47,11 @@ void Parser::parseEye(Words& words) {
     }
 }
 
+void Parser::parseEyeTrackingLine(Words& words) {
+    requireFirst(words, "eye-tracking");
+    parseEyeTracking(words, script_.gaze);
+}
+
 void Parser::parseHeadsetLine(Words& words) {
     for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant"}) {
         if (seen_.contains(set_by_it)) { words.fail("headset sets {}, too, must stand before it", set_by_it); }

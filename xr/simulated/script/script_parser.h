@@ -31,6 +31,7 @@ private:
     void parseSize(Words& words);
     void parseIpd(Words& words);
     void parseEye(Words& words);
+    void parseEyeTrackingLine(Words& words);
     void parseHeadsetLine(Words& words);
     void parseBlendModes(Words& words);
     void parseRoomColour(Words& words);
@@ -55,6 +56,7 @@ private:
     void addPose(Words& words, Track<Pose>& track, const Pose& at_rest);
     void parseHead(Words& words);
     void parseHeadMotionLine(Words& words);
+    void parseGazeLine(Words& words);
     void parseController(Words& words);
     void parseAim(Words& words);
     // The recording's first pose lies where the head line says, facing there; its tilt is as recorded.

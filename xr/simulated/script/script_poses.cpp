@@ -78,6 +78,8 @@ void Parser::parseHeadMotionLine(Words& words) {
     }
 }
 
+void Parser::parseGazeLine(Words& words) { parseGazeKey(words, script_.gaze); }
+
 void Parser::parseController(Words& words) {
     const Side side = words.side();
     addPose(words, grips_[side], Script().hands[side].stage_from_grip.at(0.0));

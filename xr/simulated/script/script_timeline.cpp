@@ -35,7 +35,7 @@ void Parser::parseAt(Words& words) {
     last_at_s_ = time_s;
     const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
     switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                          "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load"})) {
+                                          "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "gaze"})) {
         case 0:
             return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
         case 1:
@@ -79,8 +79,10 @@ void Parser::parseAt(Words& words) {
         case 13:
             script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.number(kRateMeaning, kLeastRate, kMostRate)});
             return;
-        default:
+        case 14:
             return addStep(words, script_.gpu_load, time_s, parseLoad(words));
+        default:
+            return parseGazeTracking(words, time_s, script_.gaze);
     }
 }
 
