@@ -71,6 +71,7 @@ void runRender(const RenderOptions& options) {
 
     StereoFrame frame(context, gpu_scene);
     FrameSettings settings = frameSettings(options.run.camera, stereo);
+    settings.gazes = gazesOf(cameras, stereo);
     const auto report = [&](const auto& said) {
         writeText(files.staging() / "report.json", reportJson(said));
         context.requireNoValidationMessages();

@@ -225,7 +225,9 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
                                              .affiliated = images_[second],
                                              .dominant_shown = shown_[first],
                                              .affiliated_shown = shown_[second],
-                                             .background = affiliated.background});
+                                             .background = affiliated.background,
+                                             .affiliated_lens = eyes[static_cast<std::size_t>(second)].intrinsics,
+                                             .affiliated_gaze = settings.gazes[static_cast<std::size_t>(second)]});
             if (stereo.patching == Patching::kNone) { break; }
             if (!per_eye_) { recordOrderOfAffiliated(commands, settings.order); }
             if (!may_move_) {

@@ -42,6 +42,8 @@ struct FrameSettings {
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
     // pairs and take no part in the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
+    // kPredicted, by eye: where it looks; empty: nobody knows. Of the affiliated eye's errors only what it sees there counts.
+    std::array<std::optional<Gaze>, 2> gazes = {};
     std::uint64_t mark = 0;  // of whoever asks; comes back with the result
 };
 

@@ -1,13 +1,26 @@
-// 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile.
+// 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
+// known where the eye looks, an error counts for what the eye sees of it, so that the tiles beside that place must be dearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 
 layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
+layout(constant_id = 0) const bool kFoveated = false;
 
 // 16 bins an octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kPriceBins - 1); }
+
+// The finest cycle that an eye resolves grows linearly with the angle to where it looks (Guenter et al. 2012). A picture has
+// cycles of two pixels and longer; of those the eye sees the part that is no finer, along both axes.
+float seenShare(uvec2 at) {
+    const vec2 middle_px = vec2(at * kTileSize + kTileSize / 2);
+    const vec3 direction = vec3((middle_px - pass.gaze.principal_px) / pass.gaze.focal_px, 1);
+    const float angle = atan(length(cross(direction, pass.gaze.direction)), dot(direction, pass.gaze.direction));
+    const float finest = kFovealCycle + kCyclePerAngle * max(angle - pass.gaze.clear_rad, 0);
+    const float share = min(pass.gaze.pixel_cycle / finest, 1);
+    return share * share;
+}
 
 void main() {
     const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
@@ -20,7 +33,13 @@ void main() {
         const uint cost = pass.tile_costs.at[tile];
         const uint bin = binOf(float(error) / float(cost));
         price = bin << 22 | cost;
+        // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
         atomicAdd(pass.price_bins.at[bin], cost);
+        if (kFoveated) {
+            const float share = seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)), seen = share * float(error);
+            const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
+            price = unnoticed ? 0 : binOf(seen / float(cost)) << 22 | cost;
+        }
     }
     pass.tile_prices.at[tile] = price;
 }

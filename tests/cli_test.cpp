@@ -106,6 +106,8 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--edge-bounds loose"), 1, "--edge-bounds is loose, must be paper or tight");
     checkRefused(work.run(render + "--hole-error nan"), 1, "--hole-error is nan, must be a number from 0 to 8");
     checkRefused(work.run(render + "--newcomer-error -1"), 1, "--newcomer-error is -1, must be a number from 0 to 8");
+    checkRefused(work.run(render + "--foveation 91"), 1, "--foveation is 91, must be a number from 0 to 90");
+    checkRefused(work.run(render + "--gaze 0,0,0"), 1, "--gaze is 0,0,0, must be a direction x,y,z, not 0,0,0");
     checkRefused(work.run(render + "--headset nobody"), 1, "must be one of");
     CHECK(work.isEmpty());
 }

@@ -76,6 +76,7 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.stereo.edge_bounds == none.stereo.edge_bounds);
     CHECK(file.stereo.hole_error == none.stereo.hole_error);
     CHECK(file.stereo.newcomer_error == none.stereo.newcomer_error);
+    CHECK(file.stereo.foveation_deg == none.stereo.foveation_deg);
     CHECK(file.metres_per_unit == none.metres_per_unit);
     CHECK(none.camera.near == 0.2);
     CHECK(none.stereo.mode == Mode::kPredicted);
@@ -98,6 +99,36 @@ TEST_CASE("commandLineWinsOverConfig") {
     CHECK(both.camera.fov_x_deg == 90.0);
     CHECK(both.camera.headset.empty());  // an angle and a headset contradict each other
     CHECK(both.stereo.ipd_m == 0.0);
+}
+
+TEST_CASE("eyesLookAtTheirLensesOrWhereTheyAreSaidTo") {
+    Scene scene;
+    CameraFiles files;
+    Headset headset;
+    headset.size_px = {64, 64};
+    headset.angles = {ViewAngles{-0.8, 0.6, 0.7, -0.7}, ViewAngles{-0.6, 0.8, 0.7, -0.7}};
+    headset.canting_rad = 0.1;
+    headset.lens_centres = {glm::dvec3(-0.1, 0.0, 1.0), glm::dvec3(0.1, 0.0, 1.0)};
+    files.headset = headset;
+    const auto gazes = [&](std::vector<std::string> words) {
+        const RunOptions options = render(std::move(words));
+        return gazesOf(makeCameras(options, files, scene), options.stereo);
+    };
+    CHECK(!gazes({})[kLeft]);
+    CHECK(!gazes({"--gaze", "0,0,1"})[kRight]);
+    const auto at_lenses = gazes({"--foveation", "15"});
+    REQUIRE(at_lenses[kLeft]);
+    CHECK(at_lenses[kLeft]->clear_rad == doctest::Approx(glm::radians(15.0)));
+    CHECK(at_lenses[kLeft]->direction == headset.lens_centres[kLeft]);
+    CHECK(at_lenses[kRight]->direction == headset.lens_centres[kRight]);
+    // Ahead of the head is inwards for eyes that are turned outwards.
+    const auto ahead = gazes({"--foveation", "15", "--gaze", "0,0,1"});
+    CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
+    CHECK(ahead[kRight]->direction.x == doctest::Approx(-std::sin(0.1)));
+    CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--foveation", "1", "--gaze", "1,0,1"}).run.stereo.gaze == glm::dvec3(1, 0, 1));
+    CHECK(parse<ViewOptions>({"view", "a", "--foveation", "20"}).run.stereo.foveation_deg == 20.0);
+    CHECK_THROWS_AS(parse<ViewOptions>({"view", "a", "--gaze", "0,0,1"}), Error);
+    CHECK_THROWS_AS(render({"--gaze", "0,0,0"}), Error);
 }
 
 TEST_CASE("splatsGoByDepthOrByDistance") {

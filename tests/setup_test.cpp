@@ -69,6 +69,32 @@ TEST_CASE("everyHeadsetOfTheRepositoryReads") {
     CHECK(count >= 4);
 }
 
+TEST_CASE("aHeadsetFileMayNameTheLensesCentres") {
+    const Workplace work;
+    const std::string top = "name = \"a\"\nsource = \"b\"\nsize = \"8x8\"\ncanting_deg = 0\neye_distance_m = 0.06\n";
+    const std::string left = "[left]\nleft = -50\nright = 40\nup = 45\ndown = -45\n",
+                      right = "[right]\nleft = -40\nright = 50\nup = 45\ndown = -45\n";
+    const auto read = [&](const std::string& left_centre) {
+        return readHeadset(writeFile(work.path / "h.toml", top + left + left_centre + right));
+    };
+    CHECK(read("").lens_centres[kLeft] == glm::dvec3(0.0, 0.0, 1.0));
+    const Headset named = read("lens_centre = [-3, 2.5]\n");
+    CHECK(named.lens_centres[kLeft].x == doctest::Approx(-std::tan(3.0 * std::acos(-1.0) / 180.0)));
+    CHECK(named.lens_centres[kLeft].y == doctest::Approx(-std::tan(2.5 * std::acos(-1.0) / 180.0)));
+    CHECK(named.lens_centres[kRight] == glm::dvec3(0.0, 0.0, 1.0));
+    const auto message = [&](const std::string& left_centre) {
+        try {
+            read(left_centre);
+        } catch (const Error& error) { return std::string(error.what()); }
+        return std::string("accepted");
+    };
+    CHECK(message("lens_centre = 3\n").find("h.toml:11: left.lens_centre must be two angles") != std::string::npos);
+    CHECK(message("lens_centre = [1, 2, 3]\n").find("must be two angles") != std::string::npos);
+    CHECK(message("lens_centre = [-51, 0]\n").find("h.toml:11: left.lens_centre is -51, must be a number from -50 to 40") !=
+          std::string::npos);
+    CHECK(message("lens_centre = [0, nan]\n").find("left.lens_centre is nan, must be a number from -45 to 45") != std::string::npos);
+}
+
 TEST_CASE("cantedEyesTurnOutwards") {
     Headset headset;
     headset.angles = {ViewAngles{-0.8, 0.6, 0.7, -0.7}, ViewAngles{-0.6, 0.8, 0.7, -0.7}};

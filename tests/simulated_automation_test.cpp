@@ -68,6 +68,33 @@ struct AutomationFixture : SessionFixture {
     }
 };
 
+// A pose that is bound in both hands, and a space on it that names neither.
+struct EitherHandFixture : SessionFixture {
+    PFN_xrSetInputDeviceActiveEXT setActive = function<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT");
+    XrPath left = path("/user/hand/left"), right = path("/user/hand/right");
+    XrActionSet set = makeActionSet("walking");
+    XrSpace space = XR_NULL_HANDLE;
+
+    EitherHandFixture() : SessionFixture(kQuietScript, {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}) {
+        const XrAction grip = makeAction(set, "grip", XR_ACTION_TYPE_POSE_INPUT, {left, right});
+        REQUIRE(suggest(kTouch, {{grip, path("/user/hand/left/input/grip/pose")}, {grip, path("/user/hand/right/input/grip/pose")}}) ==
+                XR_SUCCESS);
+        const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, XR_NULL_PATH, kIdentity};
+        REQUIRE(xrCreateActionSpace(session, &info, &space) == XR_SUCCESS);
+        attach({set});
+        focus();
+    }
+
+    void switchOff(XrPath hand) const { REQUIRE(setActive(session, path(kTouch), hand, XR_FALSE) == XR_SUCCESS); }
+
+    std::string whoIsFollowed() const {
+        XrSpaceLocation location{XR_TYPE_SPACE_LOCATION};
+        REQUIRE(xrLocateSpace(space, local, frame().predictedDisplayTime, &location) == XR_SUCCESS);
+        if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) return "nobody";
+        return location.pose.position.x < 0 ? "left" : "right";
+    }
+};
+
 }  // namespace
 
 TEST_CASE_FIXTURE(AutomationFixture, "what is set is read after the next xrSyncActions, and the script goes on with the rest") {
@@ -137,6 +164,41 @@ TEST_CASE_FIXTURE(AutomationFixture, "a pose is put where it is said to be, in a
     CHECK(location.pose.position.x == doctest::Approx(1));
     CHECK(location.pose.position.y == doctest::Approx(3.6));
     CHECK(location.pose.position.z == doctest::Approx(3));
+}
+
+TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand is that of a hand that is there") {
+    switchOff(left);
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "right");
+    // It stays there when there are both.
+    CHECK(setActive(session, path(kTouch), left, XR_TRUE) == XR_SUCCESS);
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "right");
+}
+
+TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand stays with its hand, though that is put down") {
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "left");
+    switchOff(left);
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "nobody");
+    CHECK(setActive(session, path(kTouch), left, XR_TRUE) == XR_SUCCESS);
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "left");
+}
+
+TEST_CASE_FIXTURE(EitherHandFixture, "a pose of either hand goes to the hand that is synchronized") {
+    CHECK(sync(set, left) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "left");
+    CHECK(sync(set, right) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "right");
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "right");
+    switchOff(left);
+    CHECK(sync(set, left) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "nobody");
+    CHECK(sync(set) == XR_SUCCESS);
+    CHECK(whoIsFollowed() == "right");
 }
 
 TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profile lacks") {

@@ -116,7 +116,7 @@ XrStructureType InstanceFixture::poll(XrEventDataBuffer& event) const {
     return xrPollEvent(instance, &event) == XR_SUCCESS ? event.type : XR_TYPE_UNKNOWN;
 }
 
-VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const char*>& more_extensions)
+VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const char*>& more_extensions, PFN_vkGetInstanceProcAddr loader)
     : InstanceFixture(script, more_extensions) {
     XrGraphicsRequirementsVulkan2KHR requirements{XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR};
     const auto getRequirements = function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR");
@@ -131,7 +131,7 @@ VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const 
     const VkInstanceCreateInfo vulkan_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, &features, 0, &application, 1, &layer, 1, &extension};
     XrVulkanInstanceCreateInfoKHR info{XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR};
     info.systemId = system;
-    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    info.pfnGetInstanceProcAddr = loader;
     info.vulkanCreateInfo = &vulkan_info;
     VkResult result = VK_ERROR_UNKNOWN;
     REQUIRE(function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR")(instance, &info, &vulkan, &result) == XR_SUCCESS);
@@ -147,7 +147,7 @@ VulkanFixture::VulkanFixture(const std::string& script, const std::vector<const 
     const VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, nullptr, 0, 1, &queue_info, 0, nullptr, 0, nullptr, nullptr};
     XrVulkanDeviceCreateInfoKHR make{XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR};
     make.systemId = system;
-    make.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    make.pfnGetInstanceProcAddr = loader;
     make.vulkanPhysicalDevice = physical_device;
     make.vulkanCreateInfo = &device_info;
     REQUIRE(function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR")(instance, &make, &device, &result) == XR_SUCCESS);
@@ -175,8 +175,8 @@ VkQueue VulkanFixture::queue() const {
     return queue;
 }
 
-SessionFixture::SessionFixture(const std::string& script, const std::vector<const char*>& more_extensions)
-    : VulkanFixture(script, more_extensions) {
+SessionFixture::SessionFixture(const std::string& script, const std::vector<const char*>& more_extensions, PFN_vkGetInstanceProcAddr loader)
+    : VulkanFixture(script, more_extensions, loader) {
     const XrGraphicsBindingVulkan2KHR graphics = binding();
     const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, &graphics, 0, system};
     REQUIRE(xrCreateSession(instance, &info, &session) == XR_SUCCESS);

@@ -70,7 +70,9 @@ struct VulkanFixture : InstanceFixture {
     VkDevice device = VK_NULL_HANDLE;
     std::vector<std::string> messages;
 
-    explicit VulkanFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
+    // The loader is what the runtime finds Vulkan's functions by.
+    explicit VulkanFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {},
+                           PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr);
     ~VulkanFixture();
 
     XrGraphicsBindingVulkan2KHR binding() const;
@@ -84,7 +86,8 @@ struct SessionFixture : VulkanFixture {
     XrSession session = XR_NULL_HANDLE;
     XrSpace local = XR_NULL_HANDLE;
 
-    explicit SessionFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {});
+    explicit SessionFixture(const std::string& script = kQuietScript, const std::vector<const char*>& more_extensions = {},
+                            PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr);
     ~SessionFixture();
 
     // The states of all events that wait.

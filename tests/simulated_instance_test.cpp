@@ -3,6 +3,18 @@
 
 using namespace binosplat::test;
 
+namespace {
+
+std::vector<XrExtensionProperties> extensionsThere() {
+    std::uint32_t count = 0;
+    REQUIRE(xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr) == XR_SUCCESS);
+    std::vector<XrExtensionProperties> properties(count, {XR_TYPE_EXTENSION_PROPERTIES});
+    REQUIRE(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, properties.data()) == XR_SUCCESS);
+    return properties;
+}
+
+}  // namespace
+
 TEST_CASE("extensions are enumerated in two calls, and none of a layer") {
     const Headset headset(kQuietScript);
     std::uint32_t count = 0;
@@ -22,6 +34,31 @@ TEST_CASE("extensions are enumerated in two calls, and none of a layer") {
     CHECK(xrEnumerateInstanceExtensionProperties(nullptr, 1, &count, properties.data()) == XR_ERROR_SIZE_INSUFFICIENT);
     CHECK(xrEnumerateInstanceExtensionProperties(nullptr, 0, nullptr, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrEnumerateInstanceExtensionProperties("XR_APILAYER_nobody_nothing", 0, &count, nullptr) == XR_ERROR_API_LAYER_NOT_PRESENT);
+}
+
+TEST_CASE("every extension is enabled alone, and all are together, some twice, with a session that draws and one that does not") {
+    std::vector<XrExtensionProperties> properties;
+    {
+        const Headset headset(kQuietScript);
+        properties = extensionsThere();
+        for (const XrExtensionProperties& property : properties) {
+            const std::vector<const char*> alone{property.extensionName};
+            const XrInstanceCreateInfo info = instanceInfo(alone);
+            XrInstance instance = XR_NULL_HANDLE;
+            CHECK_MESSAGE(xrCreateInstance(&info, &instance) == XR_SUCCESS, std::string(property.extensionName));
+            CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
+        }
+    }
+    std::vector<const char*> all;
+    for (const XrExtensionProperties& property : properties) all.push_back(property.extensionName);
+    // The fixture enables three of them by itself.
+    const SessionFixture made(kQuietScript, all);
+    made.focus();
+    made.turn(made.makeSwapchain());
+    CHECK(xrDestroySession(made.session) == XR_SUCCESS);
+    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, nullptr, 0, made.system};
+    XrSession headless = XR_NULL_HANDLE;
+    CHECK(xrCreateSession(made.instance, &info, &headless) == XR_SUCCESS);
 }
 
 TEST_CASE("an extension that the script takes away is neither listed nor enabled") {

@@ -138,6 +138,16 @@ TEST_CASE("whatIsTooMuchIsRefused") {
     refuses("frames none at all", "at is too much");
 }
 
+TEST_CASE("gazesWithMistakesAreRefused") {
+    refuses("eye-tracking maybe", "a.script:1: whether eyes are tracked is maybe, must be on, off or refused");
+    refuses("eye-tracking on\neye-tracking on", "a.script:2: eye-tracking is set again, first on line 1");
+    refuses("gaze 0 10", "a.script:1: the turn upwards in degrees is missing");
+    refuses("gaze 0 91 0", "a.script:1: the turn to the left in degrees is 91, must be a number from -90 to 90");
+    refuses("gaze 1 0 0\ngaze 1 5 5", "a.script:2: the time is 1, must be after the key before, at 1");
+    refuses("at 1 gaze poor", "a.script:1: whether the gaze is tracked is poor, must be on, off or degraded");
+    refuses("at 1 gaze off\nat 1 gaze on", "a.script:2: the time is 1, must be after the one of the same change before");
+}
+
 TEST_CASE("settingsStandOnce") {
     refuses("rate 90\nsize 1 1\nrate 90", "a.script:3: rate is set again, first on line 1, must be set once");
     refuses("eye left cant 1\neye left cant 2", "eye left cant is set again");

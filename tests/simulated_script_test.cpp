@@ -385,6 +385,25 @@ TEST_CASE("theSameTimeGivesTheSameState") {
     CHECK(script.eventsIn(-kForever, kForever).back().kind == ScriptEvent::Kind::kExit);
 }
 
+TEST_CASE("theGazeMovesFromKeyToKeyOnTheHeadAndMayBeLost") {
+    const Script script = parse("head 0 turn 90 0\ngaze 1 0 0\ngaze 2 20 -10\nat 3 gaze degraded\nat 4 gaze off\nat 5 gaze on\n");
+    const auto onHead = [](const State& state) {
+        return transform(inverse(state.stage_from_head), transform(state.device(kGaze).stage_from_aim, {0, 0, -1}));
+    };
+    CHECK(glm::distance(onHead(script.at(0.0)), {0, 0, -1}) < 1e-9);
+    const double yaw = glm::radians(10.0), pitch = glm::radians(-5.0);
+    CHECK(glm::distance(onHead(script.at(1.5)), {-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)}) <
+          1e-9);
+    CHECK(script.at(2.5).gaze_is_good);
+    CHECK_FALSE(script.at(3.5).gaze_is_good);
+    CHECK(script.at(3.5).device(kGaze).tracked);
+    CHECK_FALSE(script.at(4.5).device(kGaze).tracked);
+    CHECK(script.at(5.5).device(kGaze).tracked);
+    CHECK(parse("").gaze.tracker == EyeTracking::kOn);
+    CHECK(glm::distance(onHead(parse("").at(1.0)), {0, 0, -1}) < 1e-9);
+    CHECK_FALSE(parse("eye-tracking refused").at(0.0).device(kGaze).tracked);
+}
+
 TEST_CASE("theDocumentedExampleIsTheFile") {
     const std::string root = BINOSPLAT_SOURCE_DIR;
     const auto readAll = [](const std::string& path) {
@@ -408,7 +427,7 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 28);
+    CHECK(commands == 30);
 }
 
 TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {

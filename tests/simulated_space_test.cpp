@@ -161,6 +161,26 @@ TEST_CASE_FIXTURE(WalkingFixture, "the visibility mask is a mesh in two calls") 
     CHECK(getMask(XR_NULL_HANDLE, stereo, 0, hidden, &mask) == XR_ERROR_HANDLE_INVALID);
 }
 
+TEST_CASE_FIXTURE(WalkingFixture, "the outline of what is visible goes once round the axis, counter-clockwise") {
+    const auto getMask = function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
+    for (const std::uint32_t view : {0u, 1u}) {
+        XrVector2f vertices[256];
+        std::uint32_t indices[256];
+        XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR, nullptr, 256, 0, vertices, 256, 0, indices};
+        REQUIRE(getMask(session, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, view, XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR, &mask) ==
+                XR_SUCCESS);
+        REQUIRE(mask.indexCountOutput >= 3);
+        double turned = 0;
+        for (std::uint32_t i = 0; i < mask.indexCountOutput; ++i) {
+            const XrVector2f from = vertices[indices[i]], to = vertices[indices[(i + 1) % mask.indexCountOutput]];
+            const double step = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+            CHECK(step > 0);
+            turned += step;
+        }
+        CHECK(turned == doctest::Approx(2 * M_PI));
+    }
+}
+
 TEST_CASE_FIXTURE(SessionFixture, "a headset without mask gives an empty one") {
     XrVisibilityMaskKHR mask{XR_TYPE_VISIBILITY_MASK_KHR};
     CHECK(function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR")(session, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, 1,

@@ -2,6 +2,7 @@
 #include "tests/simulated_fixture.h"
 
 #include <set>
+#include <string_view>
 
 using namespace binosplat::test;
 
@@ -9,6 +10,45 @@ namespace {
 
 struct SlowFixture : SessionFixture {
     SlowFixture() : SessionFixture("size 64 64\nframes none\nat 0 slow-images 2\n") {}
+};
+
+// Vulkan's loader, which notes what images are made with.
+struct ImageRecorder {
+    static inline PFN_vkGetDeviceProcAddr find_in_device = nullptr;
+    static inline PFN_vkCreateImage create_image = nullptr;
+    static inline std::vector<VkImageCreateInfo> made;
+
+    static VkResult createImage(VkDevice device, const VkImageCreateInfo* info, const VkAllocationCallbacks* allocator, VkImage* image) {
+        made.push_back(*info);
+        return create_image(device, info, allocator, image);
+    }
+    static PFN_vkVoidFunction findInDevice(VkDevice device, const char* name) {
+        if (std::string_view(name) == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(findInDevice);
+        const PFN_vkVoidFunction found = find_in_device(device, name);
+        if (std::string_view(name) != "vkCreateImage") return found;
+        create_image = reinterpret_cast<PFN_vkCreateImage>(found);
+        return reinterpret_cast<PFN_vkVoidFunction>(createImage);
+    }
+    static PFN_vkVoidFunction find(VkInstance instance, const char* name) {
+        const PFN_vkVoidFunction found = vkGetInstanceProcAddr(instance, name);
+        if (std::string_view(name) != "vkGetDeviceProcAddr") return found;
+        find_in_device = reinterpret_cast<PFN_vkGetDeviceProcAddr>(found);
+        return reinterpret_cast<PFN_vkVoidFunction>(findInDevice);
+    }
+};
+
+struct RecordedFixture : SessionFixture {
+    RecordedFixture() : SessionFixture(kQuietScript, {}, ImageRecorder::find) {}
+
+    VkImageCreateFlags flagsFor(XrSwapchainUsageFlags usage) const {
+        XrSwapchainCreateInfo info = swapchainInfo();
+        info.usageFlags |= usage;
+        XrSwapchain swapchain = XR_NULL_HANDLE;
+        ImageRecorder::made.clear();
+        REQUIRE(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
+        REQUIRE(!ImageRecorder::made.empty());
+        return ImageRecorder::made.front().flags;
+    }
 };
 
 // A clear of the image and back, as an application that draws would touch it; validation watches the layout it is found in.
@@ -115,6 +155,61 @@ TEST_CASE_FIXTURE(SessionFixture, "every format and use makes images that Vulkan
     info.usageFlags = XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
     XrSwapchain swapchain = XR_NULL_HANDLE;
     CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_SUCCESS);
+}
+
+TEST_CASE_FIXTURE(SessionFixture, "every format, use and shape can be held whole, twice, and freed in between") {
+    constexpr XrSwapchainUsageFlags kUses[] = {0,
+                                               XR_SWAPCHAIN_USAGE_SAMPLED_BIT,
+                                               XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT,
+                                               XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_SAMPLED_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT,
+                                               XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT};
+    std::uint32_t count = 0;
+    std::int64_t formats[32];
+    REQUIRE(xrEnumerateSwapchainFormats(session, 32, &count, formats) == XR_SUCCESS);
+    const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const bool is_depth = formats[i] == VK_FORMAT_D32_SFLOAT || formats[i] == VK_FORMAT_D16_UNORM ||
+                              formats[i] == VK_FORMAT_D24_UNORM_S8_UINT || formats[i] == VK_FORMAT_D32_SFLOAT_S8_UINT;
+        for (const XrSwapchainUsageFlags use : kUses) {
+            for (const std::uint32_t shape : {0, 1, 2, 3}) {
+                XrSwapchainCreateInfo info = swapchainInfo();
+                info.format = formats[i];
+                info.usageFlags = use;
+                info.usageFlags |= is_depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+                info.arraySize = shape == 1 ? 2 : 1;
+                info.mipCount = shape == 2 ? 2 : 1;
+                info.createFlags = shape == 3 ? XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT : 0;
+                INFO("format ", formats[i], " use ", use, " shape ", shape);
+                XrSwapchain swapchain = XR_NULL_HANDLE;
+                const XrResult made = xrCreateSwapchain(session, &info, &swapchain);
+                // Not every device writes every format from shaders.
+                if ((use & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0 && made == XR_ERROR_FEATURE_UNSUPPORTED) continue;
+                REQUIRE(made == XR_SUCCESS);
+                const std::size_t images = imagesOf(swapchain).size();
+                REQUIRE(images == (shape == 3 ? 1 : 3));
+                for (int round = 0; round < (shape == 3 ? 1 : 2); ++round) {
+                    std::uint32_t index = 0;
+                    for (std::size_t held = 0; held < images; ++held)
+                        CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SUCCESS);
+                    for (std::size_t held = 0; held < images; ++held) {
+                        CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
+                        CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+                    }
+                }
+                CHECK(xrDestroySwapchain(swapchain) == XR_SUCCESS);
+            }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(RecordedFixture, "images are made by the functions of the application's own loader") { CHECK(flagsFor(0) == 0); }
+
+TEST_CASE_FIXTURE(RecordedFixture, "mutable images ask for extended usage, which came with Vulkan 1.1, for shaders that write alone") {
+    CHECK(flagsFor(XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT);
+    CHECK(flagsFor(XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) ==
+          (VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT));
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "a swapchain of the largest view that is offered can be made") {

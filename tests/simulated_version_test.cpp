@@ -200,6 +200,8 @@ TEST_CASE("controllers of 1.1 may be bound in 1.1, and in 1.0 with their extensi
         {"/interaction_profiles/samsung/odyssey_controller", "XR_EXT_samsung_odyssey_controller", "/user/hand/left/input/trackpad/click"},
         {"/interaction_profiles/htc/vive_cosmos_controller", "XR_HTC_vive_cosmos_controller_interaction",
          "/user/hand/left/input/shoulder/click"},
+        {"/interaction_profiles/htc/vive_cosmos_controller", "XR_HTC_vive_cosmos_controller_interaction",
+         "/user/hand/right/input/thumbrest/touch"},
         {"/interaction_profiles/htc/vive_focus3_controller", "XR_HTC_vive_focus3_controller_interaction",
          "/user/hand/right/input/squeeze/touch"},
         {"/interaction_profiles/ml/ml2_controller", "XR_ML_ml2_controller_interaction", "/user/hand/right/input/home/click"},

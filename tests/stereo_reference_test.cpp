@@ -275,6 +275,42 @@ TEST_CASE("prices are sixteenths of an octave of error steps a pair, of unmarked
     CHECK_FALSE(price(std::vector{TileKind::kEdge}, std::vector{1.0}, std::vector<std::uint64_t>{16})[0]);
 }
 
+TEST_CASE("an eye that resolves as much as the picture shows sees all of an error, farther from where it looks less and less") {
+    // Pixels of 1/1000: cycles of 2/1000 rad, 0.1146 degrees, which the eye resolves up to (0.1146 - 1/48) / 0.022 = 4.26 degrees.
+    const Eye eye{Pose{}, {1000.0, 1000.0, 8.0, 8.0}, {1024, 16}};
+    const auto shareAt = [&](double tangent, const reference::Gaze& gaze) {
+        return reference::findSeenShares(eye, gaze).at(static_cast<std::size_t>(tangent * 1000.0 / 16.0 + 0.5));
+    };
+    const reference::Gaze ahead{{0.0, 0.0, 2.0}, 0.0};
+    CHECK(shareAt(0.0, ahead) == 1.0);
+    CHECK(shareAt(0.064, ahead) == 1.0);  // 3.7 degrees
+    CHECK(shareAt(0.08, ahead) < 1.0);    // 4.6 degrees
+    const auto law = [](double degrees) { return std::pow(glm::degrees(0.002) / (1.0 / 48.0 + 0.022 * degrees), 2.0); };
+    CHECK(shareAt(0.352, ahead) == doctest::Approx(law(glm::degrees(std::atan(0.352)))));
+    CHECK(law(19.4) == doctest::Approx(0.0654).epsilon(0.01));
+    // It may look up to ten degrees beside it as well.
+    CHECK(shareAt(0.352, {{0.0, 0.0, 1.0}, glm::radians(10.0)}) == doctest::Approx(law(glm::degrees(std::atan(0.352)) - 10.0)));
+    // It looks there; straight ahead is then as far away.
+    CHECK(shareAt(0.352, {{0.352, 0.0, 1.0}, 0.0}) == 1.0);
+    CHECK(shareAt(0.0, {{0.352, 0.0, 1.0}, 0.0}) == doctest::Approx(shareAt(0.352, ahead)));
+    // Behind the eye.
+    CHECK(shareAt(0.0, {{0.0, 0.0, -1.0}, 0.0}) == doctest::Approx(law(180.0)));
+}
+
+TEST_CASE("an error is worth what is seen of it, and beside where the eye looks nothing if that is less than a hundredth a pixel") {
+    const std::vector<TileKind> kinds(4, TileKind::kNone);
+    const std::vector<std::uint64_t> costs(4, 16);
+    // 256 pixels of 1/100 squared are 0.0256.
+    const auto prices = price(kinds, std::vector{0.4, 0.4, 0.1, 0.1}, costs, std::vector{1.0, 0.25, 0.25, 1.0});
+    REQUIRE(prices[0]);
+    REQUIRE(prices[1]);
+    CHECK(*prices[0] - *prices[1] == 2 * 16);
+    CHECK_FALSE(prices[2]);
+    CHECK(prices[3]);
+    CHECK(price(kinds, std::vector{0.4, 0.4, 0.1, 1e-4}, costs, std::vector(4, 1.0)) ==
+          price(kinds, std::vector{0.4, 0.4, 0.1, 1e-4}, costs));
+}
+
 TEST_CASE("the dearest errors are mended first, in the order of tiles where they are alike, up to what the budget pays for") {
     using Prices = std::vector<std::optional<std::uint32_t>>;
     const Prices prices{5, 9, std::nullopt, 5, 9, 1};
@@ -294,6 +330,23 @@ TEST_CASE("the dearest errors are mended first, in the order of tiles where they
     CHECK(chosen(90) == "ppe.p.");
     CHECK(chosen(110) == "ppepp.");
     CHECK(chosen(111) == "ppeppp");
+}
+
+TEST_CASE("the budget ends where it would if all errors were seen whole, and what is seen of an error must be worth that") {
+    using Prices = std::vector<std::optional<std::uint32_t>>;
+    const Prices whole{9, 8, 8, 5, 5, 1};
+    const std::vector<std::uint64_t> costs{20, 20, 20, 20, 20, 20};
+    const auto chosen = [&](const Prices& seen, std::uint64_t budget) {
+        std::vector<TileKind> kinds(6, TileKind::kNone);
+        select(kinds, seen, costs, budget, whole);
+        return letters(kinds);
+    };
+    CHECK(chosen(whole, 80) == "pppp..");
+    CHECK(chosen({9, 8, 4, 5, 5, 1}, 80) == "pp.p..");  // the third is not replaced by the fifth
+    CHECK(chosen({9, 8, 5, 5, 5, 1}, 80) == "ppp...");  // it comes before the fourth, for which it is worth as much
+    CHECK(chosen({4, std::nullopt, 4, 5, 4, 1}, 80) == "...p..");
+    CHECK(chosen({1, std::nullopt, 1, 1, 1, 1}, 120) == "p.pppp");
+    CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
 }
 
 TEST_CASE("a newcomer stands in front of the farther of what is beside it, and wherever nothing is moved") {

@@ -159,15 +159,15 @@ public:
         }
         dispatch("8g_components", {rectified(), 3u, areHalves(rows_)}, pass, {3, 1});
     }
-    void price() {
-        dispatch("8h_price", {},
-                 gpu::PricePass{.stereo = view(),
-                                .tile_kinds = words(tile_kinds_),
-                                .tile_costs = words(tile_costs_),
-                                .tile_errors = words(tile_errors_),
-                                .tile_prices = words(tile_prices_),
-                                .price_bins = words(bins_)},
-                 tileGroups());
+    void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
+        const gpu::PricePass pass{.stereo = view(),
+                                  .tile_kinds = words(tile_kinds_),
+                                  .tile_costs = words(tile_costs_),
+                                  .tile_errors = words(tile_errors_),
+                                  .tile_prices = words(tile_prices_),
+                                  .price_bins = words(bins_),
+                                  .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
+        dispatch("8h_price", {gaze.has_value()}, pass, tileGroups());
     }
     // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead, the tiles sorted.
     struct Selected {

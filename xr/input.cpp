@@ -12,6 +12,8 @@ namespace {
 constexpr XrDuration kPulseNs = 15'000'000;
 constexpr float kPulseStrength = 0.4f;
 constexpr const char* kHandPaths[] = {"/user/hand/left", "/user/hand/right"};
+constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
 
 }  // namespace
 
@@ -30,6 +32,7 @@ Input::Input(const Session& session) : session_(session), tracking_(session) {
     stick_click_ = makeAction("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT);
     menu_ = makeAction("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT);
     haptic_ = makeAction("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT);
+    if (instance.tracksEyes()) { gaze_ = makeAction("gaze", "Sharp where you look", XR_ACTION_TYPE_POSE_INPUT, false); }
     suggestBindings();
     auto attach = structure<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
     attach.countActionSets = 1;
@@ -44,6 +47,12 @@ Input::Input(const Session& session) : session_(session), tracking_(session) {
         space.action = grip_;
         BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &grip_spaces_[h]));
     }
+    if (gaze_ != XR_NULL_HANDLE) {
+        auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
+        space.poseInActionSpace.orientation.w = 1.0f;
+        space.action = gaze_;
+        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &gaze_space_));
+    }
 }
 
 Input::~Input() {
@@ -51,16 +60,19 @@ Input::~Input() {
         xrDestroySpace(aim_spaces_[h]);
         xrDestroySpace(grip_spaces_[h]);
     }
+    if (gaze_space_ != XR_NULL_HANDLE) { xrDestroySpace(gaze_space_); }
     xrDestroyActionSet(set_);
 }
 
-XrAction Input::makeAction(const char* name, const char* description, XrActionType type) {
+XrAction Input::makeAction(const char* name, const char* description, XrActionType type, bool by_hand) {
     auto info = structure<XrActionCreateInfo>(XR_TYPE_ACTION_CREATE_INFO);
     std::strcpy(info.actionName, name);
     std::strcpy(info.localizedActionName, description);
     info.actionType = type;
-    info.countSubactionPaths = 2;
-    info.subactionPaths = hands_.data();
+    if (by_hand) {
+        info.countSubactionPaths = 2;
+        info.subactionPaths = hands_.data();
+    }
     XrAction action = XR_NULL_HANDLE;
     BINOSPLAT_XR(xrCreateAction(set_, &info, &action));
     return action;
@@ -84,14 +96,20 @@ void Input::suggestBindings() const {
             bind(menu_, profile.menu[h]);
             bind(haptic_, profile.haptic);
         }
-        auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
-        suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile.path).c_str());
-        suggestion.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
-        suggestion.suggestedBindings = bindings.data();
-        const XrResult result = xrSuggestInteractionProfileBindings(instance.handle(), &suggestion);
-        // A runtime need not know every controller.
-        if (result != XR_ERROR_PATH_UNSUPPORTED) { checkResult(result, "xrSuggestInteractionProfileBindings"); }
+        suggest(profile.path, bindings);
     }
+    if (gaze_ != XR_NULL_HANDLE) { suggest("ext/eye_gaze_interaction", {{gaze_, instance.path("/user/eyes_ext/input/gaze_ext/pose")}}); }
+}
+
+void Input::suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
+    const Instance& instance = session_.instance();
+    auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
+    suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile).c_str());
+    suggestion.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
+    suggestion.suggestedBindings = bindings.data();
+    const XrResult result = xrSuggestInteractionProfileBindings(instance.handle(), &suggestion);
+    // A runtime need not know every controller.
+    if (result != XR_ERROR_PATH_UNSUPPORTED) { checkResult(result, "xrSuggestInteractionProfileBindings"); }
 }
 
 std::array<Hand, 2> Input::read() {
@@ -102,8 +120,8 @@ std::array<Hand, 2> Input::read() {
     sync.activeActionSets = &active;
     if (BINOSPLAT_XR(xrSyncActions(session_.handle(), &sync)) == XR_SESSION_NOT_FOCUSED) { return hands; }
     for (std::size_t h = 0; h < 2; ++h) {
-        hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h]);
-        hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h]);
+        hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h], kKnown);
+        hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h], kKnown);
         hands[h].joints = tracking_.locate(static_cast<int>(h));
         hands[h].clicks = clicks_[h].update(readNumber(trigger_, hands_[h]));
         hands[h].grabs = grabs_[h].update(readNumber(squeeze_, hands_[h]));
@@ -112,6 +130,13 @@ std::array<Hand, 2> Input::read() {
         hands[h].menu = readButton(menu_, hands_[h]).value_or(false);
     }
     return hands;
+}
+
+std::optional<glm::dvec3> Input::gaze() const {
+    if (gaze_ == XR_NULL_HANDLE) { return std::nullopt; }
+    const std::optional<Pose> pose = locate(gaze_, XR_NULL_PATH, gaze_space_, kKnown | kTracked);
+    if (!pose) { return std::nullopt; }
+    return pose->orientation * glm::dvec3(0.0, 0.0, 1.0);
 }
 
 void Input::pulse(int hand) const {
@@ -153,7 +178,7 @@ double Input::readNumber(XrAction action, XrPath hand) const {
     return state.isActive == XR_TRUE ? static_cast<double>(state.currentState) : 0.0;
 }
 
-std::optional<Pose> Input::locate(XrAction action, XrPath hand, XrSpace space) const {
+std::optional<Pose> Input::locate(XrAction action, XrPath hand, XrSpace space, XrSpaceLocationFlags needed) const {
     auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
     get.action = action;
     get.subactionPath = hand;
@@ -162,8 +187,7 @@ std::optional<Pose> Input::locate(XrAction action, XrPath hand, XrSpace space) c
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
     BINOSPLAT_XR(xrLocateSpace(space, session_.space(), session_.displayTime(), &location));
-    constexpr auto kValid = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
-    if ((location.locationFlags & kValid) != kValid) { return std::nullopt; }
+    if ((location.locationFlags & needed) != needed) { return std::nullopt; }
     return fromXr(location.pose);
 }
 

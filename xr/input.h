@@ -1,4 +1,4 @@
-// The two controllers, whatever they are.
+// The two controllers, whatever they are, and where the eyes look.
 #pragma once
 
 #include "engine/geometry.h"
@@ -39,22 +39,30 @@ public:
 
     // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while the input goes to somebody else.
     [[nodiscard]] std::array<Hand, 2> read();
+    // Where the eyes look, as of the last read(): a direction in the room (ours). Empty where the headset does not see it well enough to
+    // rely on, or nobody let this program see it.
+    [[nodiscard]] std::optional<glm::dvec3> gaze() const;
     // A short buzz in a hand, where its controller can.
     void pulse(int hand) const;
 
 private:
-    [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type);
+    // By hand, unless there is one of it.
+    [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;
+    void suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
     [[nodiscard]] double readNumber(XrAction action, XrPath hand) const;
     [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;  // empty: there is none
     [[nodiscard]] glm::dvec2 readStick(XrPath hand) const;
-    [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, XrSpace space) const;
+    // Empty unless the location has all of `needed`.
+    [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, XrSpace space, XrSpaceLocationFlags needed) const;
 
     const Session& session_;
     HandTracking tracking_;
     XrActionSet set_ = XR_NULL_HANDLE;
     XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, squeeze_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
              stick_click_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
+    XrAction gaze_ = XR_NULL_HANDLE;  // null: nobody asked for it, or there is none
+    XrSpace gaze_space_ = XR_NULL_HANDLE;
     std::array<XrPath, 2> hands_{};
     std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
     std::array<Hold, 2> clicks_, grabs_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace binosplat::xr {
 namespace {
@@ -64,12 +65,14 @@ void Instance::create(const InstanceOptions& options) {
     has_visibility_mask_ = options.visibility_mask && has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     has_local_floor_ = has(kLocalFloorExtension);
     tracks_hands_ = has(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
+    tracks_eyes_ = options.eye_tracking && has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
     has_refresh_rates_ = has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME);
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
     if (has_refresh_rates_) { extensions.push_back(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME); }
     if (tracks_hands_) { extensions.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME); }
+    if (tracks_eyes_) { extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension == nullptr || !has(profile.extension)) { continue; }
         if (controller_extensions_.insert(profile.extension).second) { extensions.push_back(profile.extension); }
@@ -100,9 +103,14 @@ void Instance::findSystem(const InstanceOptions& options) {
     if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime.runtimeName), result); }
     auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
     auto hands = structure<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
-    if (tracks_hands_) { properties.next = &hands; }
-    BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
+    auto eyes = structure<XrSystemEyeGazeInteractionPropertiesEXT>(XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT);
+    // One after the other: OpenXR's own validation layer refuses a chain of two.
+    for (const auto& [has, chained] : {std::pair<bool, void*>(tracks_hands_, &hands), std::pair<bool, void*>(tracks_eyes_, &eyes)}) {
+        properties.next = has ? chained : nullptr;
+        BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
+    }
     tracks_hands_ = tracks_hands_ && hands.supportsHandTracking == XR_TRUE;
+    tracks_eyes_ = tracks_eyes_ && eyes.supportsEyeGazeInteraction == XR_TRUE;
     description_ = fmt::format("{}: {}", runtime.runtimeName, properties.systemName);
 }
 

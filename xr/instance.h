@@ -16,6 +16,7 @@ namespace binosplat::xr {
 
 struct InstanceOptions {
     bool visibility_mask = true;  // some runtimes have nothing behind the function that they offer
+    bool eye_tracking = false;    // whether the wearer lets this program see where the eyes look
     // Asked again and again, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
     // wait.
     std::function<void(const std::string& runtime)> wait_for_headset;
@@ -24,8 +25,9 @@ struct InstanceOptions {
 class Instance {
 public:
     // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
-    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking and those of controllers where they are. Throws Error (exit code 3, one line that
-    // says what was looked for) where there is no runtime or no headset, and what `wait_for_headset` throws.
+    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking, on request XR_EXT_eye_gaze_interaction, and those of controllers where they are.
+    // Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset, and what
+    // `wait_for_headset` throws.
     explicit Instance(const InstanceOptions& options = {});
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -41,6 +43,8 @@ public:
     [[nodiscard]] bool hasRefreshRates() const { return has_refresh_rates_; }
     // It has XR_EXT_hand_tracking, and this headset finds hands.
     [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
+    // It has XR_EXT_eye_gaze_interaction, this headset sees where eyes look, and that was asked for.
+    [[nodiscard]] bool tracksEyes() const { return tracks_eyes_; }
     // Of those that controllers need.
     [[nodiscard]] bool hasExtension(const std::string& name) const { return controller_extensions_.contains(name); }
     // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
@@ -73,7 +77,8 @@ private:
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string description_;
-    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false, tracks_hands_ = false;
+    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false, tracks_hands_ = false,
+         tracks_eyes_ = false;
     std::set<std::string> controller_extensions_;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;

@@ -99,6 +99,7 @@ MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const Camera
                                             bool compared) {
     stopIfInterrupted();
     FrameSettings settings = frameSettings(camera, stereo);
+    settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = compared;
     settings.half_floats = !compared;  // as a viewer has it
     settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself

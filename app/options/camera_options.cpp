@@ -70,11 +70,24 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
         view.fov_x_deg = 0.0;
         const glm::uvec2 size_px = camera.size_px.value_or(files.headset->size_px);
         return {headsetMiddle(*files.headset, world_from_middle, size_px),
-                headsetEyes(*files.headset, world_from_middle, eye_distance, size_px), eye_distance, view};
+                headsetEyes(*files.headset, world_from_middle, eye_distance, size_px), eye_distance, view, files.headset->lens_centres};
     }
     const glm::uvec2 size_px = camera.size_px.value_or(kDefaultSize);
     const Eye middle{world_from_middle, intrinsicsFromFovX(glm::radians(view.fov_x_deg), size_px), size_px};
     return {middle, stereoPair(middle, eye_distance), eye_distance, view};
+}
+
+std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo) {
+    std::array<std::optional<Gaze>, 2> gazes;
+    if (stereo.foveation_deg == 0.0) { return gazes; }
+    for (std::size_t side = 0; side < 2; ++side) {
+        // What is looked at is far away: both eyes turn alike.
+        const glm::dquat eye_from_middle =
+            glm::conjugate(cameras.eyes[side].world_from_camera.orientation) * cameras.middle.world_from_camera.orientation;
+        const glm::dvec3 direction = stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];
+        gazes[side] = Gaze{direction, glm::radians(stereo.foveation_deg)};
+    }
+    return gazes;
 }
 
 Cameras moveCameras(const Cameras& start, const Pose& world_from_middle) {

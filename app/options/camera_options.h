@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/options/options.h"
+#include "engine/frame.h"
 #include "engine/geometry.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/camera_file.h"
@@ -27,10 +28,15 @@ struct Cameras {
     std::array<Eye, 2> eyes;   // by Side
     double eye_distance;       // scene units
     std::optional<View> view;  // where --eye, --look, --up and --fov-x (0 with a headset) came out; empty with a camera file
+    // Where each eye's lens is at its best: directions in the eyes' axes.
+    std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
 };
 
 // What the options leave open comes from the files, then from the scene. Throws Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
+
+// By Side, for FrameSettings: where the options say that the eyes look; nothing where they do not want to know.
+std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo);
 
 // The same eyes on a head that moved.
 Cameras moveCameras(const Cameras& start, const Pose& world_from_middle);

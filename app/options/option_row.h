@@ -169,6 +169,11 @@ auto vector() {
 }
 
 template <auto... Members>
+auto direction() {
+    return make<Members...>("of any length", readDirection);
+}
+
+template <auto... Members>
 auto colour() {
     return make<Members...>("0 to 1 each", readColour);
 }

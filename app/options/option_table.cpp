@@ -98,6 +98,11 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"newcomer-error", "stereo", kTried, "E",
           "predicted mode: error of a pixel that splats cover which the dominant eye does not see"},
          field::number<kStereo, &StereoOptions::newcomer_error>(0.0, kMaxExpectedError)},
+        {{"foveation", "stereo", kTried, "DEG",
+          "predicted mode: so far from where the eyes look all errors count, beyond it what the eye sees of them; 0: all count everywhere"},
+         field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
+        {{"gaze", "stereo", kPictures, "x,y,z", "where the eyes look, from the head: right, down, forward", "each lens's centre"},
+         field::direction<kStereo, &StereoOptions::gaze>()},
 
         // Scene.
         {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},

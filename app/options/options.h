@@ -46,6 +46,8 @@ struct StereoOptions {
     std::string edge_bounds = "paper";
     double hole_error = 1.0;
     double newcomer_error = 0.3;
+    double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere
+    std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: where the lenses are best
 };
 
 inline constexpr double kDefaultIpdMetres = 0.063;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 
 namespace binosplat {
 
@@ -17,6 +18,7 @@ struct FrameViews {
     std::array<xr::EyeView, 2> eyes;
     std::array<Pose, 2> room_from_eyes;
     Pose room_from_head;
+    std::array<std::optional<Gaze>, 2> gazes;  // by Side: where the eyes look, where it matters
 };
 
 class SceneRenderer {

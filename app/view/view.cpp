@@ -63,6 +63,7 @@ void runView(const ViewOptions& given) {
     const ViewSettings settings = startSettings(options);
     xr::InstanceOptions instance_options;
     instance_options.visibility_mask = settings.visibility_mask;
+    instance_options.eye_tracking = settings.eye_tracking;
     instance_options.wait_for_headset = [said = false](const std::string& runtime) mutable { waitForHeadset(runtime, said); };
     std::unique_ptr<xr::Instance> instance;
     try {

@@ -62,6 +62,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         {{"tint", "view", kView, "", "show what made the affiliated picture"}, field::flag<&S::tint>()},
         {{"panel", "view", kView, "", "show the panel at the start", "true"}, field::flag<&S::panel>()},
         {{"visibility-mask", "view", kView, "", "ask the runtime what the lenses hide", "true"}, field::flag<&S::visibility_mask>()},
+        {{"eye-tracking", "view", kView, "", "with foveation: follow the eyes, where the headset sees where they look"},
+         field::flag<&S::eye_tracking>()},
         {{"tilt", "view", kView, "", "two hands may tilt the scene"}, field::flag<&S::tilt>()},
         {{"refresh-rate", "view", kView, "HZ", "one of the headset's rates; 0: the runtime's choice"},
          field::number<&S::refresh_rate>(0.0, 1000.0)},

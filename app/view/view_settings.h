@@ -17,6 +17,7 @@ struct ViewSettings {
     bool tint = false;              // show what made the affiliated picture
     bool panel = true;
     bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
+    bool eye_tracking = false;                  // whether the headset may say where the eyes look; at the start alone
     bool tilt = false;                          // whether two hands may tilt the scene
     double refresh_rate = 0.0;                  // frames per second; 0: the runtime's choice
     bool hands = true;                          // draw them, or what they hold

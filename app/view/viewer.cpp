@@ -124,12 +124,15 @@ void Viewer::drawFrame() {
     }
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(*eyes);
-    const FrameViews views{*eyes, room_from_eyes, roomFromHead(room_from_eyes)};
+    FrameViews views{*eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
     const WearerNow wearer{stay_->input.read(), room_from_head_, stay_->session.floorBelowMetres(), step_seconds};
     controls_.update(wearer, panel_, settings_, scenes_.scene_from_room);
+    if (const double clear_deg = settings_.stereo.foveation_deg; clear_deg > 0.0) {
+        views.gazes = gaze_.update(stay_->input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+    }
     chooseThings(wearer, views);
     obeyWindow(step_seconds);
     if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }

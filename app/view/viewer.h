@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/view/canvas.h"
+#include "app/view/gaze_follower.h"
 #include "app/view/mirror_window.h"
 #include "app/view/overlay.h"
 #include "app/view/overlay_panel.h"
@@ -75,6 +76,7 @@ private:
     OverlayPanel panel_;
     WearerControls controls_;
     Vignette vignette_;
+    GazeFollower gaze_;
     Commands commands_;
     OverlayStatus status_;
     OverlayPages pages_;

@@ -1,6 +1,7 @@
 // Recording the passes that make one eye from the other.
 #include "engine/passes/stereo_passes.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace binosplat {
@@ -37,6 +38,14 @@ gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 s
     return counters;
 }
 
+gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
+    return {.direction = glm::vec3(glm::normalize(gaze.direction)),
+            .clear_rad = static_cast<float>(gaze.clear_rad),
+            .pixel_cycle = static_cast<float>(2.0 / std::min(lens.fx, lens.fy)),
+            .focal_px = {lens.fx, lens.fy},
+            .principal_px = {lens.cx, lens.cy}};
+}
+
 KernelTable stereoKernels() {
     KernelTable table =
         everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
@@ -59,7 +68,7 @@ KernelTable stereoKernels() {
         if (groups && (values[1] == 0 || values[7] == 0)) { table.push_back(variant); }
     }
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
-    append(table, everyVariant("8h_price", sizeof(gpu::PricePass)));
+    append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
     append(table, everyVariant("8i_select", sizeof(gpu::SelectPass), {{"kPredicted", 2}}));
     return table;
 }
@@ -227,8 +236,9 @@ void StereoRecorder::price() {
                               .tile_costs = in_.stereo.tileCosts(),
                               .tile_errors = in_.stereo.tileErrors(),
                               .tile_prices = in_.stereo.tilePrices(),
-                              .price_bins = in_.stereo.bins()};
-    commands_.dispatch(kernel("8h_price", pass, {}), pass, tileGroups());
+                              .price_bins = in_.stereo.bins(),
+                              .gaze = in_.affiliated_gaze ? eyeGazeOf(*in_.affiliated_gaze, in_.affiliated_lens) : gpu::EyeGaze{}};
+    commands_.dispatch(kernel("8h_price", pass, {in_.affiliated_gaze.has_value()}), pass, tileGroups());
 }
 
 void StereoRecorder::select() {

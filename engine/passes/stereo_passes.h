@@ -18,6 +18,8 @@
 #include "engine/passes/stereo_buffers.h"
 #include "shaders/shared/passes.h"
 
+#include <optional>
+
 namespace binosplat {
 
 // Who makes the affiliated picture's tiles.
@@ -44,6 +46,12 @@ struct StereoSettings {
     bool operator==(const StereoSettings&) const = default;
 };
 
+// Where an eye looks, for Patching::kPredicted: what it does not see there is not worth rendering again.
+struct Gaze {
+    glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
+    double clear_rad = 0.0;               // how far about it everything counts in full: the eye may look there, too
+};
+
 // How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers.
 gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
 // What the counters start a frame with: modes that do not weigh move everything.
@@ -64,7 +72,12 @@ struct StereoPassInputs {
     const ShownTiles& dominant_shown;
     const ShownTiles& affiliated_shown;
     glm::vec3 background;
+    const Intrinsics& affiliated_lens;
+    std::optional<Gaze> affiliated_gaze;  // empty: all tiles are seen alike
 };
+
+// How `gaze` looks to the device.
+gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
 // All kernels of the passes 8 and 9.
 KernelTable stereoKernels();

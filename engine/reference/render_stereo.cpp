@@ -83,7 +83,10 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         errors = expectErrors(pictures.resolved, arrivals, pictures.dominant, pictures.tile_kinds, eyes, stereo);
         const EyeSplats target(scene, order, eyes.target, settings);
         addNewcomers(errors, target.splats, target.pairs, source.pairs, arrivals, pictures.tile_kinds, size_px, stereo.newcomer_error);
-        select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs), pictures.tile_costs, budget_cost);
+        const std::vector<double> shares = stereo.target_gaze ? findSeenShares(eyes.target, *stereo.target_gaze) : std::vector<double>();
+        const auto whole_prices = price(pictures.tile_kinds, errors, pictures.tile_costs);
+        select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs, shares), pictures.tile_costs, budget_cost,
+               whole_prices);
     } else if (stereo.method == StereoMethod::kPaper && stereo.center_rois) {
         markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px);
     }

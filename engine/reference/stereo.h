@@ -15,6 +15,12 @@ enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };  // what made a 
 // Why a tile is rendered; kNone: it is not, its pixels are moved; kHidden: nor that, nobody sees it.
 enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden, kCheap };
 
+// Where an eye looks: a direction in its own axes, and how far about it, in radians, everything counts in full.
+struct Gaze {
+    glm::dvec3 direction;
+    double clear_rad;
+};
+
 struct StereoSettings {
     StereoMethod method = StereoMethod::kPredicted;
     DepthChoice depth_choice = DepthChoice::kInverse;
@@ -29,6 +35,7 @@ struct StereoSettings {
     double hole_error = 1.0, newcomer_error = 0.3;
     // Tiles that nobody sees: a byte a tile, 1 for these; empty: there is none. The source has no picture there.
     std::vector<std::uint8_t> source_hidden = {}, target_hidden = {};
+    std::optional<Gaze> target_gaze = {};
 };
 
 // Two eyes of one size: the picture is the source's and goes to the target.
@@ -129,12 +136,20 @@ std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileK
                            std::size_t most_boxes = SIZE_MAX);
 
 // 8h: which sixteenth of an octave of error a pair the unmarked tiles are in, from 2^-43 upwards; nothing for tiles without an error.
+// `seen_shares`: of each tile's squared error, what the eye sees; empty: all. Nothing for a tile that is not seen whole and whose rest
+// nobody notices.
 std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds, std::span<const double> errors,
-                                                std::span<const std::uint64_t> costs);
+                                                std::span<const std::uint64_t> costs, std::span<const double> seen_shares = {});
+// Likewise 8h: the finest cycle that an eye resolves is w0 + m e, with w0 = 1/48 degree and m = 0.022, at an angle e from where it looks
+// (Guenter, Finch, Drucker, Tan, Snyder, Foveated 3D Graphics, 2012); a picture has cycles of two pixels and longer. The share of an
+// error that is spread over all of these and that the eye sees: the square of their quotient, for each tile's middle.
+std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 
 // 8i: from the greatest price down, the first of equals first, the tiles that together cost no more than `budget_cost`.
+// `whole_prices`: what they would be if all errors were seen whole; empty: as they are. The budget ends where it would among these, and
+// what is worth less than that is not rendered.
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
-            std::uint64_t budget_cost);
+            std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {

@@ -10,6 +10,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace binosplat {
@@ -35,6 +36,8 @@ Headset readHeadset(const fs::path& path) {
         for (std::size_t side = 0; side < 2; ++side) {
             const files::HeadsetAngles& angles = file.angles[side];
             headset.angles[side] = {angles.left_rad, angles.right_rad, angles.up_rad, angles.down_rad};
+            const auto& [right_rad, up_rad] = file.lens_centres_rad[side];
+            headset.lens_centres[side] = {std::tan(right_rad), -std::tan(up_rad), 1.0};
         }
         return headset;
     } catch (const files::Error& error) { throw Error(error.what()); }

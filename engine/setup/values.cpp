@@ -66,6 +66,13 @@ glm::dvec3 readVector(const Setting& setting) {
     return *vector;
 }
 
+glm::dvec3 readDirection(const Setting& setting) {
+    const std::optional<glm::dvec3> vector = parseVector(setting.text());
+    // Not so long or short that its square is no number.
+    if (!vector || !(glm::length(*vector) > 1e-100 && glm::length(*vector) < 1e100)) { refuse(setting, "a direction x,y,z, not 0,0,0"); }
+    return *vector;
+}
+
 glm::dvec3 readColour(const Setting& setting) {
     const std::optional<glm::dvec3> colour = parseVector(setting.text());
     const bool in_range =

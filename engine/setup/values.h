@@ -23,6 +23,7 @@ double readNumber(const Setting& setting, double least, double most);
 double readPositive(const Setting& setting);
 std::uint64_t readCount(const Setting& setting, std::uint64_t least, std::uint64_t most);
 glm::dvec3 readVector(const Setting& setting);
+glm::dvec3 readDirection(const Setting& setting);  // of any length but 0
 glm::dvec3 readColour(const Setting& setting);
 glm::uvec2 readSize(const Setting& setting);
 bool readFlag(const Setting& setting);

@@ -108,6 +108,13 @@ BINOSPLAT_CONSTANT uint kPriceBins = 1024;
 // What a tile costs in the price list at most, in pairs: the other ten bits of the word say the bin.
 BINOSPLAT_CONSTANT uint kMaxTileCost = 0x3fffffu;
 
+// The finest cycle that an eye resolves, in radians: 1/48 of a degree where it looks, and 0.022 (1.32 arc minutes a degree) times the
+// angle from there: the more careful of the two slopes of Guenter et al. 2012, Foveated 3D Graphics.
+BINOSPLAT_CONSTANT float kFovealCycle = 0.000363610f;
+BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
+// A tile beside where the eye looks is moved, whatever the budget is, if the eye sees less than this of its squared error: a hundredth of
+// what lies between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
+BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 // The spread of a moving pixel's inverse depth is told in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;

@@ -190,7 +190,8 @@ struct PricePass {
     Uints tile_costs;
     Uints tile_errors;
     Uints tile_prices;  // out: bin << 22 | cost
-    Uints price_bins;   // out: cost of the tiles in each bin, greatest error a pair first
+    Uints price_bins;   // out: cost of the tiles in each bin, of errors that are seen whole; greatest error a pair first
+    EyeGaze gaze;       // where it is known where the affiliated eye looks
 };
 
 // 8i_select: the tiles that are rendered, as a list and as a mask.

@@ -18,7 +18,8 @@ BINOSPLAT_ARRAY_OF(vec4, Vec4s);
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
 BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
-// A run of splats that lies in one allocation: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has them.
+// A run of splats that lies in one allocation: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has
+// them.
 struct SceneChunk {
     Vec3s positions;
     Vec4s rotations;  // x, y, z, w
@@ -156,6 +157,15 @@ struct StereoCounters {
     DispatchSize component_groups;  // paper: workgroups over the pixels, none if there is no hole
 };
 BINOSPLAT_ARRAY_OF(StereoCounters, StereoCounterss);
+
+// Where an eye looks, and what its pixels are.
+struct EyeGaze {
+    vec3 direction;     // in the eye's axes, of length 1
+    float clear_rad;    // so far about it nothing is taken away
+    float pixel_cycle;  // the angle of two pixels, in radians
+    vec2 focal_px;
+    vec2 principal_px;
+};
 
 // A rectangle of pixels, half open; a component of holes.
 struct PixelBox {

@@ -23,6 +23,7 @@ inline constexpr Extension kExtensions[] = {
     {"XR_KHR_convert_timespec_time", 1},
     {"XR_EXT_conformance_automation", 3},
     {"XR_EXT_debug_utils", 4},
+    {"XR_EXT_eye_gaze_interaction", 2},
     {"XR_EXT_hand_tracking", 4},
     {"XR_EXT_user_presence", 1},
     {"XR_FB_display_refresh_rate", 1},

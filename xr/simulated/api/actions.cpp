@@ -10,8 +10,6 @@
 namespace simulated {
 namespace {
 
-constexpr std::string_view kSubactionPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head", "/user/gamepad"};
-
 void checkNames(const std::string& name, const std::string& localized_name) {
     require(!name.empty(), XR_ERROR_NAME_INVALID, "a name is empty");
     require(!localized_name.empty(), XR_ERROR_LOCALIZED_NAME_INVALID, "a localized name is empty");
@@ -35,8 +33,7 @@ std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActi
     for (std::uint32_t i = 0; i < info.countSubactionPaths; ++i) {
         const XrPath path = info.subactionPaths[i];
         const std::string& text = instance.paths.textOf(path);
-        const bool is_known = std::find(std::begin(kSubactionPaths), std::end(kSubactionPaths), text) != std::end(kSubactionPaths);
-        require(is_known, XR_ERROR_PATH_UNSUPPORTED, "not a subaction path");
+        require(deviceOf(text) && instance.hasUserPath(text), XR_ERROR_PATH_UNSUPPORTED, "not a subaction path");
         require(std::find(paths.begin(), paths.end(), path) == paths.end(), XR_ERROR_PATH_UNSUPPORTED, "a subaction path comes twice");
         paths.push_back(path);
     }

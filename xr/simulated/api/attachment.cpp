@@ -71,15 +71,10 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
     return {value, 0.0};
 }
 
-// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
-// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
-    constexpr double kPalm_m = 0.02;
-    if (source.source == "aim") return controller.stage_from_aim;
+    if (source.source == "aim" || source.source == "gaze_ext") return controller.stage_from_aim;
     if (source.source == "grip") return controller.stage_from_grip;
-    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
-    grip_from_palm.position.x = source.device == kLeftHand ? -kPalm_m : kPalm_m;
-    return compose(controller.stage_from_grip, grip_from_palm);
+    return compose(controller.stage_from_grip, gripFromPalm(source.device));
 }
 
 bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
@@ -108,21 +103,34 @@ Priorities highestPriorities(const std::vector<AttachedAction>& actions, const s
 ActionReading readAction(const AttachedAction& action, XrPath subaction_path, const State& state, const std::vector<ActiveSet>& active,
                          const Priorities& highest) {
     ActionReading reading;
-    for (const BoundSource& source : action.sources) {
+    const std::optional<std::size_t> followed_before = action.readings.at(subaction_path).followed;
+    bool keeps_followed = false;
+    for (std::size_t i = 0; i < action.sources.size(); ++i) {
+        const BoundSource& source = action.sources[i];
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
         if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) continue;
+        keeps_followed = keeps_followed || followed_before == i;
         const ControllerState& controller = state.device(source.device);
         if (!controller.tracked) continue;
         reading.is_active = true;
+        if (!reading.followed) reading.followed = i;
         if (action.type == XR_ACTION_TYPE_POSE_INPUT || action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT) continue;
         // Of several sources the strongest counts; for booleans that is "or".
         const glm::dvec2 value = valueOf(controller, source, action.type);
         if (glm::dot(value, value) > glm::dot(reading.value, reading.value)) reading.value = value;
     }
+    if (keeps_followed || !reading.followed) reading.followed = followed_before;
     return reading;
 }
 
 }  // namespace
+
+Pose gripFromPalm(std::size_t device) {
+    constexpr double kPalm_m = 0.02;
+    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
+    grip_from_palm.position.x = device == kLeftHand ? -kPalm_m : kPalm_m;
+    return grip_from_palm;
+}
 
 AttachedAction* Attachment::find(std::uint64_t action) {
     const auto found = std::find_if(actions.begin(), actions.end(), [&](const auto& attached) { return attached.number == action; });
@@ -146,7 +154,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
             break;
         }
     }
-    std::array<const Profile*, kDevices> chosen{hands, hands, nullptr, nullptr};
+    std::array<const Profile*, kDevices> chosen{hands, hands};
+    const Profile* const tracker = findProfile("/interaction_profiles/ext/eye_gaze_interaction");
+    const bool tracks_eyes = instance.simulation->script.gaze.tracker != EyeTracking::kOff;
+    if (tracks_eyes && isSuggested(instance, *tracker)) chosen[kGaze] = tracker;
     for (std::size_t device = 0; device < kDevices; ++device) {
         const Profile* const wanted = automation.devices[device].profile;
         if (wanted != nullptr) chosen[device] = isSuggested(instance, *wanted) ? wanted : nullptr;
@@ -158,7 +169,10 @@ bool Attachment::chooseProfiles(Instance& instance, const Automation& automation
 }
 
 void Attachment::bindSources(const Instance& instance) {
-    for (AttachedAction& action : actions) action.sources.clear();
+    for (AttachedAction& action : actions) {
+        action.sources.clear();
+        for (auto& [subaction_path, reading] : action.readings) reading.followed.reset();
+    }
     for (const SuggestedProfile& suggested : suggestions) {
         const Profile* const profile = findProfile(instance.paths.textOf(suggested.profile));
         for (const SuggestedBinding& binding : suggested.bindings) {
@@ -191,20 +205,31 @@ AttachedAction& getAttached(Session& session, XrAction action) {
     return *attached;
 }
 
-std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
-    if (!session.attachment || !session.is_running) return std::nullopt;
+namespace {
+
+// What a pose action is read from; null while it is inactive.
+const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    if (!session.attachment || !session.is_running) return nullptr;
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) continue;
         const auto reading = attached.readings.find(subaction_path);
-        if (reading == attached.readings.end() || !reading->second.is_active) return std::nullopt;
-        for (const BoundSource& source : attached.sources) {
-            if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-            const ControllerState& controller = state.device(source.device);
-            if (!controller.tracked) return std::nullopt;
-            return poseOf(controller, source);
-        }
+        if (reading == attached.readings.end() || !reading->second.is_active) return nullptr;
+        return reading->second.followed ? &attached.sources[*reading->second.followed] : nullptr;
     }
-    return std::nullopt;
+    return nullptr;
+}
+
+}  // namespace
+
+std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    if (source == nullptr || !state.device(source->device).tracked) return std::nullopt;
+    return poseOf(state.device(source->device), *source);
+}
+
+bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    const BoundSource* const source = sourceOf(session, action, subaction_path);
+    return source != nullptr && source->device == kGaze;
 }
 
 }  // namespace simulated

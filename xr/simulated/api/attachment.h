@@ -33,6 +33,9 @@ struct ActionReading {
     glm::dvec2 value{0.0, 0.0};  // booleans are 0 or 1, scalars have y = 0
     bool has_changed = false;
     XrTime changed_at = 0;
+    // Of the action's sources, the one that its spaces stand on if it is a pose. It is kept as long as xrSyncActions activates it, even if
+    // it is not tracked for a while.
+    std::optional<std::size_t> followed;
 };
 
 struct AttachedAction {
@@ -67,10 +70,16 @@ struct Attachment {
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };
 
+// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
+// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
+Pose gripFromPalm(std::size_t device);
+
 // XR_ERROR_ACTIONSET_NOT_ATTACHED.
 AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
 std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
+// Whether that source is the eye tracker.
+bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path);
 
 }  // namespace simulated

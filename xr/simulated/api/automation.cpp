@@ -111,8 +111,11 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
         const std::optional<Pose> stage_from_space =
             stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));
         require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "nobody knows where the space is");
-        const Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
-        (input.name == "aim/pose" ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
+        Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
+        if (input.name == "grip_surface/pose" || input.name == "palm_ext/pose")
+            stage_from_pose = compose(stage_from_pose, inverse(gripFromPalm(checkedDevice(owner, topLevelPath))));
+        const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
+        (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
         return successOf(owner);
     });
 }

@@ -82,7 +82,7 @@ struct DeviceImage::Implementation {
 
 Device::Implementation::Implementation(const GraphicsBinding& binding)
     : dispatch(binding.instance, binding.loader), physical_device(binding.physical_device), device(binding.device) {
-    dispatch.init(vk::Instance(binding.instance), device);
+    dispatch.init(device);
     const auto families = physical_device.getQueueFamilyProperties(dispatch);
     const bool can_draw = binding.queue_family < families.size() && binding.queue < families[binding.queue_family].queueCount &&
                           (families[binding.queue_family].queueFlags & vk::QueueFlagBits::eGraphics);

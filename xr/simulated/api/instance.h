@@ -42,7 +42,12 @@ struct Instance : Object {
     ~Instance() override { Simulation::end(std::move(simulation)); }
 
     [[nodiscard]] bool has(const Profile& profile) const {
-        return profile.since == Since::k1_0 || is_1_1 || extensions.contains(std::string(profile.extension));
+        const bool is_core = profile.since == Since::k1_0 || (profile.since == Since::k1_1 && is_1_1);
+        return is_core || extensions.contains(std::string(profile.extension));
+    }
+    // /user/eyes_ext is the extension's.
+    [[nodiscard]] bool hasUserPath(std::string_view path) const {
+        return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
     }
     [[nodiscard]] Vocabulary vocabulary() const {
         return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)};

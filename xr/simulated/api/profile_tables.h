@@ -9,6 +9,9 @@ namespace simulated {
 inline constexpr std::string_view kHands[] = {"/user/hand/left", "/user/hand/right"};
 inline constexpr std::string_view kHeadPaths[] = {"/user/head"};
 inline constexpr std::string_view kGamepadPaths[] = {"/user/gamepad"};
+inline constexpr std::string_view kEyesPaths[] = {"/user/eyes_ext"};
+
+inline constexpr std::string_view kGazeComponents[] = {"/input/gaze_ext/pose"};
 
 inline constexpr std::string_view kSimple[] = {"/input/select/click", "/input/menu/click", "/input/grip/pose", "/input/aim/pose",
                                                "/output/haptic"};
@@ -68,8 +71,8 @@ inline constexpr std::string_view kIndex[] = {
 // Of 1.1, before it of extensions.
 inline constexpr std::string_view kCosmos[] = {"/input/shoulder/click",   "/input/squeeze/click",    "/input/trigger/click",
                                                "/input/trigger/value",    "/input/thumbstick/x",     "/input/thumbstick/y",
-                                               "/input/thumbstick/click", "/input/thumbstick/touch", "/input/grip/pose",
-                                               "/input/aim/pose",         "/output/haptic"};
+                                               "/input/thumbstick/click", "/input/thumbstick/touch", "/input/thumbrest/touch",
+                                               "/input/grip/pose",        "/input/aim/pose",         "/output/haptic"};
 inline constexpr std::string_view kCosmosLeft[] = {"/input/x/click", "/input/y/click", "/input/menu/click"};
 inline constexpr std::string_view kCosmosRight[] = {"/input/a/click", "/input/b/click", "/input/system/click"};
 inline constexpr std::string_view kFocus3[] = {
@@ -243,6 +246,14 @@ inline constexpr Profile kProfiles[] = {
      "XR_ML_ml2_controller_interaction"},
     {"/interaction_profiles/htc/vive_pro", "Vive Pro headset", kHeadPaths, kVivePro, {}, {}},
     {"/interaction_profiles/microsoft/xbox_controller", "Xbox controller", kGamepadPaths, kXbox, {}, {}},
+    {"/interaction_profiles/ext/eye_gaze_interaction",
+     "Eye tracker",
+     kEyesPaths,
+     kGazeComponents,
+     {},
+     {},
+     Since::kNone,
+     "XR_EXT_eye_gaze_interaction"},
 };
 
 }  // namespace simulated

@@ -10,7 +10,8 @@ namespace {
 using Names = std::span<const std::string_view>;
 
 constexpr std::string_view kProfilePrefix = "/interaction_profiles/";
-constexpr std::string_view kUserPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head", "/user/gamepad", "/user/treadmill"};
+constexpr std::string_view kUserPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head",
+                                           "/user/gamepad",   "/user/eyes_ext",   "/user/treadmill"};
 
 bool holds(Names names, std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); }
 
@@ -66,8 +67,8 @@ bool allowsBinding(const Profile& profile, std::string_view binding, const Vocab
 }
 
 std::optional<std::size_t> deviceOf(std::string_view user_path) {
-    // The first four, in this order.
-    for (std::size_t i = 0; i < 4; ++i) {
+    // All but the last, in this order.
+    for (std::size_t i = 0; i + 1 < std::size(kUserPaths); ++i) {
         if (kUserPaths[i] == user_path) return i;
     }
     return std::nullopt;

@@ -8,7 +8,8 @@
 
 namespace simulated {
 
-enum class Since { k1_0, k1_1 };
+// kNone: it is an extension's alone.
+enum class Since { k1_0, k1_1, kNone };
 
 struct Profile {
     std::string_view path;
@@ -16,7 +17,7 @@ struct Profile {
     std::span<const std::string_view> user_paths;
     std::span<const std::string_view> components;
     std::span<const std::string_view> left_components, right_components;
-    // Otherwise of 1.0, with this extension, if there is one.
+    // Before that, with this extension, if there is one.
     Since since = Since::k1_0;
     std::string_view extension = {};
 };
@@ -40,9 +41,9 @@ std::string handProfiles();
 bool allowsBinding(const Profile& profile, std::string_view binding, const Vocabulary& words);
 bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component, const Vocabulary& words);
 
-// /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill.
+// /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.
 bool isUserPath(std::string_view path);
-// "/user/hand/left" is 0, right 1, head 2, gamepad 3 (script.h's InputDevice); none for others.
+// "/user/hand/left" is 0, right 1, head 2, gamepad 3, eyes 4 (script.h's InputDevice); none for others.
 std::optional<std::size_t> deviceOf(std::string_view user_path);
 // The user path that a binding starts with; empty if none.
 std::string_view userPathOf(std::string_view binding);

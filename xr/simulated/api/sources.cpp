@@ -18,6 +18,7 @@ constexpr XrInputSourceLocalizedNameFlags kAllComponents = XR_INPUT_SOURCE_LOCAL
 std::string titleOfUserPath(std::string_view user_path) {
     if (user_path == "/user/hand/left") return "Left hand";
     if (user_path == "/user/hand/right") return "Right hand";
+    if (user_path == "/user/eyes_ext") return "Eyes";
     return user_path == "/user/head" ? "Head" : "Gamepad";
 }
 
@@ -48,7 +49,7 @@ void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_
     if (session.state != XR_SESSION_STATE_FOCUSED) return;
     for (const BoundSource& source : action.sources) {
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
-        constexpr const char* kNames[kDevices] = {"left ", "right ", "head ", "gamepad "};
+        constexpr const char* kNames[kDevices] = {"left ", "right ", "head ", "gamepad ", "eyes "};
         session.log_events.push_back(std::string("haptic ") + kNames[source.device] + what);
     }
 }
@@ -63,7 +64,7 @@ XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPa
         Session& owner = getSession(session);
         XrInteractionProfileState& output = checked(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
-        require(isUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, "not a top-level user path");
+        require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, "not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const Profile* const profile = profileOf(owner, user_path);
         output.interactionProfile = profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;

@@ -31,11 +31,19 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
     return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one.
+bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
+
+// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one. A gaze is on the head,
+// and tracked whole or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
-    const auto follows_head = [](const Space& one) { return one.reference == XR_REFERENCE_SPACE_TYPE_VIEW; };
-    if (follows_head(space) == follows_head(base) || state.head_place_known) return kPoseKnown;
+    constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+    const bool gaze = isGaze(space), base_gaze = isGaze(base);
+    const bool is_poor = (gaze || base_gaze) && !state.gaze_is_good;
+    const bool on_head = gaze || space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
+    const bool base_on_head = base_gaze || base.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
+    if (on_head == base_on_head || state.head_place_known) return is_poor ? kPoseKnown & ~kTracked : kPoseKnown;
     if (!state.head_turn_known) return 0;
+    if (gaze || base_gaze) return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
     return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
 }
 
@@ -217,6 +225,12 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
         if (velocity != nullptr)
             differentiate(located, base, time, *const_cast<XrSpaceVelocity*>(reinterpret_cast<const XrSpaceVelocity*>(velocity)));
+        const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+        const XrBaseInStructure* const sample = has_samples ? findInChain(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT) : nullptr;
+        // The script knows the gaze of any time; 0 stands for no sample.
+        if (sample != nullptr)
+            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time =
+                flags != 0 && isGaze(located) ? time : 0;
         return successOf(located.session);
     });
 }

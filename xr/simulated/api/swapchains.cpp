@@ -27,10 +27,12 @@ VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& fo
     return usage;
 }
 
-// A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders.
+// A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders. Vulkan 1.0
+// has no extended usage, so it is asked for only there.
 VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
     if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) return 0;
-    return VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT;
+    const bool is_written = (asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0;
+    return VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | (is_written ? VK_IMAGE_CREATE_EXTENDED_USAGE_BIT : 0);
 }
 
 const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted) {

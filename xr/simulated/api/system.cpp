@@ -58,6 +58,9 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         copyText(output.systemName, owner.simulation->script.system_name);
         output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
         output.trackingProperties = {XR_TRUE, XR_TRUE};
+        if (auto* gaze = chained<XrSystemEyeGazeInteractionPropertiesEXT>(
+                owner, output.next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME))
+            gaze->supportsEyeGazeInteraction = owner.simulation->script.gaze.tracker != EyeTracking::kOff ? XR_TRUE : XR_FALSE;
         if (auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
                                                                      XR_EXT_HAND_TRACKING_EXTENSION_NAME))
             hands->supportsHandTracking = XR_TRUE;

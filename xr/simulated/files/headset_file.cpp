@@ -28,6 +28,8 @@ namespace {
 
 double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
 
+double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
+
 // "one, two or three"
 std::string listed(std::initializer_list<std::string_view> words) {
     std::string result;
@@ -68,18 +70,24 @@ public:
     }
 
     [[nodiscard]] const std::string& file() const { return file_; }
+    [[nodiscard]] const std::string& prefix() const { return prefix_; }
     [[nodiscard]] const toml::node& require(std::string_view key) const {
-        for (const auto& [name, node] : values_) {
-            std::string word(name.str());
-            std::ranges::replace(word, '-', '_');
-            if (word == key) { return node; }
-        }
+        if (const toml::node* node = find(key)) { return *node; }
         const bool is_table = key == "left" || key == "right";
         if (prefix_.empty() && is_table) { fail(values_, '[', key, "] is missing, must be given"); }
         fail(values_, prefix_, key, " is missing, must be given");
     }
-    [[nodiscard]] double number(std::string_view key, double least, double most) const {
-        const toml::node& node = require(key);
+    // Null: it is not there.
+    [[nodiscard]] const toml::node* find(std::string_view key) const {
+        for (const auto& [name, node] : values_) {
+            std::string word(name.str());
+            std::ranges::replace(word, '-', '_');
+            if (word == key) { return &node; }
+        }
+        return nullptr;
+    }
+    [[nodiscard]] double number(std::string_view key, double least, double most) const { return numberOf(require(key), key, least, most); }
+    [[nodiscard]] double numberOf(const toml::node& node, std::string_view key, double least, double most) const {
         const std::optional<double> value = node.value<double>();
         // Not the other way round: NaN is refused, too.
         if (!value || !(*value >= least && *value <= most)) {
@@ -120,15 +128,32 @@ std::array<std::uint32_t, 2> sizeOf(const Table& table) {
     return size_px;
 }
 
-HeadsetAngles anglesOf(const Table& root, std::string_view side) {
+// To the right and upwards of the eye's axis, within its view.
+std::array<double, 2> lensCentreOf(const Table& table, const HeadsetAngles& angles) {
+    const toml::node* node = table.find("lens_centre");
+    if (node == nullptr) { return {}; }
+    const toml::array* both = node->as_array();
+    if (both == nullptr || both->size() != 2) { table.fail(*node, table.prefix(), "lens_centre must be two angles, [right, up]"); }
+    const auto within = [&](std::size_t i, double least_rad, double most_rad) {
+        return radians(table.numberOf(*both->get(i), "lens_centre", degrees(least_rad), degrees(most_rad)));
+    };
+    return {within(0, angles.left_rad, angles.right_rad), within(1, angles.down_rad, angles.up_rad)};
+}
+
+struct Lens {
+    HeadsetAngles angles;
+    std::array<double, 2> centre_rad;
+};
+
+Lens lensOf(const Table& root, std::string_view side) {
     const toml::node& node = root.require(side);
     if (!node.is_table()) { root.fail(node, side, " must be a table"); }
-    const Table table(*node.as_table(), root.file(), std::string(side) + ".", {"left", "right", "up", "down"});
+    const Table table(*node.as_table(), root.file(), std::string(side) + ".", {"left", "right", "up", "down", "lens_centre"});
     const auto angle = [&](std::string_view key) { return radians(table.number(key, -85.0, 85.0)); };
     const HeadsetAngles angles{angle("left"), angle("right"), angle("up"), angle("down")};
     if (angles.left_rad >= angles.right_rad) { table.fail(node, side, ".left must be less than ", side, ".right"); }
     if (angles.down_rad >= angles.up_rad) { table.fail(node, side, ".down must be less than ", side, ".up"); }
-    return angles;
+    return {angles, lensCentreOf(table, angles)};
 }
 
 }  // namespace
@@ -140,12 +165,18 @@ HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
         root = toml::parse(text, file);
     } catch (const toml::parse_error& error) { failAt(file, error.source().begin.line, error.description(), ", must be valid TOML"); }
     const Table table(root, file, "", {"name", "source", "size", "canting_deg", "eye_distance_m", "left", "right"});
-    return {table.text("name"),
-            table.text("source"),
-            sizeOf(table),
-            radians(table.number("canting_deg", 0.0, 45.0)),
-            table.number("eye_distance_m", 0.0, 1.0),
-            {anglesOf(table, "left"), anglesOf(table, "right")}};
+    HeadsetFile headset;
+    headset.name = table.text("name");
+    headset.source = table.text("source");
+    headset.size_px = sizeOf(table);
+    headset.canting_rad = radians(table.number("canting_deg", 0.0, 45.0));
+    headset.eye_distance_m = table.number("eye_distance_m", 0.0, 1.0);
+    for (std::size_t side = 0; side < 2; ++side) {
+        const Lens lens = lensOf(table, side == 0 ? "left" : "right");
+        headset.angles[side] = lens.angles;
+        headset.lens_centres_rad[side] = lens.centre_rad;
+    }
+    return headset;
 }
 
 }  // namespace files

@@ -19,10 +19,13 @@ struct HeadsetFile {
     double canting_rad = 0.0;                // each eye outwards
     double eye_distance_m = 0.0;
     std::array<HeadsetAngles, 2> angles;  // left, right
+    // Likewise: where the lens is at its best, to the right of the eye's axis and above it.
+    std::array<std::array<double, 2>, 2> lens_centres_rad{};
 };
 
 // TOML with the keys name, source, size ("WxH", 1 to 16384 each), canting_deg (0 to 45), eye_distance_m (0 to 1) and the tables [left] and
-// [right] of left, right, up, down in degrees (-85 to 85). '-' in a key reads as '_'. Throws Error with file and line.
+// [right] of left, right, up, down in degrees (-85 to 85) and, if it is not on the eye's axis, lens_centre = [right, up], within these. '-'
+// in a key reads as '_'. Throws Error with file and line.
 [[nodiscard]] HeadsetFile parseHeadset(const std::string& text, const std::string& file);
 
 }  // namespace files

@@ -102,6 +102,10 @@ State Script::at(double time_s) const {
     state.head_turn_known = head_turn_known.at(time_s);
     state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
     for (ControllerState& other : state.others) { other.tracked = false; }
+    ControllerState& eyes = state.device(kGaze);
+    eyes.tracked = gaze.trackedAt(time_s) != GazeTracking::kOff;
+    eyes.stage_from_aim = eyes.stage_from_grip = compose(state.stage_from_head, gaze.headFromGaze(time_s));
+    state.gaze_is_good = gaze.trackedAt(time_s) == GazeTracking::kOn;
     state.should_render = should_render.at(time_s);
     state.worn = worn.at(time_s);
     state.visible = visible.at(time_s);

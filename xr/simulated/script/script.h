@@ -3,6 +3,7 @@
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
+#include "xr/simulated/script/script_gaze.h"
 #include "xr/simulated/script/track.h"
 
 #include <array>
@@ -48,8 +49,8 @@ struct ControllerState {
 };
 
 // Whatever has buttons; the hands by Side.
-enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3 };
-inline constexpr std::size_t kDevices = 4;
+enum InputDevice : std::size_t { kLeftHand = 0, kRightHand = 1, kHead = 2, kGamepad = 3, kGaze = 4 };
+inline constexpr std::size_t kDevices = 5;
 
 struct EyeState {
     Pose stage_from_eye;
@@ -64,7 +65,9 @@ struct State {
     std::array<ControllerState, 2> controllers;            // by Side
     bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
     // What the head's and a gamepad's buttons say: nothing, unless a program's own test moves them (XR_EXT_conformance_automation).
-    std::array<ControllerState, 2> others;
+    // The gaze is the aim pose of the last one.
+    std::array<ControllerState, 3> others;
+    bool gaze_is_good = true;  // else what is known of it is not to be relied on
     // By InputDevice.
     [[nodiscard]] ControllerState& device(std::size_t index) { return index < 2 ? controllers[index] : others[index - 2]; }
     [[nodiscard]] const ControllerState& device(std::size_t index) const { return index < 2 ? controllers[index] : others[index - 2]; }
@@ -174,6 +177,7 @@ public:
         std::map<std::string, std::string> input_places;  // each input that moves, and the line that names it first
     };
     Track<Pose> stage_from_head;
+    GazeScript gaze;
     std::array<Hand, 2> hands;
     std::array<Steps<Fov>, 2> fovs;
     Steps<bool> should_render{true}, worn{true}, visible{true}, focused{true}, present{true}, head_turn_known{true}, head_place_known{true};

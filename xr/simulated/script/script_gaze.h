@@ -1,0 +1,33 @@
+// Where the wearer looks, as a script says it, and what the headset's eye tracker makes of that (XR_EXT_eye_gaze_interaction).
+#pragma once
+
+#include "xr/simulated/script/track.h"
+
+#include <glm/vec2.hpp>
+
+namespace simulated {
+
+class Words;
+
+// Whether the headset tracks eyes: refused, it does, but its wearer does not let this program see it.
+enum class EyeTracking { kOn, kOff, kRefused };
+// What is known of the gaze: degraded, a direction, but not a good one.
+enum class GazeTracking { kOn, kOff, kDegraded };
+
+struct GazeScript {
+    EyeTracking tracker = EyeTracking::kOn;
+    Track<glm::dvec2> turn_rad;  // from the head's own direction: to the left, then upwards; empty: straight ahead
+    Steps<GazeTracking> tracked{GazeTracking::kOn};
+
+    // On the head, between the eyes; OpenXR's axes.
+    [[nodiscard]] Pose headFromGaze(double time_s) const;
+    [[nodiscard]] GazeTracking trackedAt(double time_s) const;
+};
+
+// `eye-tracking on|off|refused`, `gaze T YAW PITCH` and `at T gaze on|off|degraded`, from the word after those named here. Throw
+// ScriptError.
+void parseEyeTracking(Words& words, GazeScript& gaze);
+void parseGazeKey(Words& words, GazeScript& gaze);
+void parseGazeTracking(Words& words, double time_s, GazeScript& gaze);
+
+}  // namespace simulated

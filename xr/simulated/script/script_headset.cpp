@@ -1,0 +1,106 @@
+// The commands about what the headset is: its display, its eyes and the room that it is in.
+#include "xr/simulated/script/script_files.h"
+#include "xr/simulated/script/script_parser.h"
+
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+
+namespace simulated {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+void Parser::parseRate(Words& words) {
+    requireFirst(words, "rate");
+    script_.rate_hz = words.number(kRateMeaning, kLeastRate, kMostRate);
+}
+
+void Parser::parseIrregular(Words& words) {
+    requireFirst(words, "irregular");
+    script_.irregularity = 0.01 * words.number("how much periods differ, in percent", 0.0, 90.0);
+}
+
+void Parser::parseSize(Words& words) {
+    requireFirst(words, "size");
+    const auto width = static_cast<std::uint32_t>(words.count("the width in pixels", 1, 16384));
+    script_.size_px = {width, static_cast<std::uint32_t>(words.count("the height in pixels", 1, 16384))};
+}
+
+void Parser::parseIpd(Words& words) {
+    requireFirst(words, "ipd");
+    script_.eye_distance_m = words.number("the eye distance in metres", 0.0, 1.0);
+}
+
+void Parser::parseEye(Words& words) {
+    const Side side = words.side();
+    const std::string eye = side == kLeft ? "eye left " : "eye right ";
+    if (words.choice("what is set", {"angles", "cant"}) == 0) {
+        requireFirst(words, eye + "angles");
+        script_.fovs[side].setInitial(words.angles());
+    } else {
+        requireFirst(words, eye + "cant");
+        script_.cant_rad[side] = glm::radians(words.number("the turn outwards in degrees", -45.0, 45.0));
+    }
+}
+
+void Parser::parseEyeTrackingLine(Words& words) {
+    requireFirst(words, "eye-tracking");
+    parseEyeTracking(words, script_.gaze);
+}
+
+void Parser::parseHeadsetLine(Words& words) {
+    for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant"}) {
+        if (seen_.contains(set_by_it)) { words.fail("headset sets {}, too, must stand before it", set_by_it); }
+    }
+    requireFirst(words, "headset");
+    const fs::path path = folder_ / words.text("the headset's file");
+    const files::HeadsetFile headset = readHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
+    script_.system_name = headset.name;
+    script_.size_px = {headset.size_px[0], headset.size_px[1]};
+    script_.eye_distance_m = headset.eye_distance_m;
+    script_.cant_rad = {headset.canting_rad, headset.canting_rad};
+    for (const Side side : kSides) {
+        const auto& [left_rad, right_rad, up_rad, down_rad] = headset.angles[side];
+        script_.fovs[side].setInitial({left_rad, right_rad, up_rad, down_rad});
+    }
+}
+
+void Parser::parseBlendModes(Words& words) {
+    requireFirst(words, "blend-modes");
+    script_.blend_modes.clear();
+    do {
+        const auto mode = static_cast<Script::BlendMode>(words.choice("a blend mode", {"opaque", "additive", "alpha-blend"}));
+        if (std::ranges::find(script_.blend_modes, mode) != script_.blend_modes.end()) {
+            words.fail("a blend mode stands there twice, must be named once");
+        }
+        script_.blend_modes.push_back(mode);
+    } while (!words.isAtEnd());
+}
+
+void Parser::parseRoomColour(Words& words) {
+    requireFirst(words, "room-colour");
+    for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.number("the room's colour", 0.0, 1.0); }
+}
+
+void Parser::parseMask(Words& words) {
+    requireFirst(words, "visibility-mask");
+    const std::size_t choice = words.choice("whether there is a mask", {"on", "off", "broken"});
+    script_.visibility_mask = choice == 0;
+    script_.visibility_mask_is_broken = choice == 2;
+}
+
+void Parser::parseLocal(Words& words) {
+    requireFirst(words, "local");
+    script_.stage_from_local = parsePose(words, {});
+}
+
+void Parser::parseStage(Words& words) {
+    requireFirst(words, "stage");
+    script_.has_stage = words.onOff("whether there is a STAGE");
+}
+
+}  // namespace simulated

@@ -1,0 +1,47 @@
+// The commands about what the hands press, touch and push.
+#include "xr/simulated/script/script_inputs.h"
+#include "xr/simulated/script/script_parser.h"
+
+namespace simulated {
+
+std::string Parser::inputName(Words& words, Script::Hand& hand) {
+    const std::string name = words.text("the input");
+    if (!kindOfInput(name)) {
+        std::string known;
+        for (const auto& [one, kind] : kInputs) { known += (known.empty() ? "" : ", ") + std::string(one); }
+        words.fail("{} is not an input, must be one of: {}", shown(name), known);
+    }
+    hand.input_places.try_emplace(name, words.place());
+    return name;
+}
+
+void Parser::addPress(Words& words, bool touch_only) {
+    Script::Hand& hand = script_.hands[words.side()];
+    std::string input = inputName(words, hand);
+    const double from_s = words.time("the time from which on");
+    const double to_s = words.time("the time until which");
+    if (from_s >= to_s) { words.fail("it lasts from {} to {}, must end after it begins", from_s, to_s); }
+    hand.presses.push_back({std::move(input), from_s, to_s, touch_only});
+}
+
+void Parser::parsePress(Words& words) { addPress(words, false); }
+void Parser::parseTouch(Words& words) { addPress(words, true); }
+
+void Parser::parseAxis(Words& words) {
+    Script::Hand& hand = script_.hands[words.side()];
+    const std::string input = inputName(words, hand);
+    const InputKind kind = *kindOfInput(input);
+    if (kind == InputKind::kButton) { words.fail("{} has no axis, must be trigger, squeeze, thumbstick or trackpad", input); }
+    const double time_s = words.time();
+    glm::dvec2 value(0.0);
+    if (kind == InputKind::kStick) {
+        value.x = words.number("the axis to the right", -1.0, 1.0);
+        value.y = words.number("the axis upwards", -1.0, 1.0);
+    } else {
+        value.x = words.number("the value", 0.0, 1.0);
+    }
+    Track<glm::dvec2>& track = hand.axes[input];
+    if (!track.add(time_s, value)) { words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime()); }
+}
+
+}  // namespace simulated

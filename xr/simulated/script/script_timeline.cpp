@@ -1,0 +1,89 @@
+// The command about what happens at a time: `at T ...`.
+#include "xr/simulated/script/script_parser.h"
+
+#include <algorithm>
+
+namespace simulated {
+
+namespace {
+
+// "70 %", "8 ms" or "3 ms-per-megapixel".
+GpuLoad parseLoad(Words& words) {
+    const double amount = words.number("the load", 0.0, 1e5);
+    switch (words.choice("the load's unit", {"%", "ms", "ms-per-megapixel"})) {
+        case 0:
+            return {GpuLoad::Unit::kShareOfPeriod, amount / 100.0};
+        case 1:
+            return {GpuLoad::Unit::kMs, amount};
+        default:
+            return {GpuLoad::Unit::kMsPerMegapixel, amount};
+    }
+}
+
+template <typename Value>
+void addStep(Words& words, Steps<Value>& steps, double time_s, const Value& value) {
+    if (!steps.add(time_s, value)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
+}
+
+}  // namespace
+
+void Parser::parseAt(Words& words) {
+    double time_s = words.time();
+    if (last_at_s_ && time_s < *last_at_s_) {
+        words.fail("the time is {}, must not be before the `at` before, at {}", time_s, *last_at_s_);
+    }
+    last_at_s_ = time_s;
+    const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
+    switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
+                                          "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "gaze"})) {
+        case 0:
+            return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
+        case 1:
+            return addStep(words, script_.visible, time_s, words.onOff("whether it is visible"));
+        case 2:
+            return addStep(words, script_.focused, time_s, words.onOff("whether it has the focus"));
+        case 3:
+            return addEvent(ScriptEvent::Kind::kSlowImages,
+                            static_cast<std::uint32_t>(words.count("the number of slow images", 1, 1000000)));
+        case 4:
+            return addEvent(ScriptEvent::Kind::kLoseSession);
+        case 5:
+            return addEvent(ScriptEvent::Kind::kLoseInstance);
+        case 6:
+            return addEvent(ScriptEvent::Kind::kExit);
+        case 7: {
+            const Side side = words.side();
+            (void)words.choice("what changes", {"angles"});
+            return addStep(words, script_.fovs[side], time_s, words.angles());
+        }
+        case 8: {
+            const Side side = words.side();
+            return addStep(words, script_.hands[side].tracked, time_s, words.onOff("whether it is tracked"));
+        }
+        case 9:
+            return addStep(words, script_.worn, time_s, words.onOff("whether it is worn"));
+        case 10: {
+            const std::size_t known = words.choice("whether it is tracked", {"on", "off", "turn-only"});
+            addStep(words, script_.head_turn_known, time_s, known != 1);
+            return addStep(words, script_.head_place_known, time_s, known == 0);
+        }
+        case 11:
+            script_.recentres_s.push_back(time_s);
+            // The program is told before.
+            time_s -= ScriptEvent::kNoticeSeconds;
+            script_.events.insert(std::ranges::upper_bound(script_.events, time_s, {}, &ScriptEvent::time_s),
+                                  {time_s, ScriptEvent::Kind::kRecentre, 1});
+            return;
+        case 12:
+            return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
+        case 13:
+            script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.number(kRateMeaning, kLeastRate, kMostRate)});
+            return;
+        case 14:
+            return addStep(words, script_.gpu_load, time_s, parseLoad(words));
+        default:
+            return parseGazeTracking(words, time_s, script_.gaze);
+    }
+}
+
+}  // namespace simulated
