@@ -1,6 +1,7 @@
 // The session state machine.
 #include "xr/session.h"
 
+#include "engine/platform.h"
 #include "xr/convert.h"
 #include "xr/platform.h"
 
@@ -70,6 +71,8 @@ FrameOutcome Session::beginFrame() {
     const XrFrameWaitInfo wait_info{XR_TYPE_FRAME_WAIT_INFO, nullptr};
     frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     BINOSPLAT_XR(xrWaitFrame(session_, &wait_info, &frame_state_));
+    pace_.begin(frame_state_.predictedDisplayTime, frame_state_.predictedDisplayPeriod);
+    busy_from_seconds_ = threadSeconds();
     const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
     {
         const std::lock_guard lock(context_.queueMutex());
@@ -88,6 +91,7 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
     info.environmentBlendMode = blend_mode_;
     info.layerCount = static_cast<std::uint32_t>(layers.size());
     info.layers = layers.empty() ? nullptr : layers.data();
+    pace_.end(!layers.empty(), threadSeconds() - busy_from_seconds_);
     const std::lock_guard lock(context_.queueMutex());
     BINOSPLAT_XR(xrEndFrame(session_, &info));
 }
@@ -154,6 +158,7 @@ void Session::pollEvents() {
 
 void Session::changeState(XrSessionState state) {
     state_ = state;
+    pace_.interrupt();
     switch (state) {
         case XR_SESSION_STATE_READY: {
             auto info = structure<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
