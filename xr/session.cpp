@@ -101,24 +101,31 @@ double Session::periodMs() const {
     return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
 }
 
+std::vector<double> Session::refreshRates() const {
+    if (!instance_.hasRefreshRates()) { return {}; }
+    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
+    std::uint32_t count = 0;
+    // It is no reason to do without the headset if it does not tell.
+    if (XR_FAILED(list(session_, 0, &count, nullptr))) { return {}; }
+    std::vector<float> rates(count);
+    if (XR_FAILED(list(session_, count, &count, rates.data()))) { return {}; }
+    return {rates.begin(), rates.begin() + count};
+}
+
 std::string Session::askForRate(double rate_hz) {
     if (rate_hz == std::exchange(asked_rate_hz_, rate_hz)) { return {}; }
-    if (!instance_.hasRefreshRates()) { return "refresh-rate: this headset's rate cannot be chosen"; }
-    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
-    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(list(session_, 0, &count, nullptr));
-    std::vector<float> rates(count);
-    BINOSPLAT_XR(list(session_, count, &count, rates.data()));
+    const std::vector<double> rates = refreshRates();
+    if (rates.empty()) { return "refresh-rate: this headset's rate cannot be chosen"; }
     // As people write them: 72 for 71.999.
-    const auto isIt = [&](float rate) { return std::abs(static_cast<double>(rate) - rate_hz) < 0.5; };
+    const auto isIt = [&](double rate) { return std::abs(rate - rate_hz) < 0.5; };
     const auto found = std::ranges::find_if(rates, isIt);
     if (rate_hz != 0.0 && found == rates.end()) {
         std::string offered;
-        for (const float rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
+        for (const double rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
-    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : *found));
+    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)));
     return {};
 }
 

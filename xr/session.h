@@ -59,6 +59,8 @@ public:
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
+    // Frames a second that this headset can be asked for, in its order; empty where it cannot be asked.
+    [[nodiscard]] std::vector<double> refreshRates() const;
     // Asks for so many frames a second, if that is not what was asked for last; 0: what the runtime likes. A sentence for people where that
     // cannot be had, empty otherwise. The period follows when the runtime says so.
     std::string askForRate(double rate_hz);
