@@ -104,6 +104,7 @@ TEST_CASE("where the least settings are too slow as well that is said, once, and
     const Governed run("sharp", "at 1.5 gpu-load 5000 ms-per-megapixel\n", 110);
     CHECK(run.widths[80] == kWhole * 8 / 10);
     CHECK(run.isOver(80));
+    REQUIRE_FALSE(run.changes().empty());
     CHECK(run.changes().back() < 80);
     CHECK(run.widths.back() == kWhole * 8 / 10);
     CHECK(count(run.outcome.output, "not even that fits") == 1);
