@@ -44,8 +44,15 @@ void StereoFrame::show(const GpuScene& scene) {
 
 void StereoFrame::rebuildKernels() {
     finish();
-    passes_.rebuildKernels(context_);
+    passes_.rebuildKernels();
     stereo_passes_.rebuildKernels();
+}
+
+void StereoFrame::takeKernels(StereoFrame& from) {
+    finish();
+    from.finish();
+    passes_.takeKernels(from.passes_);
+    stereo_passes_.takeKernels(from.stereo_passes_);
 }
 
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {

@@ -93,6 +93,9 @@ public:
     std::optional<FrameResult> finish();
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
     void rebuildKernels();
+    // Goes on with the kernels of a frame of the same device and options, which is left with those of this one: what was made for one scene
+    // need not be made again for the next.
+    void takeKernels(StereoFrame& from);
 
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);

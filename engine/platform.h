@@ -33,6 +33,8 @@ std::filesystem::path userConfigFolder();
 bool isTerminal(std::FILE* stream);
 
 std::uint64_t processId();
+// How long the calling thread has worked: what it waited does not count.
+double threadSeconds();
 
 // From here on a write beyond the limit of file sizes fails like one to a full disk, and does not end the program.
 void letLongWritesFail();

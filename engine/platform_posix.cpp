@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 extern char** environ;
 
@@ -47,6 +48,12 @@ fs::path userConfigFolder() { return userFolder("XDG_CONFIG_HOME", ".config"); }
 bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
 std::uint64_t processId() { return static_cast<std::uint64_t>(::getpid()); }
+
+double threadSeconds() {
+    timespec worked{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &worked);
+    return static_cast<double>(worked.tv_sec) + 1e-9 * static_cast<double>(worked.tv_nsec);
+}
 
 void letLongWritesFail() { std::signal(SIGXFSZ, SIG_IGN); }
 

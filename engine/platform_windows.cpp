@@ -90,6 +90,13 @@ bool isTerminal(std::FILE* stream) {
 
 std::uint64_t processId() { return ::GetCurrentProcessId(); }
 
+double threadSeconds() {
+    FILETIME created{}, ended{}, kernel{}, user{};
+    ::GetThreadTimes(::GetCurrentThread(), &created, &ended, &kernel, &user);
+    const auto steps = [](const FILETIME& time) { return static_cast<double>(time.dwHighDateTime) * 4294967296.0 + time.dwLowDateTime; };
+    return 1e-7 * (steps(kernel) + steps(user));
+}
+
 void letLongWritesFail() {}  // they do
 
 bool runProgram(const std::vector<std::string>& words, const fs::path& log) {

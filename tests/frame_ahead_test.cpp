@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <memory>
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -158,4 +160,25 @@ TEST_CASE_FIXTURE(Gpu, "other sizes, modes and hidden tiles wait for the frames 
         }
     }
     CHECK_FALSE(frame.finish().has_value());
+}
+
+TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its own scene, and the other one can go or go on") {
+    const ViewedScene view = viewAtelier(), other_view = test::viewBuiltin("builtin:fence", {128, 128});
+    const GpuScene scene(context(), view.scene), other_scene(context(), other_view.scene);
+    const auto pictureOf = [](StereoFrame& frame, const Eye& eye) {
+        frame.render(eyesAt(eye, 0), makeSettings(Mode::kPredicted));
+        return frame.readPicture(kRight).values;
+    };
+    StereoFrame alone(context(), scene), other_alone(context(), other_scene);
+    const auto expected = pictureOf(alone, view.eye), other_expected = pictureOf(other_alone, other_view.eye);
+    auto before = std::make_unique<StereoFrame>(context(), other_scene);
+    for (int step = 0; step < 2; ++step) { before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted)); }
+    StereoFrame frame(context(), scene);
+    frame.takeKernels(*before);  // while frames are under way
+    CHECK(pictureOf(frame, view.eye) == expected);
+    CHECK(pictureOf(*before, other_view.eye) == other_expected);
+    before.reset();
+    CHECK(pictureOf(frame, view.eye) == expected);
+    frame.rebuildKernels();
+    CHECK(pictureOf(frame, view.eye) == expected);
 }

@@ -252,3 +252,20 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     notes.three_scales = false;
     CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }
+
+TEST_CASE("the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
+    PanelSketch sketch;
+    CHECK_FALSE(sketch.draw().places.contains("any rate"));
+    sketch.status.refresh_rates = {72.0, 89.9988, 144.0};
+    sketch.settings.refresh_rate = 72.0;
+    sketch.click("90 Hz");
+    CHECK(sketch.settings.refresh_rate == 90.0);
+    sketch.click("144 Hz");
+    CHECK(sketch.settings.refresh_rate == 144.0);
+    sketch.click("any rate");
+    CHECK(sketch.settings.refresh_rate == 0.0);
+    // What is above stays where it is.
+    const WidgetPlaces with = sketch.draw().places;
+    sketch.status.refresh_rates.clear();
+    for (const auto& [name, place] : sketch.draw().places) { CHECK(with.at(name) == place); }
+}

@@ -66,6 +66,7 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false) {
         PanelSketch sketch;
         const WidgetPlaces plain = sketch.draw().places;
         sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
+        sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};  // as the simulated headset has them
         return std::array{plain, sketch.draw().places};
     }();
     const WidgetPlaces& all = places[with_all ? 1 : 0];

@@ -21,6 +21,7 @@
 #include <cerrno>
 #include <functional>
 #include <regex>
+#include <thread>
 #include <utility>
 
 namespace fs = std::filesystem;
@@ -54,6 +55,16 @@ struct Patience {
 };
 
 }  // namespace
+
+TEST_CASE("a thread's work counts, and not that of others") {
+    const double before = threadSeconds();
+    std::size_t work = 0;
+    while (threadSeconds() < before + 0.02) { ++work; }
+    CHECK(work > 0);
+    double of_another = 1e9;
+    std::thread([&] { of_another = threadSeconds(); }).join();
+    CHECK(of_another < threadSeconds());
+}
 
 TEST_CASE("a file is made only where nothing is, and no link is followed") {
     const Workplace work;

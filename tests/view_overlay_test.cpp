@@ -135,6 +135,16 @@ TEST_CASE("method and dominant eye are switched, and the wearer may quit from th
     CHECK(run.frames.size() < 80);
 }
 
+TEST_CASE("a rate chosen on the panel is the headset's from then on") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    const ViewRun run = runView(work, "rate", kSmall + clickOn(panel, {placeOf("120 Hz", true), {0.9, 0.95}}), kScene);
+    checkClean(run);
+    CHECK(says(run, "refresh-rate = 120"));
+    CHECK(run.frames.front().at("period_ns").get<std::int64_t>() > 9'000'000);
+    CHECK(run.frames.back().at("period_ns").get<std::int64_t>() == 8'333'333);
+}
+
 TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
     const Workplace work;
     const Panel panel = startPanel(work);

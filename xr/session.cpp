@@ -1,6 +1,7 @@
 // The session state machine.
 #include "xr/session.h"
 
+#include "engine/platform.h"
 #include "xr/convert.h"
 #include "xr/platform.h"
 
@@ -70,6 +71,8 @@ FrameOutcome Session::beginFrame() {
     const XrFrameWaitInfo wait_info{XR_TYPE_FRAME_WAIT_INFO, nullptr};
     frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     BINOSPLAT_XR(xrWaitFrame(session_, &wait_info, &frame_state_));
+    pace_.begin(frame_state_.predictedDisplayTime, frame_state_.predictedDisplayPeriod);
+    busy_from_seconds_ = threadSeconds();
     const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
     {
         const std::lock_guard lock(context_.queueMutex());
@@ -88,6 +91,7 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
     info.environmentBlendMode = blend_mode_;
     info.layerCount = static_cast<std::uint32_t>(layers.size());
     info.layers = layers.empty() ? nullptr : layers.data();
+    pace_.end(!layers.empty(), threadSeconds() - busy_from_seconds_);
     const std::lock_guard lock(context_.queueMutex());
     BINOSPLAT_XR(xrEndFrame(session_, &info));
 }
@@ -97,24 +101,31 @@ double Session::periodMs() const {
     return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
 }
 
+std::vector<double> Session::refreshRates() const {
+    if (!instance_.hasRefreshRates()) { return {}; }
+    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
+    std::uint32_t count = 0;
+    // It is no reason to do without the headset if it does not tell.
+    if (XR_FAILED(list(session_, 0, &count, nullptr))) { return {}; }
+    std::vector<float> rates(count);
+    if (XR_FAILED(list(session_, count, &count, rates.data()))) { return {}; }
+    return {rates.begin(), rates.begin() + count};
+}
+
 std::string Session::askForRate(double rate_hz) {
     if (rate_hz == std::exchange(asked_rate_hz_, rate_hz)) { return {}; }
-    if (!instance_.hasRefreshRates()) { return "refresh-rate: this headset's rate cannot be chosen"; }
-    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
-    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(list(session_, 0, &count, nullptr));
-    std::vector<float> rates(count);
-    BINOSPLAT_XR(list(session_, count, &count, rates.data()));
+    const std::vector<double> rates = refreshRates();
+    if (rates.empty()) { return "refresh-rate: this headset's rate cannot be chosen"; }
     // As people write them: 72 for 71.999.
-    const auto isIt = [&](float rate) { return std::abs(static_cast<double>(rate) - rate_hz) < 0.5; };
+    const auto isIt = [&](double rate) { return std::abs(rate - rate_hz) < 0.5; };
     const auto found = std::ranges::find_if(rates, isIt);
     if (rate_hz != 0.0 && found == rates.end()) {
         std::string offered;
-        for (const float rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
+        for (const double rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
-    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : *found));
+    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)));
     return {};
 }
 
@@ -154,6 +165,7 @@ void Session::pollEvents() {
 
 void Session::changeState(XrSessionState state) {
     state_ = state;
+    pace_.interrupt();
     switch (state) {
         case XR_SESSION_STATE_READY: {
             auto info = structure<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
+#include "xr/display_pace.h"
 #include "xr/instance.h"
 
 #include <array>
@@ -56,6 +57,10 @@ public:
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
     // What the runtime gives a frame, in milliseconds; 90 Hz where it states none.
     [[nodiscard]] double periodMs() const;
+    // See DisplayPace.
+    [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
+    // Frames a second that this headset can be asked for, in its order; empty where it cannot be asked.
+    [[nodiscard]] std::vector<double> refreshRates() const;
     // Asks for so many frames a second, if that is not what was asked for last; 0: what the runtime likes. A sentence for people where that
     // cannot be had, empty otherwise. The period follows when the runtime says so.
     std::string askForRate(double rate_hz);
@@ -109,6 +114,8 @@ private:
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
+    DisplayPace pace_;
+    double busy_from_seconds_ = 0.0;  // of this thread, since the frame began
     double asked_rate_hz_ = 0.0;
     bool running_ = false, ended_ = false;
     bool turn_settled_ = false, place_settled_ = false;

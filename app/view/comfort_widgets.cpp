@@ -1,9 +1,20 @@
 // Checkboxes beside one another.
 #include "app/view/comfort_widgets.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace binosplat {
+
+namespace {
+
+// In one row; headsets have up to five, and more are for the command line.
+constexpr std::size_t kMostRates = 5;
+
+}  // namespace
 
 void drawComfort(PanelWidgets& widgets, ViewSettings& settings, bool can_pass_through) {
     const float width = ImGui::GetContentRegionAvail().x;
@@ -15,6 +26,21 @@ void drawComfort(PanelWidgets& widgets, ViewSettings& settings, bool can_pass_th
     if (!can_pass_through) { return; }
     ImGui::SameLine(0.7f * width);
     widgets.checkbox("Passthrough", &settings.passthrough);
+}
+
+void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<double>& rates_hz) {
+    if (rates_hz.empty()) { return; }
+    const std::size_t shown = std::min(rates_hz.size(), kMostRates);
+    const float width = ImGui::GetContentRegionAvail().x;
+    // As people write them: 72 for 71.999.
+    if (widgets.radio("any rate", settings.refresh_rate == 0.0)) { settings.refresh_rate = 0.0; }
+    for (std::size_t i = 0; i < shown; ++i) {
+        ImGui::SameLine((0.25f + 0.75f * static_cast<float>(i) / static_cast<float>(shown)) * width);
+        const double rate_hz = std::round(rates_hz[i]);
+        if (widgets.radio(fmt::format("{:.0f} Hz", rate_hz).c_str(), std::abs(settings.refresh_rate - rates_hz[i]) < 0.5)) {
+            settings.refresh_rate = rate_hz;
+        }
+    }
 }
 
 }  // namespace binosplat

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace binosplat {
 
@@ -24,6 +25,11 @@ constexpr int kSettlingFrames = 1;
 constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kWindow = 45, kOftenOver = 5, kOftenOf = 10, kTrialFrames = 8;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstBlockSeconds = 10.0, kLongestBlockSeconds = 300.0;
 constexpr double kForgetRatioSeconds = 30.0, kDrift = 0.15;
+// A frame that comes late once may be anybody's doing, however late it is: it counts as one period. Where periods are irregular a frame is
+// early for one that was late, so that a sum stays below one.
+constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
+// Where displays are missed less than what was used is room; once a while has passed without a miss there is more each second.
+constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1;
 constexpr double kScaleStep = 0.1;
 
 double leastScale(Quality quality) {
@@ -54,6 +60,7 @@ void Governor::wish(Quality quality, const GovernedSettings& best) {
     buildLadder();
     current_ = 0;
     recent_ms_.clear();
+    recent_lost_.clear();
     settling_ = kSettlingFrames;
     downs_ = 0;
     changed_s_ = now_s_;
@@ -96,6 +103,31 @@ std::size_t Governor::countOver(std::size_t of_last) const {
     const std::size_t count = std::min(of_last, recent_ms_.size());
     return static_cast<std::size_t>(
         std::count_if(recent_ms_.end() - static_cast<std::ptrdiff_t>(count), recent_ms_.end(), [&](double ms) { return ms > period_ms_; }));
+}
+
+double Governor::lostIn(std::size_t last) const {
+    const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
+    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0);
+}
+
+bool Governor::missesDisplays() const {
+    const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
+    return (recent_lost_.size() >= at_once && lostIn(at_once) >= static_cast<double>(at_once) - kLostSlack) ||
+           (recent_lost_.size() >= kOftenOf && lostIn(kOftenOf) >= static_cast<double>(kOftenOver) - kLostSlack);
+}
+
+void Governor::lowerShare(double now_ms) {
+    if (roomMs() < now_ms) { return; }  // it is less already
+    share_ = kLowerShare * now_ms / period_ms_;
+    // As with steps upwards: what comes too early comes later the next time.
+    hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestBlockSeconds) : std::max(hold_s_, kFirstBlockSeconds);
+    is_raised_ = false;
+}
+
+void Governor::raiseShare() {
+    if (share_ >= 1.0 || now_s_ < held_until_s_) { return; }
+    share_ = std::min(share_ * std::pow(kRaisedPerSecond, 1e-3 * period_ms_), 1.0);
+    is_raised_ = true;
 }
 
 double Governor::expectedMs(std::size_t level, double now_ms) const {
@@ -153,7 +185,7 @@ std::optional<std::size_t> Governor::worthTrying(double now_ms) const {
     for (std::size_t m = 1; m < ratios_.size(); ++m) {
         // A smaller share of the work is looked at once a larger one has paid.
         if (ratios_[m].measured_s || (m > 1 && !pays(m - 1))) { continue; }
-        const auto isBetter = [&](std::size_t i) { return levels_[i].method == m && expectedMs(i, now_ms) <= kUpwards * period_ms_; };
+        const auto isBetter = [&](std::size_t i) { return levels_[i].method == m && expectedMs(i, now_ms) <= kUpwards * roomMs(); };
         std::size_t promised = 0;
         while (promised < current_ && !isBetter(promised)) { ++promised; }
         if (promised == current_) { continue; }
@@ -161,16 +193,14 @@ std::optional<std::size_t> Governor::worthTrying(double now_ms) const {
             const bool is_higher = levels_[i].settings.resolution_scale > settings().resolution_scale;
             if (levels_[i].method != m || is_higher) { continue; }
             // Should it be as slow as that, it still does no harm.
-            if (expectedMs(i, now_ms) / ratios_[m].value * ratios_[levels_[current_].method].value * kWorstGuess <= period_ms_) {
-                return i;
-            }
+            if (expectedMs(i, now_ms) / ratios_[m].value * ratios_[levels_[current_].method].value * kWorstGuess <= roomMs()) { return i; }
         }
     }
     return std::nullopt;
 }
 
 void Governor::measure(const GovernedFrame& frame) {
-    now_s_ += 1e-3 * frame.period_ms;
+    now_s_ += 1e-3 * frame.period_ms * (1.0 + std::max(frame.lost_periods, 0.0));
     period_ms_ = frame.period_ms;
     if (quality_ == Quality::kOff || frame.is_old) { return; }
     if (frame.gpu_ms <= 0.0) {
@@ -183,12 +213,17 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     recent_ms_.push_back(frame.gpu_ms);
     if (recent_ms_.size() > kWindow) { recent_ms_.pop_front(); }
+    recent_lost_.push_back(std::min(frame.lost_periods, kMostLostByOne));
+    if (recent_lost_.size() > kWindow) { recent_lost_.pop_front(); }
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
-    const bool is_over = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
+    const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
+    const bool is_over = takes_too_long || missesDisplays();
     const double now_ms = median(is_over ? at_once : kWindow);
     learn(now_ms);
     if (is_over) {
+        if (!takes_too_long) { lowerShare(now_ms); }
+        held_until_s_ = now_s_ + hold_s_;
         makeItFit(now_ms);
     } else {
         giveBack(now_ms);
@@ -204,7 +239,7 @@ void Governor::makeItFit(double now_ms) {
         const double full_ms = now_ms / std::pow(level.settings.resolution_scale / best_.resolution_scale, kPowerDown);
         if (std::abs(full_ms - before_ms) > kDrift * before_ms && full_ms > lossless_ms_) { ratios_[level.method].value = 1.0; }
     }
-    std::size_t next = bestWithin((downs_ == 0 ? kTarget : kAgain) * period_ms_, now_ms);
+    std::size_t next = bestWithin((downs_ == 0 ? kTarget : kAgain) * roomMs(), now_ms);
     if (downs_ >= 2) {
         next = current_;
         for (std::size_t i = 0; i < levels_.size(); ++i) {
@@ -219,24 +254,25 @@ void Governor::makeItFit(double now_ms) {
     ++downs_;
     left_.reset();
     step(next, now_ms,
-         fmt::format("{} at {} took {:.1f} of {:.1f} ms", nameOf(level.settings.mode), percent(level.settings.resolution_scale), now_ms,
-                     period_ms_));
+         fmt::format("{} at {} took {:.1f} of {:.1f} ms{}", nameOf(level.settings.mode), percent(level.settings.resolution_scale), now_ms,
+                     period_ms_, now_ms > period_ms_ ? "" : " and missed displays"));
 }
 
 void Governor::giveBack(double now_ms) {
     const Level& level = levels_[current_];
     beaten_ = false;
+    raiseShare();
     if (recent_ms_.size() >= kTrialFrames) { downs_ = 0; }
     const bool is_calm = now_s_ - changed_s_ >= kBetweenChangesSeconds;
     // A lossy method that turned out slower than what loses nothing is left, over the period or not.
     if (is_calm && level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving) {
         const std::string why = fmt::format("{} saves nothing here", nameOf(level.settings.mode));
         left_.reset();
-        step(bestWithin(kTarget * period_ms_, now_ms), now_ms, why);
+        step(bestWithin(kTarget * roomMs(), now_ms), now_ms, why);
         return;
     }
     if (is_calm && recent_ms_.size() >= kWindow) {
-        const std::size_t next = bestWithin(kUpwards * period_ms_, now_ms);
+        const std::size_t next = bestWithin(kUpwards * roomMs(), now_ms);
         if (next < current_) {
             left_ = current_;
             step(next, now_ms, fmt::format("there was room, {:.1f} of {:.1f} ms", now_ms, period_ms_));
@@ -262,6 +298,7 @@ void Governor::step(std::size_t level, double now_ms, const std::string& why) {
     const double expected_ms = expectedMs(level, now_ms);
     current_ = level;
     recent_ms_.clear();
+    recent_lost_.clear();
     settling_ = kSettlingFrames;
     changed_s_ = now_s_;
     why_ = why;

@@ -28,6 +28,8 @@ struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not tell
     double period_ms = 0.0;  // what the runtime gives a frame
     bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
+    // Periods that passed before the frame was displayed beyond its own, as the runtime shows; it does not hang on what the device says.
+    double lost_periods = 0.0;
 };
 
 class Governor {
@@ -63,6 +65,14 @@ private:
     void buildLadder();
     [[nodiscard]] double median(std::size_t frames) const;
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
+    [[nodiscard]] double lostIn(std::size_t last) const;
+    // Whether displays were missed, again and again, however long the device says that frames took.
+    [[nodiscard]] bool missesDisplays() const;
+    // What frames may take: the period, or as much of it as others leave.
+    [[nodiscard]] double roomMs() const { return share_ * period_ms_; }
+    // Displays are missed at this: there is less room than was thought.
+    void lowerShare(double now_ms);
+    void raiseShare();
     // Of a level, from what the current one costs now.
     [[nodiscard]] double expectedMs(std::size_t level, double now_ms) const;
     // The best level expected to fit into `most_ms`; the cheapest if none does.
@@ -87,14 +97,17 @@ private:
     std::vector<Ratio> ratios_;
     std::size_t current_ = 0;
     double now_s_ = 0.0, period_ms_ = 0.0;
-    std::deque<double> recent_ms_;  // since the last change, newest last
-    int settling_ = 0;              // frames that still show what the change itself cost
-    int downs_ = 0;                 // changes in a row that were not enough
+    std::deque<double> recent_ms_, recent_lost_;  // since the last change, newest last
+    int settling_ = 0;                            // frames that still show what the change itself cost
+    int downs_ = 0;                               // changes in a row that were not enough
     double changed_s_ = 0.0;
     std::optional<std::size_t> left_;  // the level before the last change upwards
     double lossless_ms_ = 0.0;         // last measured, at full resolution's price
     std::string why_, sentence_;
     bool beaten_ = false;
+    // Of the period, what others (the compositor, another program) leave: found out by what is missed, given back little by little.
+    double share_ = 1.0, held_until_s_ = 0.0, hold_s_ = 0.0;
+    bool is_raised_ = false;  // since it was lowered last
 };
 
 }  // namespace binosplat

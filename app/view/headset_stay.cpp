@@ -6,6 +6,7 @@ namespace binosplat {
 HeadsetStay::HeadsetStay(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
     : session(instance, context),
       format(chooseEyeFormat(session)),
+      refresh_rates(session.refreshRates()),
       input(session),
       panel_images(session, "the panel", panel_px, format, xr::ImageUse::kDraw),
       things(session, context, format) {}

@@ -17,6 +17,7 @@ struct HeadsetStay {
 
     xr::Session session;
     vk::Format format;
+    std::vector<double> refresh_rates;
     xr::Input input;
     xr::Swapchain panel_images;
     RoomThings things;

@@ -181,6 +181,7 @@ void drawSettings(PanelWidgets& widgets, ViewSettings& settings, const OverlaySt
         actions.reload_shaders = widgets.button("Shaders");
     }
     drawComfort(widgets, settings, status.can_pass_through);
+    drawRates(widgets, settings, status.refresh_rates);
     drawSaid(status);
     drawTimes(status);
 }

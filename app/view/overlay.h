@@ -27,6 +27,7 @@ struct OverlayStatus {
     std::string message;                                     // what came of the last button
     bool can_reload_shaders = false;                         // whether there is a button for it
     bool can_pass_through = false;                           // likewise
+    std::vector<double> refresh_rates;                       // that the headset can be asked for; where there are any, a row of them
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
 };
 

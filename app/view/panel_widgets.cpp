@@ -15,6 +15,12 @@ bool PanelWidgets::checkbox(const char* name, bool* value) {
     return changed;
 }
 
+bool PanelWidgets::radio(const char* name, bool is_chosen) {
+    const bool pressed = ImGui::RadioButton(name, is_chosen);
+    noteBox(name);
+    return pressed;
+}
+
 bool PanelWidgets::entry(const std::string& name, const std::string& trouble) {
     // ImGui takes ## in a label for the beginning of what is not shown: the text is drawn by itself, on a button without any.
     ImGui::PushID(name.c_str());

@@ -19,6 +19,8 @@ class PanelWidgets {
 public:
     bool button(const char* name);
     bool checkbox(const char* name, bool* value);
+    // Whether it was pressed.
+    bool radio(const char* name, bool is_chosen);
     // A row of its own for a name that is shown letter by letter, whatever it holds; `trouble` makes it grey and follows it.
     bool entry(const std::string& name, const std::string& trouble);
     // To be called after a slider: it is where the next column would begin.
@@ -31,8 +33,7 @@ public:
             if (i % per_row != 0) {
                 ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
             }
-            if (ImGui::RadioButton(names[i], chosen == names[i])) { chosen = names[i]; }
-            noteBox(names[i]);
+            if (radio(names[i], chosen == names[i])) { chosen = names[i]; }
         }
     }
 

@@ -83,8 +83,8 @@ void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const Similari
         window != nullptr ? window->drawn() : vk::Semaphore());
     const bool is_of_now = known && known->mark == governed_count_;
     if (known) { last_ = std::move(*known); }
-    governor_.measure({last_.gpu_total_ms, stay.session.periodMs(), !is_of_now});
-    if (governor_.settings() != governed_) { log_.say(governor_.sentence()); }
+    governor_.measure({last_.gpu_total_ms, stay.session.periodMs(), !is_of_now, stay.session.lostPeriods()});
+    sayGoverned();
     sayHidden(one_eye);
     sayShort();
 }
@@ -101,6 +101,13 @@ void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScen
         const bool shown = frame.mode == Mode::kMono || dominant != tint;
         if (window != nullptr && shown) { window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_); }
     }
+}
+
+void SceneRenderer::sayGoverned() {
+    const bool is_other = governor_.settings() != governed_;
+    if (is_other || (governor_.isBeaten() && !said_beaten_)) { log_.say(governor_.sentence()); }
+    // Once for the same settings, though frames may fit now and then.
+    said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);
 }
 
 void SceneRenderer::sayShort() {

@@ -51,6 +51,7 @@ private:
     void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
     void sayHidden(bool one_eye);
     void sayShort();
+    void sayGoverned();
 
     const xr::Instance& instance_;
     const RunOptions& options_;
@@ -60,6 +61,7 @@ private:
     Governor governor_;
     GovernedSettings governed_;  // as of the frame drawn last
     std::uint64_t governed_count_ = 0;
+    bool said_beaten_ = false;
     std::uint64_t cut_short_ = 0;  // frames, as last said
     FrameResult last_;
     std::array<std::uint64_t, 2> hidden_tiles_{};  // as last said

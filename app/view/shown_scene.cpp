@@ -37,6 +37,8 @@ std::string ShownScene::take(ViewSettings& settings) {
             const std::lock_guard lock(context_.queueMutex());
             context_.queue().waitIdle();
         }
+        // Drivers need many times a frame's time to make them.
+        if (scene_) { taken->frame.takeKernels(scene_->frame); }
         scene_ = std::move(taken);
     } catch (const Error& error) {
         if (scene_) { return error.what(); }

@@ -270,6 +270,7 @@ void Viewer::layOutPanel(bool hung) {
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
     status_.can_pass_through = instance_.canSeeThrough();
+    status_.refresh_rates = stay_->refresh_rates;
     if (status_.has_scene) { status_.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;

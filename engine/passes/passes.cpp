@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace binosplat {
 
@@ -58,14 +59,25 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
 }
 
 Passes::Passes(const Context& context, std::uint32_t threads_per_cell)
-    : threads_per_cell_(threadsPerCell(context, threads_per_cell)),
-      sort_(context),
+    : context_(context),
+      threads_per_cell_(threadsPerCell(context, threads_per_cell)),
       kernels_(context, passKernels(context, threads_per_cell)) {}
 
-void Passes::rebuildKernels(const Context& context) {
-    Sort sort(context);
+void Passes::rebuildKernels() {
+    Sort sort(context_);
     kernels_.rebuild();
     sort_ = std::move(sort);
+}
+
+void Passes::takeKernels(Passes& from) {
+    assert(threads_per_cell_ == from.threads_per_cell_);
+    kernels_.swap(from.kernels_);
+    sort_.swap(from.sort_);
+}
+
+const Sort& Passes::sort() {
+    if (!sort_) { sort_.emplace(context_); }
+    return *sort_;
 }
 
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
@@ -91,8 +103,8 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                           scene.splatCount(), gpu::kCullBlock);
     commands.beginPass(role + "3_sort_depth");
     // Four rounds: the result is where the input was.
-    sort_.record(commands, buffers.visible.order(), buffers.visible.spare(), buffers.scratch.address<gpu::uint>(), buffers.state,
-                 FrameBuffers::visibleList(eyes.list), 32);
+    sort().record(commands, buffers.visible.order(), buffers.visible.spare(), buffers.scratch.address<gpu::uint>(), buffers.state,
+                  FrameBuffers::visibleList(eyes.list), 32);
 }
 
 const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool masked) {
@@ -153,7 +165,7 @@ void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffer
     commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked, scene.splatShape()}), bin, gpu::kBinLargeGroups);
     commands.beginPass(role + "6_sort_tiles");
     const KeyValues sorted =
-        sort_.record(commands, unsorted, target.pairs.spare, scratch, buffers.state, pair_list, tileBits(target.size_tiles));
+        sort().record(commands, unsorted, target.pairs.spare, scratch, buffers.state, pair_list, tileBits(target.size_tiles));
     commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges},
                               buffers.state, per_pair);
     commands.beginPass(role + "7_rasterize");

@@ -71,7 +71,9 @@ public:
     // subgroups. Fewer where its workgroups are too small.
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
-    void rebuildKernels(const Context& context);
+    void rebuildKernels();
+    // Goes on with the kernels of others on the same device, with as many threads per cell, whose work is over.
+    void takeKernels(Passes& from);
 
     // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
     void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
@@ -90,9 +92,11 @@ private:
     void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
                 const std::string& role);
     const Kernel& rasterizeKernel(const GpuScene& scene, Kept kept, bool masked);
+    const Sort& sort();
 
+    const Context& context_;
     std::uint32_t threads_per_cell_;
-    Sort sort_;
+    std::optional<Sort> sort_;  // once it is wanted
     KernelCache kernels_;
 };
 

@@ -3,6 +3,9 @@
 // SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. BINOSPLAT_FAULT_TICKS=N: timestamps are
 // N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
+// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
+#include "tests/faults/live.h"
+
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
@@ -14,6 +17,8 @@
 #include <string>
 
 namespace {
+
+namespace faults = binosplat::faults;
 
 // What BINOSPLAT_FAULT says.
 struct Plan {
@@ -65,6 +70,7 @@ void trace(const char* call, VkFence fence) {
 
 VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
     trace("submit", fence);
+    faults::noteSubmission();
     const VkResult result = strike("submit");
     return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
 }
@@ -79,8 +85,10 @@ VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const 
 
 VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
                                         VkDeviceMemory* memory) {
-    const VkResult result = strike("allocate");
-    return result != VK_SUCCESS ? result : g_allocate(device, info, callbacks, memory);
+    const VkResult struck = strike("allocate");
+    const VkResult result = struck != VK_SUCCESS ? struck : g_allocate(device, info, callbacks, memory);
+    if (result == VK_SUCCESS) { faults::countMemory(*memory, info->allocationSize); }
+    return result;
 }
 
 // The program reads 64 bits each.
@@ -131,6 +139,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
     g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
     g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
+    faults::beginCounting(g_device_next, *device);
     return VK_SUCCESS;
 }
 
@@ -148,7 +157,7 @@ PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
     if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
-    return nullptr;
+    return faults::countingFunction(name);
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {

@@ -1,0 +1,59 @@
+// Facts about the pace of displays: what the times that a runtime predicts say of frames that came late, and what says nothing.
+#include "xr/display_pace.h"
+
+#include <doctest/doctest.h>
+
+using binosplat::xr::DisplayPace;
+
+namespace {
+
+constexpr XrDuration kPeriod = 10'000'000;
+constexpr double kQuick = 0.004, kSlow = 0.011;
+
+// A frame after so many periods since the one before.
+struct Pace : DisplayPace {
+    XrTime now = 1'000'000'000;
+
+    double after(double periods, bool shows = true, double busy_seconds = kQuick, XrDuration period = kPeriod) {
+        now += static_cast<XrTime>(periods * static_cast<double>(kPeriod));
+        begin(now, period);
+        const double lost = lostPeriods();
+        end(shows, busy_seconds);
+        return lost;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a frame that is displayed late has lost periods, one that comes in time has not, and one that is early has some more") {
+    Pace pace;
+    CHECK(pace.after(1.0) == 0.0);
+    CHECK(pace.after(1.0) == 0.0);
+    CHECK(pace.after(3.0) == doctest::Approx(2.0));
+    CHECK(pace.after(1.25) == doctest::Approx(0.25));
+    CHECK(pace.after(0.75) == doctest::Approx(-0.25));
+    CHECK(pace.after(1.0) == 0.0);
+}
+
+TEST_CASE("what nobody was to see, or what the program itself was too slow for, says nothing of the device") {
+    Pace pace;
+    pace.after(1.0);
+    CHECK(pace.after(1.0, false) == 0.0);
+    CHECK(pace.after(4.0) == 0.0);
+    CHECK(pace.after(2.0, true, kSlow) == doctest::Approx(1.0));
+    CHECK(pace.after(2.0) == 0.0);
+    CHECK(pace.after(2.0) == doctest::Approx(1.0));
+}
+
+TEST_CASE("pauses, another period, a change of the session's state and time that goes back say nothing") {
+    Pace pace;
+    CHECK(pace.after(5.0) == 0.0);
+    CHECK(pace.after(500.0) == 0.0);
+    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
+    pace.interrupt();
+    CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.after(-3.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.after(0.0, true, kQuick, 0) == 0.0);
+    CHECK(pace.after(3.0, true, kQuick, 0) == 0.0);
+}

@@ -1,0 +1,20 @@
+// What of a device is alive: objects, device memory and the host's heap, counted by the layer while a program runs.
+// BINOSPLAT_FAULT_LIVE=FILE: a line for every tenth submission: "submissions objects device-bytes heap-bytes resident-bytes kernels-made",
+// the objects and the device's bytes as the least and the most since the line before: "10 120-140 5242880-6291456 1048576 3145728 24".
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+namespace binosplat::faults {
+
+// Whether anybody wants to know.
+bool countsLive();
+// From now on of this device.
+void beginCounting(PFN_vkGetDeviceProcAddr next, VkDevice device);
+// A function of the device that makes or destroys something; null: it does neither.
+PFN_vkVoidFunction countingFunction(const char* name);
+// Of a call that the layer makes itself.
+void countMemory(VkDeviceMemory memory, VkDeviceSize bytes);
+void noteSubmission();
+
+}  // namespace binosplat::faults

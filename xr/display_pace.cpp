@@ -1,0 +1,24 @@
+// Periods between frames.
+#include "xr/display_pace.h"
+
+#include <utility>
+
+namespace binosplat::xr {
+namespace {
+
+// Longer than that nobody waits for a device: the runtime paused, or the machine slept.
+constexpr double kMostLostPeriods = 10.0;
+
+}  // namespace
+
+void DisplayPace::begin(XrTime display_time, XrDuration period) {
+    const bool is_alike = std::exchange(says_something_, false) && period > 0 && period == period_;
+    const double step = is_alike ? static_cast<double>(display_time - last_display_time_) / static_cast<double>(period) : 1.0;
+    lost_periods_ = step > 0.0 && step <= 1.0 + kMostLostPeriods ? step - 1.0 : 0.0;
+    last_display_time_ = display_time;
+    period_ = period;
+}
+
+void DisplayPace::end(bool shows, double busy_seconds) { says_something_ = shows && 1e9 * busy_seconds < static_cast<double>(period_); }
+
+}  // namespace binosplat::xr
