@@ -154,16 +154,17 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's") {
-    const auto room = test::viewBuiltin("builtin:atelier", {160, 120}, 20000);
+    auto room = test::viewBuiltin("builtin:atelier", {256, 192}, 20000);
     const auto eyes = test::headsetEyes(room.eye, glm::radians(5.0));
+    test::hideWhatMeetsTheNearPlane(room.scene, eyes);
     const GpuScene scene(context(), room.scene);
     StereoFrame frame(context(), scene);
     std::size_t chosen = 0, chosen_everywhere = 0;
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));
         // So few pixels show less than an eye resolves but far from where it looks.
-        const Gaze gaze{{dominant == kLeft ? -2.0 : 2.0, 0.5, 1.0}, 0.05};
-        reference::StereoSettings twin_settings{.budget = 0.8};
+        const Gaze gaze{{dominant == kLeft ? -3.0 : 3.0, 0.5, 1.0}, 0.0};
+        reference::StereoSettings twin_settings{.budget = 0.2};
         twin_settings.target_gaze = reference::Gaze{gaze.direction, gaze.clear_rad};
         const auto twin = reference::renderStereo(room.scene, {eyes[dominant], eyes[1 - dominant]}, twin_settings, {});
         FrameSettings settings;

@@ -2,6 +2,7 @@
 #include "tests/simulated_fixture.h"
 
 #include <cmath>
+#include <utility>
 
 using namespace binosplat::test;
 
@@ -31,14 +32,19 @@ private:
     }
 };
 
+std::vector<const char*> withGaze(std::vector<const char*> extensions) {
+    extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    return extensions;
+}
+
 struct GazeFixture : SessionFixture {
     XrActionSet set = makeActionSet("looking");
     XrAction look = makeAction(set, "look", XR_ACTION_TYPE_POSE_INPUT);
     XrSpace gaze_space = XR_NULL_HANDLE;
     XrSpace view = XR_NULL_HANDLE;
 
-    explicit GazeFixture(const std::string& script = "")
-        : SessionFixture(kQuietScript + kRate + script, {XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME}) {
+    explicit GazeFixture(const std::string& script, std::vector<const char*> extensions = {})
+        : SessionFixture(kQuietScript + kRate + script, withGaze(std::move(extensions))) {
         REQUIRE(suggest(kEyes, {{look, path(kGazePath)}}) == XR_SUCCESS);
         attach({set});
         XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO};
@@ -190,6 +196,22 @@ TEST_CASE("a wearer who refuses, and a headset without a tracker, leave the gaze
         CHECK(gaze.sampled == 0);
         CHECK((made.profile().interactionProfile != XR_NULL_PATH) == (std::string(script) == "eye-tracking refused\n"));
     }
+}
+
+TEST_CASE("a program's own test moves the gaze from inside") {
+    GazeFixture made("", {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME});
+    REQUIRE(made.at(0.1).is_active);
+    const XrPath eyes = made.path("/user/eyes_ext"), gaze = made.path(kGazePath);
+    const auto setLocation = made.function<PFN_xrSetInputDeviceLocationEXT>("xrSetInputDeviceLocationEXT");
+    const auto setActive = made.function<PFN_xrSetInputDeviceActiveEXT>("xrSetInputDeviceActiveEXT");
+    // Half a right angle to the left.
+    const XrPosef left{{0, std::sin(0.3926991f), 0, std::cos(0.3926991f)}, {0, 0, 0}};
+    CHECK(setLocation(made.session, eyes, gaze, made.view, left) == XR_SUCCESS);
+    CHECK(setLocation(made.session, eyes, made.path("/user/eyes_ext/input/aim/pose"), made.view, left) == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(made.at(0.2).yaw() == doctest::Approx(45).epsilon(0.001));
+    CHECK(setActive(made.session, made.path(kEyes), eyes, XR_FALSE) == XR_SUCCESS);
+    CHECK_FALSE(made.at(0.3).is_active);
+    CHECK(setActive(made.session, made.path(kSimple), eyes, XR_TRUE) == XR_ERROR_PATH_UNSUPPORTED);
 }
 
 TEST_CASE("a gaze out of focus is inactive") {

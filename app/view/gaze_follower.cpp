@@ -14,6 +14,7 @@ std::array<std::optional<Gaze>, 2> GazeFollower::update(const std::optional<glm:
     } else {
         lost_seconds_ += step_seconds;
         if (lost_seconds_ > kHoldSeconds) { share_ = std::max(share_ - step_seconds / kLoseSeconds, 0.0); }
+        if (share_ == 0.0) { *this = {}; }
     }
     const double seen_clear_rad = std::min(kSeenClearRadians, lens_clear_rad);
     std::array<std::optional<Gaze>, 2> gazes;

@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// Nothing of a gaze is kept beyond the frame after it is lost, and nothing of it is written anywhere.
+// A gaze is forgotten once the way back from it to the lens is done, and nothing of it is written anywhere.
 class GazeFollower {
 public:
     // So far about a gaze that the headset sees the eye may look by the time that the picture is there: eyes that meet half a metre away

@@ -132,6 +132,8 @@ void Viewer::drawFrame() {
     controls_.update(wearer, panel_, settings_, scenes_.scene_from_room);
     if (const double clear_deg = settings_.stereo.foveation_deg; clear_deg > 0.0) {
         views.gazes = gaze_.update(stay_->input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+    } else {
+        gaze_ = {};
     }
     chooseThings(wearer, views);
     obeyWindow(step_seconds);
