@@ -67,10 +67,11 @@ TEST_CASE("a lost device ends render and bench with three and one line") {
 TEST_CASE("a device without memory ends with one and the buffer's name") {
     const Machine machine;
     for (const int number : {1, 4, 12}) {
-        machine.checkFails(kRender, fault("allocate", number, "no-device-memory"), 1, "MiB of device memory, which it has not free");
+        machine.checkFails(kRender, fault("allocate", number, "no-device-memory"), 1,
+                           "MiB of device memory, which is more than it has free");
     }
-    machine.checkFails(kRender, fault("allocate", 8, "no-host-memory"), 1, "MiB of device memory, which it has not free");
-    machine.checkFails(kBench, fault("allocate", 30, "no-device-memory"), 1, "MiB of device memory, which it has not free");
+    machine.checkFails(kRender, fault("allocate", 8, "no-host-memory"), 1, "MiB of device memory, which is more than it has free");
+    machine.checkFails(kBench, fault("allocate", 30, "no-device-memory"), 1, "MiB of device memory, which is more than it has free");
     machine.checkFails(kRender, fault("submit", 2, "no-device-memory"), 1, "not enough memory for this scene and picture size");
 }
 

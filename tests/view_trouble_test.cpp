@@ -242,3 +242,12 @@ TEST_CASE("a runtime without the Vulkan extension is refused in one line") {
     CHECK(run.outcome.errors.find("XR_KHR_vulkan_enable2") != std::string::npos);
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
+
+TEST_CASE("a script that the simulated headset does not take is bad input, and named") {
+    const Workplace work;
+    std::ofstream(work.path / "broken.script") << "size 64 64\nwalk somewhere\n";
+    const Outcome outcome = work.run("view builtin:fence --frames 3 --simulate broken.script");
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.output.find("does not take broken.script, see docs/simulated_script.md") != std::string::npos);
+    CHECK(outcome.output.find("start one (Monado") == std::string::npos);
+}

@@ -101,7 +101,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
 }
 
 Options parseOptions(int argument_count, const char* const* arguments) {
-    CLI::App app{"binosplat: stereo pictures of Gaussian splatting scenes", "binosplat"};
+    CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
     std::deque<CommandLine> lines;  // CLI11 keeps addresses within

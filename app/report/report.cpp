@@ -137,10 +137,9 @@ std::string reportJson(const PathReport& report) {
 
 std::string reportTable(const PathReport& report) {
     const std::vector<double> totals = sortedTotals(report);
-    return fmt::format("{}, {}, {}x{} per eye, on {}\n  {} frames along {}, {:.3f} ms each in the middle, {:.3f} ms the longest\n",
-                       report.options.scene, nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x,
-                       report.start.middle.size_px.y, report.device, totals.size(), report.options.path, totals[totals.size() / 2],
-                       totals.back());
+    return fmt::format("{}, {}, {}x{} per eye, on {}\n  {} frames along {}, median {:.3f} ms, longest {:.3f} ms\n", report.options.scene,
+                       nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x, report.start.middle.size_px.y, report.device,
+                       totals.size(), report.options.path, totals[totals.size() / 2], totals.back());
 }
 
 std::string reportTable(const FrameReport& report) {
@@ -153,7 +152,7 @@ std::string reportTable(const FrameReport& report) {
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.frame.gpu_total_ms);
     for (const auto& [name, count] : report.frame.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
     if (!report.frame.stereo_bytes_per_pixel.empty()) {
-        table += fmt::format("  {:<28} {:>14.1f} bytes\n", "moved for a pixel", report.frame.stereo_bytes_per_pixel.back().second);
+        table += fmt::format("  {:<28} {:>14.1f} bytes\n", "memory traffic per pixel", report.frame.stereo_bytes_per_pixel.back().second);
         table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again", 100.0 * report.frame.tiles_rendered,
                              100.0 * report.frame.work_rendered);
     }

@@ -43,9 +43,9 @@ Buffer::Buffer(const Context& context, const std::string& name, std::uint64_t by
                                          vk::MemoryAllocateInfo(needs.size, type, kind == MemoryKind::kDevice ? &flags : nullptr));
         buffer_.bindMemory(*memory_, 0);
         allocated_bytes_ = needs.size;
-    } catch (const vk::OutOfDeviceMemoryError&) { fail("{}, which it has not free", what); } catch (const vk::OutOfHostMemoryError&) {
-        fail("{}, which it has not free", what);
-    }
+    } catch (const vk::OutOfDeviceMemoryError&) {
+        fail("{}, which is more than it has free", what);
+    } catch (const vk::OutOfHostMemoryError&) { fail("{}, which is more than it has free", what); }
     context.name(buffer_, name);
     bytes_ = bytes;
     if (kind == MemoryKind::kDevice) {
