@@ -74,7 +74,7 @@ void runView(const ViewOptions& given) {
     } catch (const Error&) {
         // The runtime has said where and why.
         check(!options.simulate || options.script.empty(),
-              "--simulate: the simulated headset does not take {}, see docs/simulated_script.md", options.script.string());
+              "--simulate: the simulated headset does not take {}, see docs/simulated_script.md", options.script);
         throw;
     }
     showScene(options, settings, *instance);
