@@ -57,7 +57,7 @@ std::vector<Family> makeGaussianFamilies() {
          kPlaces,
          "from 1e5 pixels on the area that rounding sees of them counts beside the low-pass, and so does the depth it takes them to slope "
          "by",
-         {40.0, 0.05, kInfinity, 0.05},
+         {40.0, 0.05, kInfinity, 0.1},
          -kInfinity,
          2e3},
         {"3D centres beyond the near plane",
