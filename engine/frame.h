@@ -181,6 +181,7 @@ private:
     // Whether a list had no room at all.
     [[nodiscard]] bool isCutShort() const;
     [[nodiscard]] FrameResult collect(const Flight& flight) const;
+    void collectStereo(const Flight& flight, FrameResult& result) const;
     void explainLeftOut(const Flight& flight, FrameResult& result) const;
     template <typename T>
     [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);

@@ -34,41 +34,45 @@ FrameResult StereoFrame::collect(const Flight& flight) const {
         counters["pixels" + suffix] = std::uint64_t{eyes[e].size_px.x} * eyes[e].size_px.y;
         counters["pixel_bytes" + suffix] = images_[e].colours.bytes() + images_[e].depths.bytes();
     }
-    if (reprojects(settings.mode)) {
-        const gpu::StereoCounters& stereo = state_.stereo_counters;
-        if (stereo_buffers_.classesBuffer().bytes() > 0) {
-            counters["pixels_covered"] = stereo.covered_pixels;
-            counters["pixels_gap"] = stereo.gap_pixels;
-            counters["pixels_hole"] = stereo.hole_pixels;
-        }
-        counters["tiles_patched"] = state_.masked_tiles.count;
-        counters["tiles_edge"] = stereo.edge_tiles;
-        counters["tiles_center"] = stereo.center_tiles;
-        counters["tiles_predicted"] = stereo.predicted_tiles;
-        if (settings.mode == Mode::kPredicted) {
-            counters["tiles_cheap"] = stereo.cheap_tiles;
-            counters["tiles_weighed_as_moved"] = stereo.moved_tiles;
-            counters["work_full"] = stereo.picture_cost;
-            counters["work_rendered"] = stereo.chosen_cost;
-            counters["work_saved_by_moving"] = stereo.saved_cost;
-        }
-        counters["hole_components"] = stereo.components;
-        counters["splats_newcomers"] = stereo.newcomers;
-        counters["stereo_bytes"] = stereo_buffers_.bytes();
-        result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
-                                                       .may_move = flight.may_move,
-                                                       .half_floats = settings.half_floats,
-                                                       .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
-                                                       .classes = stereo_buffers_.classesBuffer().bytes() > 0,
-                                                       .size_px = eyes[0].size_px,
-                                                       .counters = stereo,
-                                                       .visible = state_.visible[0].count});
-        const std::uint32_t shown = stereo_buffers_.tileCount() - shown_[1 - dominant_].hiddenCount();
-        result.tiles_rendered = shown > 0 ? static_cast<double>(state_.masked_tiles.count) / shown : 0.0;
-        if (stereo.picture_cost > 0) { result.work_rendered = static_cast<double>(stereo.chosen_cost) / stereo.picture_cost; }
-    }
+    if (reprojects(settings.mode)) { collectStereo(flight, result); }
     explainLeftOut(flight, result);
     return result;
+}
+
+void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const {
+    const FrameSettings& settings = flight.settings;
+    auto& counters = result.counters;
+    const gpu::StereoCounters& stereo = state_.stereo_counters;
+    if (stereo_buffers_.classesBuffer().bytes() > 0) {
+        counters["pixels_covered"] = stereo.covered_pixels;
+        counters["pixels_gap"] = stereo.gap_pixels;
+        counters["pixels_hole"] = stereo.hole_pixels;
+    }
+    counters["tiles_patched"] = state_.masked_tiles.count;
+    counters["tiles_edge"] = stereo.edge_tiles;
+    counters["tiles_center"] = stereo.center_tiles;
+    counters["tiles_predicted"] = stereo.predicted_tiles;
+    if (settings.mode == Mode::kPredicted) {
+        counters["tiles_cheap"] = stereo.cheap_tiles;
+        counters["tiles_weighed_as_moved"] = stereo.moved_tiles;
+        counters["work_full"] = stereo.picture_cost;
+        counters["work_rendered"] = stereo.chosen_cost;
+        counters["work_saved_by_moving"] = stereo.saved_cost;
+    }
+    counters["hole_components"] = stereo.components;
+    counters["splats_newcomers"] = stereo.newcomers;
+    counters["stereo_bytes"] = stereo_buffers_.bytes();
+    result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
+                                                   .may_move = flight.may_move,
+                                                   .half_floats = settings.half_floats,
+                                                   .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
+                                                   .classes = stereo_buffers_.classesBuffer().bytes() > 0,
+                                                   .size_px = flight.eyes[0].size_px,
+                                                   .counters = stereo,
+                                                   .visible = state_.visible[0].count});
+    const std::uint32_t shown = stereo_buffers_.tileCount() - shown_[1 - dominant_].hiddenCount();
+    result.tiles_rendered = shown > 0 ? static_cast<double>(state_.masked_tiles.count) / shown : 0.0;
+    if (stereo.picture_cost > 0) { result.work_rendered = static_cast<double>(stereo.chosen_cost) / stereo.picture_cost; }
 }
 
 void StereoFrame::explainLeftOut(const Flight& flight, FrameResult& result) const {

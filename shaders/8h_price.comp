@@ -1,5 +1,5 @@
 // 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
-// known where the eye looks, an error counts for what the eye sees of it, so that the tiles beside that place must be dearer.
+// known where the eye looks, an error counts for what the eye sees of it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -38,7 +38,8 @@ void main() {
         if (kFoveated) {
             const float share = seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)), seen = share * float(error);
             const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
-            price = unnoticed ? 0 : binOf(seen / float(cost)) << 22 | cost;
+            const uint seen_bin = binOf(seen / float(cost));
+            price = unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;
         }
     }
     pass.tile_prices.at[tile] = price;

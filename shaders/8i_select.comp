@@ -41,12 +41,15 @@ void findLastBin(uint budget) {
     barrier();
 }
 
+// What is left is for those that are worth so much by themselves; what came down from a higher bin has had its turn there.
+bool isOfLast(uint price) { return price != 0 && price >> 22 == last_bin && ((price & kSeenInPart) == 0 || left_for_last == 0xffffffffu); }
+
 // What the tiles of the last bin cost that come before this workgroup's.
 uint costBefore(uint first_tile) {
     uint own = 0;
     for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kStereoGroup) {
         const uint price = pass.tile_prices.at[tile];
-        own += price >> 22 == last_bin ? price & kMaxTileCost : 0;
+        own += isOfLast(price) ? price & kMaxTileCost : 0;
     }
     uint total;
     scanGroup(own, total);
@@ -58,7 +61,7 @@ bool isChosen(uint tile, uint tiles) {
     const float budget = pass.stereo.at[0].budget * float(picture_cost);
     findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
     const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
-    const bool is_last = price != 0 && price >> 22 == last_bin;
+    const bool is_last = isOfLast(price);
     const uint cost = price & kMaxTileCost;
     const uint before_group = costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles));
     uint total;

@@ -275,7 +275,7 @@ TEST_CASE("theDefaultModeIsPredictedAndTheBudgetIsAShareOfTheWork") {
         const nlohmann::json report = nlohmann::json::parse(std::ifstream(work.path / "a" / "report.json"));
         return std::pair(report["options"]["mode"].get<std::string>(), report["counters"]["tiles_patched"].get<int>());
     };
-    CHECK(tilesPatched("") == std::pair<std::string, int>("predicted", 3));  // 22 % of what 16 tiles of like cost take
+    CHECK(tilesPatched("") == std::pair<std::string, int>("predicted", 3));  // a fifth of what 16 tiles of like cost take
     CHECK(tilesPatched("--budget 0").second == 0);
     CHECK(tilesPatched("--budget 0 --move-cost 100000").second == 16);  // all are cheaper to render
     CHECK(tilesPatched("--mode reproject").second == 0);

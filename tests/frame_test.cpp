@@ -69,7 +69,7 @@ double farthestDepth(const ViewedScene& view) {
 // A frame must be the twin's but for rounding, and depths within 1e-3 wherever no threshold lies within 1e-5 of a value of the
 // twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'; with Mesa 25
 // also 11 of 133,045, where two of playbot's 3D Gaussians change places.
-void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db = 55.0) {
+void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db = 55.0, double most_off = 1e-5) {
     CAPTURE(view.name);
     const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
     const reference::Settings twin_settings = twinSettings(settings);
@@ -81,7 +81,7 @@ void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& se
     CHECK(difference.psnrDb() >= least_db);
     CHECK(difference.shareOff() <= 0.0002);
     CHECK(compare(frame.depth, frame.depth, 1).not_finite == 0);
-    CHECK(static_cast<double>(depth.off) <= 1.0 + 1e-4 * static_cast<double>(depth.opaque));
+    CHECK(static_cast<double>(depth.off) <= 1.0 + most_off * static_cast<double>(depth.opaque));
     CHECK(depth.farthest_from_threshold <= 1e-5);
     CHECK(depth.greatest <= 0.0101 * farthestDepth(view));
     MESSAGE(view.name << ": " << difference.psnrDb() << " dB, largest " << difference.largest
@@ -134,7 +134,7 @@ TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin ren
     const View from_afar = viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0);
     const View from_near = viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0);
     checkAgainstTwin(*this, {"3D playbot", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 70.0);
-    checkAgainstTwin(*this, {"3D playbot, near", scene, test::eyeOf(from_near, {512, 512})}, makeSettings(), 70.0);
+    checkAgainstTwin(*this, {"3D playbot, near", scene, test::eyeOf(from_near, {512, 512})}, makeSettings(), 70.0, 1e-4);
     scene.antialiased = true;
     checkAgainstTwin(*this, {"3D playbot, dimmed", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 70.0);
 }

@@ -248,6 +248,6 @@ TEST_CASE("a script that the simulated headset does not take is bad input, and n
     std::ofstream(work.path / "broken.script") << "size 64 64\nwalk somewhere\n";
     const Outcome outcome = work.run("view builtin:fence --frames 3 --simulate broken.script");
     CHECK(outcome.exit_code == 1);
-    CHECK(outcome.output.find("does not take broken.script, see docs/simulated_script.md") != std::string::npos);
-    CHECK(outcome.output.find("start one (Monado") == std::string::npos);
+    CHECK(outcome.errors.find("broken.script, see docs/simulated_script.md") != std::string::npos);
+    CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
 }

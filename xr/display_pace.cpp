@@ -1,6 +1,7 @@
 // Periods between frames.
 #include "xr/display_pace.h"
 
+#include <cmath>
 #include <utility>
 
 namespace binosplat::xr {
@@ -8,11 +9,13 @@ namespace {
 
 // Longer than that nobody waits for a device: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
+constexpr double kJitter = 0.01;  // of a period that is the same
 
 }  // namespace
 
 void DisplayPace::begin(XrTime display_time, XrDuration period) {
-    const bool is_alike = std::exchange(says_something_, false) && period > 0 && period == period_;
+    const bool is_same = std::abs(static_cast<double>(period - period_)) <= kJitter * static_cast<double>(period);
+    const bool is_alike = std::exchange(says_something_, false) && period > 0 && is_same;
     const double step = is_alike ? static_cast<double>(display_time - last_display_time_) / static_cast<double>(period) : 1.0;
     lost_periods_ = step > 0.0 && step <= 1.0 + kMostLostPeriods ? step - 1.0 : 0.0;
     last_display_time_ = display_time;

@@ -17,7 +17,9 @@ constexpr const char* kLocalFloorExtension = "XR_EXT_local_floor";
 constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
 
 [[noreturn]] void refuse(const std::string& what, XrResult result) {
-    throw Error(ExitCode::kNoDevice, fmt::format("{} ({}); {}", what, nameOf(result), kHint));
+    const std::string line = fmt::format("{} ({}); {}", what, nameOf(result), kHint);
+    if (result == XR_ERROR_RUNTIME_FAILURE) { throw RuntimeFailed(ExitCode::kNoDevice, line); }
+    throw Error(ExitCode::kNoDevice, line);
 }
 
 // The runtime is the loader's choice: XR_RUNTIME_JSON, or active_runtime.json of the user or the system.

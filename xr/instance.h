@@ -14,6 +14,12 @@
 
 namespace binosplat::xr {
 
+// The runtime is there, and fails to begin (XR_ERROR_RUNTIME_FAILURE); why, it may have said itself.
+class RuntimeFailed : public Error {
+public:
+    using Error::Error;
+};
+
 struct InstanceOptions {
     bool visibility_mask = true;  // some runtimes have nothing behind the function that they offer
     bool eye_tracking = false;    // whether the wearer lets this program see where the eyes look

@@ -97,7 +97,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, &StereoOptions::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
-          "predicted mode: so far from where the eyes look all errors count, beyond it what the eye sees of them; 0: all count everywhere"},
+          "predicted mode: degrees around the gaze where errors count in full, beyond only what the eye resolves; 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
         {{"gaze", "stereo", kPictures, "x,y,z", "where the eyes look, from the head: right, down, forward", "each lens's centre"},
          field::direction<kStereo, &StereoOptions::gaze>()},

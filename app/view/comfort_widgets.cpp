@@ -36,10 +36,11 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
     if (widgets.radio("any rate", settings.refresh_rate == 0.0)) { settings.refresh_rate = 0.0; }
     for (std::size_t i = 0; i < shown; ++i) {
         ImGui::SameLine((0.25f + 0.75f * static_cast<float>(i) / static_cast<float>(shown)) * width);
-        const double rate_hz = std::round(rates_hz[i]);
-        if (widgets.radio(fmt::format("{:.0f} Hz", rate_hz).c_str(), std::abs(settings.refresh_rate - rates_hz[i]) < 0.5)) {
-            settings.refresh_rate = rate_hz;
+        ImGui::PushID(static_cast<int>(i));  // 59.94 and 60 read alike
+        if (widgets.radio(fmt::format("{:.0f} Hz", rates_hz[i]).c_str(), std::abs(settings.refresh_rate - rates_hz[i]) < 0.5)) {
+            settings.refresh_rate = rates_hz[i];
         }
+        ImGui::PopID();
     }
 }
 

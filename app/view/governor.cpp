@@ -86,8 +86,10 @@ void Governor::buildLadder() {
         // As many digits as are shown.
         const double scale = std::round(100.0 * best_.resolution_scale * (1.0 - kScaleStep * step)) / 100.0;
         // What loses nothing comes first at each resolution. Methods that the wearer chose for themselves are not replaced by another.
-        levels_.push_back({{lossy ? Mode::kShared : best_.mode, best_.budget, scale}, 0});
-        for (std::size_t i = 0; i < shares.size(); ++i) { levels_.push_back({{best_.mode, best_.budget * shares[i], scale}, i + 1}); }
+        levels_.push_back({{lossy ? Mode::kShared : best_.mode, best_.budget, scale, best_.foveation_deg}, 0});
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            levels_.push_back({{best_.mode, best_.budget * shares[i], scale, best_.foveation_deg}, i + 1});
+        }
     }
 }
 
@@ -125,9 +127,15 @@ void Governor::lowerShare(double now_ms) {
 }
 
 void Governor::raiseShare() {
-    if (share_ >= 1.0 || now_s_ < held_until_s_) { return; }
+    if (now_s_ < held_until_s_) { return; }
+    if (share_ >= 1.0) {  // and it was not too early
+        hold_s_ = 0.0;
+        is_raised_ = false;
+        return;
+    }
     share_ = std::min(share_ * std::pow(kRaisedPerSecond, 1e-3 * period_ms_), 1.0);
     is_raised_ = true;
+    if (share_ == 1.0) { held_until_s_ = now_s_ + hold_s_; }  // of all there is, once more
 }
 
 double Governor::expectedMs(std::size_t level, double now_ms) const {

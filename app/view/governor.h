@@ -20,6 +20,7 @@ struct GovernedSettings {
     Mode mode = Mode::kPredicted;
     double budget = 0.0;            // of `predicted`: the share of an eye's work that is rendered again
     double resolution_scale = 1.0;  // each way
+    double foveation_deg = 0.0;     // not chosen here, but what was measured with another one no longer counts
     bool operator==(const GovernedSettings&) const = default;
 };
 
@@ -28,7 +29,7 @@ struct GovernedFrame {
     double gpu_ms = 0.0;     // 0: the device does not tell
     double period_ms = 0.0;  // what the runtime gives a frame
     bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
-    // Periods that passed before the frame was displayed beyond its own, as the runtime shows; it does not hang on what the device says.
+    // Periods that passed before the frame was displayed beyond its own, as the runtime shows: independent of the device's own times.
     double lost_periods = 0.0;
 };
 

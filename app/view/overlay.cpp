@@ -163,9 +163,8 @@ void drawSettings(PanelWidgets& widgets, ViewSettings& settings, const OverlaySt
     widgets.checkbox("Two hands may tilt the scene", &settings.tilt);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.505f);
     bool foveated = settings.stereo.foveation_deg > 0.0;
-    // As far as eyes usually turn before the head does.
-    static constexpr double kClearDegrees = 15.0;
-    if (widgets.checkbox("Foveation", &foveated)) { settings.stereo.foveation_deg = foveated ? kClearDegrees : 0.0; }
+    if (foveated) { settings.last_foveation_deg = settings.stereo.foveation_deg; }
+    if (widgets.checkbox("Foveation", &foveated)) { settings.stereo.foveation_deg = foveated ? settings.last_foveation_deg : 0.0; }
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.75f);
     actions.level_scene = widgets.button("Level");
     actions.recentre = widgets.button("Recentre");

@@ -31,7 +31,8 @@ void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
 }
 
 void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
-    governor_.wish(settings.quality, {settings.stereo.mode, settings.stereo.budget, settings.resolution_scale});
+    governor_.wish(settings.quality,
+                   {settings.stereo.mode, settings.stereo.budget, settings.resolution_scale, settings.stereo.foveation_deg});
     fitImages(stay, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     stay.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));

@@ -71,7 +71,7 @@ void runView(const ViewOptions& given) {
     } catch (const Interrupted&) {
         fmt::print("0 frames; stopped before there was a headset\n");
         return;
-    } catch (const Error&) {
+    } catch (const xr::RuntimeFailed&) {
         // The runtime has said where and why.
         check(!options.simulate || options.script.empty(),
               "--simulate: the simulated headset does not take {}, see docs/simulated_script.md", options.script);

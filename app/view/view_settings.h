@@ -25,6 +25,7 @@ struct ViewSettings {
     bool vignette = true;                       // while the wearer moves by stick
     bool passthrough = false;                   // the room in place of the background, where the headset shows it
     Quality quality = Quality::kOff;            // how the frame rate is held
+    double last_foveation_deg = 15.0;           // what the panel's box switches on: as far as eyes usually turn before the head does
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
     // Both eyes are shown the dominant one's picture.

@@ -333,7 +333,7 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
 
 void Viewer::reloadShaders() {
     LoadedScene* scene = scenes_.get();
-    if (scene == nullptr || !status_.can_reload_shaders) { return; }  // without a scene kernels are being made elsewhere
+    if (scene == nullptr || !status_.can_reload_shaders) { return; }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scene->frame.rebuildKernels();
         renderer_.presenter().rebuildKernels();

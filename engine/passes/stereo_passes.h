@@ -39,7 +39,7 @@ struct StereoSettings {
     gpu::uint edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.2;     // share of an eye's work
+    double budget = 0.2;      // share of an eye's work
     gpu::uint move_cost = 0;  // of a tile, in pairs
     double hole_error = 1.0;
     double newcomer_error = 0.3;

@@ -27,6 +27,7 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     for (std::size_t tile = 0; tile < prices.size(); ++tile) {
         if (!prices[tile] || (last && *prices[tile] < *last)) { continue; }
         if (last && *prices[tile] == *last) {
+            if (*whole[tile] != *last) { continue; }  // it would have been paid for before
             goes_on = goes_on && costs[tile] <= left;
             if (!goes_on) { continue; }
             left -= costs[tile];

@@ -30,7 +30,7 @@ struct StereoSettings {
     int edge_samples = 64;
     bool tight_edges = false;
     bool center_rois = false;
-    double budget = 0.2;         // share of an eye's work that is spent on tiles with an error
+    double budget = 0.2;          // share of an eye's work that is spent on tiles with an error
     std::uint32_t move_cost = 0;  // what moving a tile costs, in pairs; tiles of no more are rendered
     double hole_error = 1.0, newcomer_error = 0.3;
     // Tiles that nobody sees: a byte a tile, 1 for these; empty: there is none. The source has no picture there.

@@ -8,7 +8,7 @@ namespace binosplat::reference {
 namespace {
 
 // A tile costs that many pairs beside its own, and counts for no more than what its word has room for.
-constexpr std::uint64_t kTilePairs = 16, kMaxTileCost = (1u << 22) - 1;
+constexpr std::uint64_t kTilePairs = 16, kMaxTileCost = (1u << 21) - 1;
 // Moving costs a part of what it costs a tile even where nothing is moved.
 constexpr std::uint64_t kMoveSharedPart = 2;
 

@@ -105,8 +105,10 @@ BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
 
 // The price list of 8h: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
-// What a tile costs in the price list at most, in pairs: the other ten bits of the word say the bin.
-BINOSPLAT_CONSTANT uint kMaxTileCost = 0x3fffffu;
+// What a tile costs in the price list at most, in pairs: ten bits of the word say the bin, and one that the tile would be in a higher one
+// if its error were seen whole.
+BINOSPLAT_CONSTANT uint kMaxTileCost = 0x1fffffu;
+BINOSPLAT_CONSTANT uint kSeenInPart = 0x200000u;
 
 // The finest cycle that an eye resolves, in radians: 1/48 of a degree where it looks, and 0.022 (1.32 arc minutes a degree) times the
 // angle from there: the more careful of the two slopes of Guenter et al. 2012, Foveated 3D Graphics.

@@ -59,6 +59,7 @@ void Automation::applyTo(State& state) const {
     for (std::size_t i = 0; i < kDevices; ++i) {
         ControllerState& device = state.device(i);
         if (devices[i].is_active) device.tracked = *devices[i].is_active;
+        if (devices[i].is_active && i == kGaze) state.gaze_is_good = *devices[i].is_active;
         for (const auto& [name, value] : devices[i].inputs) device.inputs[name] = value;
         if (devices[i].stage_from_grip) device.stage_from_grip = *devices[i].stage_from_grip;
         if (devices[i].stage_from_aim) device.stage_from_aim = *devices[i].stage_from_aim;
