@@ -49,11 +49,32 @@ TEST_CASE("pauses, another period, a change of the session's state and time that
     Pace pace;
     CHECK(pace.after(5.0) == 0.0);
     CHECK(pace.after(500.0) == 0.0);
-    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == 0.0);
-    CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
+    constexpr XrDuration kOther = kPeriod * 5 / 4;
+    CHECK(pace.after(2.5, true, kQuick, kOther) == 0.0);
+    CHECK(pace.after(2.5, true, kQuick, kOther) == doctest::Approx(1.0));
     pace.interrupt();
-    CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod) == 0.0);
-    CHECK(pace.after(-3.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.after(2.5, true, kQuick, kOther) == 0.0);
+    CHECK(pace.after(-3.0, true, kQuick, kOther) == 0.0);
     CHECK(pace.after(0.0, true, kQuick, 0) == 0.0);
     CHECK(pace.after(3.0, true, kQuick, 0) == 0.0);
+}
+
+TEST_CASE("a stated period of several displays is not the display's: what it leaves out was lost") {
+    Pace pace;
+    pace.after(1.0);
+    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == doctest::Approx(1.0));
+    CHECK(pace.period() == kPeriod);
+    CHECK(pace.after(3.0, true, kQuick, 3 * kPeriod + kPeriod / 100) == doctest::Approx(2.0));
+    CHECK(pace.period() == kPeriod);
+    CHECK(pace.after(1.0) == 0.0);
+    // Of a display that is told to be slower it is.
+    pace.restart();
+    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.after(2.0, true, kQuick, 2 * kPeriod) == 0.0);
+    CHECK(pace.period() == 2 * kPeriod);
+    // A shorter one, or one that is no multiple, is always the display's.
+    CHECK(pace.after(1.0) == 0.0);
+    CHECK(pace.period() == kPeriod);
+    CHECK(pace.after(1.5, true, kQuick, kPeriod * 3 / 2) == 0.0);
+    CHECK(pace.period() == kPeriod * 3 / 2);
 }

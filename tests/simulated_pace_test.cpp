@@ -178,6 +178,7 @@ TEST_CASE("mistakes about the pace are one line") {
         {"images 3 backwards", "the order is backwards, must be in-turn, reversed or shuffled"},
         {"images 3\nimages 2", "a.script:2: images is set again, first on line 1"},
         {"irregular 91", "how much periods differ, in percent is 91, must be a number from 0 to 90"},
+        {"period long", "the stated period is long, must be steady or stretched"},
         {"state-changes never", "when states change is never, must be at-begin or at-end"},
         {"at 1 rate 0", "the rate in frames per second is 0, must be a number from 1 to 1000"},
         {"at 1 gpu-load 70", "the load's unit is missing, must be %, ms or ms-per-megapixel"},

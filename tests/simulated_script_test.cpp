@@ -427,7 +427,7 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 30);
+    CHECK(commands == 31);
 }
 
 TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {

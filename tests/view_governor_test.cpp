@@ -110,6 +110,23 @@ TEST_CASE("where the least settings are too slow as well that is said, once, and
     CHECK(count(run.outcome.output, "not even that fits") == 1);
 }
 
+TEST_CASE("a runtime that states longer periods for late frames is not believed: half the rate is not what is aimed at") {
+    const Governed run("fast", "period stretched\nat 1.5 gpu-load 1600 ms-per-megapixel\n", 110);
+    CHECK(run.longestOver() <= 10);
+    CHECK(run.widths[80] < kWhole);
+    CHECK_FALSE(run.isOver(80));
+    run.checkCalm(80);
+}
+
+TEST_CASE("displays that are missed whatever is drawn cost no quality for long") {
+    const Governed run("fast", "at 1.5 gpu-load 150 ms\n", 80);
+    CHECK(run.widths[14] == kWhole);
+    CHECK(*std::ranges::min_element(run.widths) < kWhole);
+    CHECK(run.widths[60] == kWhole);
+    CHECK(run.widths.back() == kWhole);
+    CHECK(run.outcome.output.find("displays are missed whatever is drawn") != std::string::npos);
+}
+
 TEST_CASE("irregular periods, frames that nobody is to see, other rates and a headset that is taken off are no missed displays") {
     const Governed run("fast",
                        "irregular 90\nat 1 should-render off\nat 1.5 should-render on\nat 2 rate 20\nat 2.5 rate 10\nat 3 worn off\n"

@@ -8,13 +8,19 @@ namespace binosplat::xr {
 
 class DisplayPace {
 public:
-    // Each answer of xrWaitFrame.
-    void begin(XrTime display_time, XrDuration period);
+    // Each answer of xrWaitFrame, with the period that the runtime states: it may be several of the display's where the program needs as
+    // long as that (Monado's is), and to take them for what there is would be to settle for half the rate.
+    void begin(XrTime display_time, XrDuration stated_period);
     // Each xrEndFrame: whether the frame has something to show, and how long the program itself worked at it. One that had nothing, or
     // where the program alone needed more than the period, says nothing of the device.
     void end(bool shows, double busy_seconds);
     // The session's state changed: what comes next has nothing to do with what was.
     void interrupt() { says_something_ = false; }
+    // Another rate, or another session: the next period is the display's, whatever it was.
+    void restart() { period_ = 0; }
+
+    // Of the display, in nanoseconds; what the runtime states, or the part of it that was stated before.
+    [[nodiscard]] XrDuration period() const { return period_; }
 
     // Periods that passed between the last frame's display and this one's, beyond the one that it has; below zero where it came early, zero
     // where nothing can be said: of the first frame, after a pause, another period or an interruption.

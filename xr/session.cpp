@@ -97,7 +97,7 @@ void Session::endFrame(std::span<const XrCompositionLayerBaseHeader* const> laye
 }
 
 double Session::periodMs() const {
-    const double period_ms = static_cast<double>(frame_state_.predictedDisplayPeriod) * 1e-6;
+    const double period_ms = static_cast<double>(pace_.period()) * 1e-6;
     return period_ms >= kShortestPeriodMs && period_ms <= kLongestPeriodMs ? period_ms : 1e3 * kUsualPeriodSeconds;
 }
 
@@ -157,6 +157,9 @@ void Session::pollEvents() {
             case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
                 readHiddenMesh(static_cast<int>(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex));
                 break;
+            case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB:
+                pace_.restart();
+                break;
             default:  // a changed controller shows in its actions
                 break;
         }
@@ -173,6 +176,7 @@ void Session::changeState(XrSessionState state) {
             BINOSPLAT_XR(xrBeginSession(session_, &info));
             running_ = true;
             last_display_time_ = 0;
+            pace_.restart();
             break;
         }
         case XR_SESSION_STATE_STOPPING:

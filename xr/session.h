@@ -55,7 +55,7 @@ public:
     [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
     // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
-    // What the runtime gives a frame, in milliseconds; 90 Hz where it states none.
+    // Of the display, see DisplayPace, in milliseconds: what a frame may take; 90 Hz where the runtime states none.
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }

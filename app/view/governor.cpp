@@ -30,6 +30,8 @@ constexpr double kForgetRatioSeconds = 30.0, kDrift = 0.15;
 constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
 // Where displays are missed less than what was used is room; once a while has passed without a miss there is more each second.
 constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1;
+// Where the least settings miss no fewer displays than the best ones did the misses are others' doing. They are left alone for so long.
+constexpr double kSameLost = 0.25, kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
 constexpr double kScaleStep = 0.1;
 
 double leastScale(Quality quality) {
@@ -67,6 +69,8 @@ void Governor::wish(Quality quality, const GovernedSettings& best) {
     left_.reset();
     lossless_ms_ = 0.0;
     beaten_ = false;
+    before_misses_ = {};
+    heeds_from_s_ = unheeded_s_ = 0.0;
     why_.clear();
     sentence_.clear();
 }
@@ -109,7 +113,13 @@ std::size_t Governor::countOver(std::size_t of_last) const {
 
 double Governor::lostIn(std::size_t last) const {
     const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
-    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0);
+    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0,
+                           [](double sum, double lost) { return sum + std::min(lost, kMostLostByOne); });
+}
+
+double Governor::meanLost(std::size_t last) const {
+    const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
+    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(count, 1));
 }
 
 bool Governor::missesDisplays() const {
@@ -120,10 +130,27 @@ bool Governor::missesDisplays() const {
 
 void Governor::lowerShare(double now_ms) {
     if (roomMs() < now_ms) { return; }  // it is less already
+    if (share_ >= 1.0) { before_misses_ = {current_, now_ms, meanLost(kOverAtOnce)}; }
     share_ = kLowerShare * now_ms / period_ms_;
     // As with steps upwards: what comes too early comes later the next time.
     hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestBlockSeconds) : std::max(hold_s_, kFirstBlockSeconds);
     is_raised_ = false;
+}
+
+bool Governor::missesWhateverIsDrawn() const {
+    return beaten_ && recent_lost_.size() >= kTrialFrames && meanLost(kTrialFrames) >= before_misses_.lost - kSameLost;
+}
+
+void Governor::leaveMissesAlone() {
+    unheeded_s_ = std::clamp(2.0 * unheeded_s_, kFirstUnheededSeconds, kLongestUnheededSeconds);
+    heeds_from_s_ = now_s_ + unheeded_s_;
+    share_ = 1.0;
+    hold_s_ = 0.0;
+    is_raised_ = beaten_ = false;
+    downs_ = 0;
+    left_.reset();
+    current_ = before_misses_.level;
+    step(current_, before_misses_.ms, "displays are missed whatever is drawn");
 }
 
 void Governor::raiseShare() {
@@ -221,18 +248,21 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     recent_ms_.push_back(frame.gpu_ms);
     if (recent_ms_.size() > kWindow) { recent_ms_.pop_front(); }
-    recent_lost_.push_back(std::min(frame.lost_periods, kMostLostByOne));
+    recent_lost_.push_back(frame.lost_periods);
     if (recent_lost_.size() > kWindow) { recent_lost_.pop_front(); }
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
     const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
-    const bool is_over = takes_too_long || missesDisplays();
+    const bool is_heeded = now_s_ >= heeds_from_s_;
+    if (!is_heeded && recent_lost_.size() == kWindow && lostIn(kWindow) < kLostSlack) { heeds_from_s_ = now_s_; }  // it is over
+    const bool is_over = takes_too_long || (is_heeded && missesDisplays());
     const double now_ms = median(is_over ? at_once : kWindow);
     learn(now_ms);
     if (is_over) {
         if (!takes_too_long) { lowerShare(now_ms); }
         held_until_s_ = now_s_ + hold_s_;
         makeItFit(now_ms);
+        if (!takes_too_long && missesWhateverIsDrawn()) { leaveMissesAlone(); }
     } else {
         giveBack(now_ms);
     }

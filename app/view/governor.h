@@ -66,7 +66,9 @@ private:
     void buildLadder();
     [[nodiscard]] double median(std::size_t frames) const;
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
+    // Periods lost by so many frames: all together, none with more than counts; and by each, whatever it was.
     [[nodiscard]] double lostIn(std::size_t last) const;
+    [[nodiscard]] double meanLost(std::size_t last) const;
     // Whether displays were missed, again and again, however long the device says that frames took.
     [[nodiscard]] bool missesDisplays() const;
     // What frames may take: the period, or as much of it as others leave.
@@ -74,6 +76,9 @@ private:
     // Displays are missed at this: there is less room than was thought.
     void lowerShare(double now_ms);
     void raiseShare();
+    // Whether to give up quality has gained nothing: then it is given back, and for a while misses change nothing.
+    [[nodiscard]] bool missesWhateverIsDrawn() const;
+    void leaveMissesAlone();
     // Of a level, from what the current one costs now.
     [[nodiscard]] double expectedMs(std::size_t level, double now_ms) const;
     // The best level expected to fit into `most_ms`; the cheapest if none does.
@@ -109,6 +114,12 @@ private:
     // Of the period, what others (the compositor, another program) leave: found out by what is missed, given back little by little.
     double share_ = 1.0, held_until_s_ = 0.0, hold_s_ = 0.0;
     bool is_raised_ = false;  // since it was lowered last
+    struct Before {
+        std::size_t level = 0;
+        double ms = 0.0, lost = 0.0;  // of a frame
+    };
+    Before before_misses_;                          // and before anything was given up for them
+    double heeds_from_s_ = 0.0, unheeded_s_ = 0.0;  // when misses count again, and how long they did not
 };
 
 }  // namespace binosplat

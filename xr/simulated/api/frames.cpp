@@ -109,7 +109,8 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         });
         Session& owner = runningSession(session);
         Simulation& simulation = *owner.instance.simulation;
-        frame = simulation.clock.nextFrame(std::exchange(owner.frames.missed, 0));
+        const std::int64_t missed = std::exchange(owner.frames.missed, 0);
+        frame = simulation.clock.nextFrame(missed);
         const State state = simulation.at(frame.display_time);
         owner.meetEvents(frame.display_time);
         owner.announceMasks(state);
@@ -118,7 +119,7 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         owner.frames.waited = frame.display_time;
         owner.frames.should_render = is_visible && state.should_render;
         output.predictedDisplayTime = frame.display_time;
-        output.predictedDisplayPeriod = simulation.clock.period();
+        output.predictedDisplayPeriod = simulation.clock.period() * (simulation.script.stretches_period ? 1 + missed : 1);
         output.shouldRender = owner.frames.should_render;
         if (!simulation.clock.isReal()) frame.wake_time = {};
         return successOf(owner);

@@ -138,8 +138,9 @@ public:
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
     double rate_hz = 90.0;
-    double irregularity = 0.0;  // of periods, as a share of them
-    std::uint32_t images = 3;   // of a swapchain
+    double irregularity = 0.0;      // of periods, as a share of them
+    bool stretches_period = false;  // a frame that missed displays is followed by a stated period of as many as it took
+    std::uint32_t images = 3;       // of a swapchain
     enum class ImageOrder { kInTurn, kReversed, kShuffled } image_order = ImageOrder::kInTurn;
     bool changes_state_at_begin = false;  // session states change while a frame is open, not after its end
     glm::uvec2 size_px{1024, 1024};       // recommended, per eye

@@ -24,6 +24,11 @@ void Parser::parseIrregular(Words& words) {
     script_.irregularity = 0.01 * words.number("how much periods differ, in percent", 0.0, 90.0);
 }
 
+void Parser::parsePeriod(Words& words) {
+    requireFirst(words, "period");
+    script_.stretches_period = words.choice("the stated period", {"steady", "stretched"}) == 1;
+}
+
 void Parser::parseSize(Words& words) {
     requireFirst(words, "size");
     const auto width = static_cast<std::uint32_t>(words.count("the width in pixels", 1, 16384));

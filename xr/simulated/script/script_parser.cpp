@@ -44,6 +44,7 @@ void Parser::parseLine(Words& words) {
                                                                        {"irregular", &Parser::parseIrregular},
                                                                        {"local", &Parser::parseLocal},
                                                                        {"no-headset-for", &Parser::parseNoHeadset},
+                                                                       {"period", &Parser::parsePeriod},
                                                                        {"plugged", &Parser::parsePlugged},
                                                                        {"press", &Parser::parsePress},
                                                                        {"profile", &Parser::parseProfile},

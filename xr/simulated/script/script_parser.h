@@ -28,6 +28,7 @@ private:
     // script_headset.cpp
     void parseRate(Words& words);
     void parseIrregular(Words& words);
+    void parsePeriod(Words& words);
     void parseSize(Words& words);
     void parseIpd(Words& words);
     void parseEye(Words& words);
