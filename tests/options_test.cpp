@@ -356,6 +356,18 @@ TEST_CASE("methodsSweepTheirSettings") {
     CHECK(viewsOf(plan, "builtin:fence", options.run).at(0).views.at(0).name.empty());
 }
 
+TEST_CASE("aSizeOfTheCommandLineTakesThePlaceOfThoseOfASeries") {
+    const Workplace work;
+    const std::string config = (work.path / "a.toml").string();
+    writeText(config, "[bench]\nscenes = [\"builtin:fence\"]\n[[series]]\nname = \"a\"\nsizes = [\"64x48\", \"128x96\"]\n");
+    const auto sizesOf = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"bench", "--out", "out", "--config", config});
+        return planBench(parse<BenchOptions>(arguments)).series.at(0).sizes_px;
+    };
+    CHECK(sizesOf({}) == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
+    CHECK(sizesOf({"--size", "32x16"}) == std::vector{glm::uvec2(32, 16)});
+}
+
 TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralWays") {
     const Workplace work;
     writeText(work.path / "a.toml",

@@ -148,6 +148,9 @@ BenchPlan planBench(const BenchOptions& options) {
         plan.psnr = true;  // the command line asks for pictures to be compared, though the config may not
     }
     const CameraOptions& camera = options.run.camera;
+    if (camera.size_px) {
+        for (BenchSeries& series : plan.series) { series.sizes_px = {*camera.size_px}; }
+    }
     if (camera.eye || camera.look || !camera.cameras_file.empty()) { plan.views.clear(); }
     return plan;
 }

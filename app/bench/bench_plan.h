@@ -47,7 +47,7 @@ struct BenchPlan {
 };
 
 // Scenes of the command line replace the config's; without a [[series]] there is one, at the frame's own size; a scene without a
-// [[views]] of its own is seen as the camera options say. A camera on the command line replaces all views.
+// [[views]] of its own is seen as the camera options say. A camera on the command line replaces all views, a size those of all series.
 // Throws Error with file and line; kUsage if no scene is named anywhere.
 BenchPlan planBench(const BenchOptions& options);
 
