@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pictures of the viewer's panel in each of its states, as docs/headset.md shows them: `docs/panel_pictures.py build/release/bin/binosplat docs/panel`.
+"""Pictures of the viewer's panel, its pages and states, as docs/headset.md shows them: `docs/panel_pictures.py build/release/bin/binosplat docs/panel`.
 
 Each is the panel's part of the viewer's window on a display without a screen (Xvfb), beside the simulated headset, which a script
 brings into the state; frames go by the clock. A state lasts until the picture has been taken, but for the one in which the scene loads."""
@@ -20,13 +20,18 @@ NEXT_SCENE = (
     "controller right 8 position 0.2 1.2 -0.35 look -0.582 1.774 -0.864\n"
     "controller right 9 position 0.2 1.2 -0.35 look -0.526 1.411 -0.852\npress right trigger 11 14\n" + LEFT_AWAY
 )
+# Pulls the trigger on the button of another page; x and z of where that is.
+PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.774 {1}\npress right trigger 4 7\n" + LEFT_AWAY
 STATES = {
+    "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.582, -0.864)),
+    "info": ("room2.ply --load-first", LAST + PAGE.format(-0.513, -0.899)),
     "loading": ("builtin:atelier", LAST),
     "scene": ("builtin:fence --load-first", LAST),
     "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
     "lost": ("builtin:fence --load-first", LAST + "at 3 head off\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
+SCENES = ("room2.ply", "room10.ply", "Küche.ply", "Τραπέζι.ply", "Комната.ply")
 SCREEN = (1400, 800)
 EYE_PX = 720  # the window shows an eye of this size, and the panel beside it
 PANEL_PX = (EYE_PX * 768 // 960, EYE_PX)
@@ -71,10 +76,11 @@ def write_png(path, rows):
 
 
 def take(program, folder, name, scene, script):
-    with tempfile.TemporaryDirectory() as work:
+    with tempfile.TemporaryDirectory(prefix="binosplat-") as work:
         with open(os.path.join(work, "state.script"), "w") as file:
             file.write(script)
-        subprocess.run([program, "scene", "fence", "--out", "a.ply"], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        for scene_file in ("a.ply", *(SCENES if name == "scenes" else SCENES[:1])):
+            subprocess.run([program, "scene", "fence", "--out", scene_file], cwd=work, check=True, stdout=subprocess.DEVNULL)
         with open(os.path.join(work, "b.ply"), "w") as file:
             file.write("ply\nformat ascii 1.0\nelement vertex many\n")
         size = "{}x{}x24".format(*SCREEN)
