@@ -335,14 +335,14 @@ TEST_CASE("where displays are missed whatever is drawn nothing is given up for i
         [](double, double gpu_ms) { return lostBy(gpu_ms, 12.0, kPeriodMs); });
     const GovernedSettings all{Mode::kShared, 0.22, 1.0};
     CHECK(run.frames[10].settings.resolution_scale < 1.0);
-    CHECK(run.frames[20].settings == all);
-    CHECK(run.frames[20].sentence.find("displays are missed whatever is drawn") != std::string::npos);
+    CHECK(run.frames[40].settings == all);
+    CHECK(run.frames[40].sentence.find("displays are missed whatever is drawn") != std::string::npos);
     // It is looked at again after a minute, and after two.
     CHECK(run.last().settings == all);
     CHECK_FALSE(run.last().beaten);
     const auto lowered = std::ranges::count_if(run.frames, [&](const Run::Frame& frame) { return frame.settings != all; });
     CHECK(lowered > 20);
-    CHECK(lowered < 60);
+    CHECK(lowered < 100);
     CHECK(changesAfter(run, 1.0) <= 6);
 }
 
@@ -357,13 +357,57 @@ TEST_CASE("where not even the least settings meet every display, but more of the
     CHECK(changesAfter(run, 5.0) == 0);
 }
 
-TEST_CASE("misses that were others' doing and are over count again") {
+TEST_CASE("a hitch at the least settings, which meet all displays, gives nothing back") {
+    std::size_t hitch = 0;
+    const Run run = govern(
+        Quality::kFast, 30.0, [](double, const GovernedSettings& s) { return cost(7.0, 0.8, s); }, {}, kWish,
+        [&](double t, double gpu_ms) {
+            const double others = lostBy(2.0 * gpu_ms, 4.0, kPeriodMs);
+            return t > 9.0 && hitch < 6 ? ++hitch, 2.0 : others;
+        });
+    const double before = run.at(8.9).settings.resolution_scale;
+    CHECK(before < 0.75);
+    CHECK(run.at(8.9).lost_periods == 0.0);
+    CHECK(run.at(9.5).settings.resolution_scale <= before);
+    CHECK(run.at(12.0).sentence.find("whatever is drawn") == std::string::npos);
+}
+
+TEST_CASE("another wish begins anew: what was lost before it is no measure") {
+    Governor governor;
+    bool gave_back = false;
+    for (int i = 0; i < 400; ++i) {
+        GovernedSettings wish = kWish;
+        if (i >= 200) { wish.budget = 0.4; }
+        governor.wish(Quality::kFast, wish);
+        const double gpu_ms = cost(7.0, 0.8, governor.settings());
+        governor.measure({gpu_ms, kPeriodMs, false, lostBy(3.0 * gpu_ms, 5.0, kPeriodMs)});
+        gave_back = gave_back || governor.sentence().find("whatever is drawn") != std::string::npos;
+    }
+    CHECK_FALSE(gave_back);
+    CHECK(governor.settings().resolution_scale == doctest::Approx(0.4));
+    CHECK(governor.isBeaten());
+}
+
+TEST_CASE("a spike when the misses begin does not make the least settings look better than the best ones") {
+    std::size_t frame = 0;
+    const Run run = govern(
+        Quality::kFast, 10.0, [](double, const GovernedSettings& s) { return cost(7.0, 0.8, s); }, {}, kWish,
+        [&](double, double) { return ++frame == 50 ? 6.0
+                                     : frame > 50  ? 1.0
+                                                   : 0.0; });
+    CHECK(run.last().settings.resolution_scale == 1.0);
+    CHECK(run.last().sentence.find("whatever is drawn") != std::string::npos);
+}
+
+TEST_CASE("misses that were others' doing and are over count again, and are no longer spoken of") {
     // First whatever is drawn, then none, then what the device is too slow for without saying it.
     const Run run = govern(
         Quality::kFast, 20.0, [](double, const GovernedSettings& s) { return cost(7.0, 0.8, s); }, {}, kWish,
         [](double t, double gpu_ms) { return t < 5.0   ? lostBy(gpu_ms, 12.0, kPeriodMs)
                                              : t < 7.0 ? 0.0
                                                        : lostBy(gpu_ms, 6.0, kPeriodMs); });
+    CHECK(run.at(4.9).sentence.find("whatever is drawn") != std::string::npos);
+    CHECK(run.at(6.9).sentence.find("whatever is drawn") == std::string::npos);
     CHECK(run.at(6.9).settings.resolution_scale == 1.0);
     CHECK(run.at(9.0).settings.resolution_scale < 1.0);
     CHECK(run.at(9.0).lost_periods == 0.0);

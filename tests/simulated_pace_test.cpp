@@ -27,6 +27,9 @@ struct Irregular : SessionFixture {
 struct Loaded : SessionFixture {
     Loaded() : SessionFixture(kSmall + "at 0.1 gpu-load 70 %\nat 0.2 gpu-load 25 ms\nat 0.4 gpu-load 0 ms") { begin(); }
 };
+struct Stretched : SessionFixture {
+    Stretched() : SessionFixture(kSmall + "period stretched\nat 0.1 gpu-load 25 ms\nat 0.3 gpu-load 0 ms") { begin(); }
+};
 struct ChangesAtBegin : SessionFixture {
     ChangesAtBegin() : SessionFixture(kSmall + "state-changes at-begin\nat 0.2 worn off") { begin(); }
 };
@@ -117,6 +120,18 @@ TEST_CASE_FIXTURE(Loaded, "a device that takes longer than a period misses displ
     std::set<double> said;
     for (std::string line; std::getline(log, line);) { said.insert(nlohmann::json::parse(line).value("gpu_ms", 0.0)); }
     CHECK(said == std::set<double>{0.0, 7.0, 25.0});
+}
+
+TEST_CASE_FIXTURE(Stretched, "a stretched period is as many as the frame before took") {
+    XrTime last = 0;
+    std::set<XrDuration> stated;
+    for (int i = 0; i < 40; ++i) {
+        const XrFrameState state = frame();
+        if (last != 0) { CHECK(state.predictedDisplayTime - last == state.predictedDisplayPeriod); }
+        last = state.predictedDisplayTime;
+        stated.insert(state.predictedDisplayPeriod);
+    }
+    CHECK(stated == std::set<XrDuration>{kPeriod, 3 * kPeriod});
 }
 
 TEST_CASE("a load by megapixels is that of what was drawn") {

@@ -9,21 +9,21 @@ namespace {
 
 // Longer than that nobody waits for a device: the runtime paused, or the machine slept.
 constexpr double kMostLostPeriods = 10.0;
-constexpr double kMostStretched = 8.0;
-constexpr double kJitter = 0.01;  // of a period that is the same
+constexpr double kJitter = 0.02;  // of a period that is the same
 
 // Whether `stated` is so many times `display`, or just that.
 bool isMultiple(XrDuration stated, XrDuration display) {
     if (display <= 0) { return false; }
     const double times = static_cast<double>(stated) / static_cast<double>(display), whole = std::round(times);
-    return whole >= 1.0 && whole <= kMostStretched && std::abs(times - whole) <= kJitter * whole;
+    return whole >= 1.0 && std::abs(times - whole) <= kJitter;
 }
 
 }  // namespace
 
-void DisplayPace::begin(XrTime display_time, XrDuration stated_period) {
-    const bool is_same = isMultiple(stated_period, period_);
-    const XrDuration period = is_same ? period_ : stated_period;
+void DisplayPace::begin(XrTime display_time, XrDuration stated_period, XrDuration told_period) {
+    const bool is_known = told_period <= 0 && isMultiple(stated_period, period_);
+    const XrDuration period = is_known ? period_ : told_period > 0 ? told_period : stated_period;
+    const bool is_same = period == period_ && period > 0;
     const bool is_alike = std::exchange(says_something_, false) && is_same;
     const double step = is_alike ? static_cast<double>(display_time - last_display_time_) / static_cast<double>(period) : 1.0;
     lost_periods_ = step > 0.0 && step <= 1.0 + kMostLostPeriods ? step - 1.0 : 0.0;

@@ -9,16 +9,14 @@ namespace binosplat::xr {
 class DisplayPace {
 public:
     // Each answer of xrWaitFrame, with the period that the runtime states: it may be several of the display's where the program needs as
-    // long as that (Monado's is), and to take them for what there is would be to settle for half the rate.
-    void begin(XrTime display_time, XrDuration stated_period);
+    // long as that (Monado's is), and to take them for what there is would be to settle for half the rate. `told_period` is the display's
+    // where the runtime says it (XR_FB_display_refresh_rate), otherwise 0.
+    void begin(XrTime display_time, XrDuration stated_period, XrDuration told_period = 0);
     // Each xrEndFrame: whether the frame has something to show, and how long the program itself worked at it. One that had nothing, or
     // where the program alone needed more than the period, says nothing of the device.
     void end(bool shows, double busy_seconds);
     // The session's state changed: what comes next has nothing to do with what was.
     void interrupt() { says_something_ = false; }
-    // Another rate, or another session: the next period is the display's, whatever it was.
-    void restart() { period_ = 0; }
-
     // Of the display, in nanoseconds; what the runtime states, or the part of it that was stated before.
     [[nodiscard]] XrDuration period() const { return period_; }
 

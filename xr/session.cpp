@@ -71,7 +71,12 @@ FrameOutcome Session::beginFrame() {
     const XrFrameWaitInfo wait_info{XR_TYPE_FRAME_WAIT_INFO, nullptr};
     frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     BINOSPLAT_XR(xrWaitFrame(session_, &wait_info, &frame_state_));
-    pace_.begin(frame_state_.predictedDisplayTime, frame_state_.predictedDisplayPeriod);
+    const XrDuration stated_period = frame_state_.predictedDisplayPeriod;
+    if (std::abs(stated_period - told_for_) > stated_period / 100) {
+        told_for_ = stated_period;
+        told_period_ = askForPeriod();
+    }
+    pace_.begin(frame_state_.predictedDisplayTime, stated_period, told_period_);
     busy_from_seconds_ = threadSeconds();
     const XrFrameBeginInfo begin_info{XR_TYPE_FRAME_BEGIN_INFO, nullptr};
     {
@@ -110,6 +115,13 @@ std::vector<double> Session::refreshRates() const {
     std::vector<float> rates(count);
     if (XR_FAILED(list(session_, count, &count, rates.data()))) { return {}; }
     return {rates.begin(), rates.begin() + count};
+}
+
+XrDuration Session::askForPeriod() const {
+    if (!instance_.hasRefreshRates()) { return 0; }
+    const auto get = instance_.function<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB");
+    float rate_hz = 0.0f;
+    return XR_SUCCEEDED(get(session_, &rate_hz)) && rate_hz > 0.0f ? std::llround(1e9 / static_cast<double>(rate_hz)) : 0;
 }
 
 std::string Session::askForRate(double rate_hz) {
@@ -158,7 +170,7 @@ void Session::pollEvents() {
                 readHiddenMesh(static_cast<int>(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex));
                 break;
             case XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB:
-                pace_.restart();
+                told_for_ = 0;
                 break;
             default:  // a changed controller shows in its actions
                 break;
@@ -176,7 +188,6 @@ void Session::changeState(XrSessionState state) {
             BINOSPLAT_XR(xrBeginSession(session_, &info));
             running_ = true;
             last_display_time_ = 0;
-            pace_.restart();
             break;
         }
         case XR_SESSION_STATE_STOPPING:

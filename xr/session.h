@@ -99,6 +99,8 @@ private:
     };
     [[nodiscard]] Located locate(XrSpace space) const;
     [[nodiscard]] XrSpace makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const;
+    // The display's; 0 where the runtime does not say it.
+    [[nodiscard]] XrDuration askForPeriod() const;
     void findFloor();
     void pollEvents();
     void changeState(XrSessionState state);
@@ -115,7 +117,8 @@ private:
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
     DisplayPace pace_;
-    double busy_from_seconds_ = 0.0;  // of this thread, since the frame began
+    XrDuration told_period_ = 0, told_for_ = 0;  // what the runtime says of the display, and the stated period at which it was asked
+    double busy_from_seconds_ = 0.0;             // of this thread, since the frame began
     double asked_rate_hz_ = 0.0;
     bool running_ = false, ended_ = false;
     bool turn_settled_ = false, place_settled_ = false;

@@ -31,6 +31,9 @@ constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
 // Where displays are missed less than what was used is room; once a while has passed without a miss there is more each second.
 constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1;
 // Where the least settings miss no fewer displays than the best ones did the misses are others' doing. They are left alone for so long.
+// What paces frames may follow what they take only after some.
+constexpr std::size_t kBlameFrames = 20;
+constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
 constexpr double kSameLost = 0.25, kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
 constexpr double kScaleStep = 0.1;
 
@@ -69,7 +72,10 @@ void Governor::wish(Quality quality, const GovernedSettings& best) {
     left_.reset();
     lossless_ms_ = 0.0;
     beaten_ = false;
-    before_misses_ = {};
+    share_ = 1.0;
+    held_until_s_ = hold_s_ = 0.0;
+    is_raised_ = false;
+    before_misses_.reset();
     heeds_from_s_ = unheeded_s_ = 0.0;
     why_.clear();
     sentence_.clear();
@@ -117,20 +123,25 @@ double Governor::lostIn(std::size_t last) const {
                            [](double sum, double lost) { return sum + std::min(lost, kMostLostByOne); });
 }
 
-double Governor::meanLost(std::size_t last) const {
+double Governor::usuallyLost(std::size_t last) const {
     const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
-    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(count, 1));
+    std::vector<double> sorted(recent_lost_.end() - count, recent_lost_.end());
+    std::ranges::sort(sorted);
+    const auto usual = static_cast<std::ptrdiff_t>(sorted.size() - sorted.size() / 3);
+    return std::accumulate(sorted.begin(), sorted.begin() + usual, 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(usual, 1));
+}
+
+bool Governor::missesAtOnce() const {
+    const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
+    return recent_lost_.size() >= at_once && lostIn(at_once) >= static_cast<double>(at_once) - kLostSlack;
 }
 
 bool Governor::missesDisplays() const {
-    const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
-    return (recent_lost_.size() >= at_once && lostIn(at_once) >= static_cast<double>(at_once) - kLostSlack) ||
-           (recent_lost_.size() >= kOftenOf && lostIn(kOftenOf) >= static_cast<double>(kOftenOver) - kLostSlack);
+    return missesAtOnce() || (recent_lost_.size() >= kOftenOf && lostIn(kOftenOf) >= static_cast<double>(kOftenOver) - kLostSlack);
 }
 
 void Governor::lowerShare(double now_ms) {
     if (roomMs() < now_ms) { return; }  // it is less already
-    if (share_ >= 1.0) { before_misses_ = {current_, now_ms, meanLost(kOverAtOnce)}; }
     share_ = kLowerShare * now_ms / period_ms_;
     // As with steps upwards: what comes too early comes later the next time.
     hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestBlockSeconds) : std::max(hold_s_, kFirstBlockSeconds);
@@ -138,7 +149,8 @@ void Governor::lowerShare(double now_ms) {
 }
 
 bool Governor::missesWhateverIsDrawn() const {
-    return beaten_ && recent_lost_.size() >= kTrialFrames && meanLost(kTrialFrames) >= before_misses_.lost - kSameLost;
+    return beaten_ && before_misses_ && before_misses_->level != current_ && recent_lost_.size() >= kBlameFrames &&
+           usuallyLost(kOftenOf) >= before_misses_->lost - kSameLost;
 }
 
 void Governor::leaveMissesAlone() {
@@ -149,8 +161,16 @@ void Governor::leaveMissesAlone() {
     is_raised_ = beaten_ = false;
     downs_ = 0;
     left_.reset();
-    current_ = before_misses_.level;
-    step(current_, before_misses_.ms, "displays are missed whatever is drawn");
+    const Before before = *std::exchange(before_misses_, std::nullopt);
+    current_ = before.level;
+    step(current_, before.ms, kOthersMiss);
+}
+
+void Governor::lookAfterMisses() {
+    if (recent_lost_.back() > kLostSlack) { missed_s_ = now_s_; }
+    if (unheeded_s_ > 0.0 && now_s_ - missed_s_ > unheeded_s_) { unheeded_s_ = 0.0; }
+    if (leavesMissesAlone() && recent_lost_.size() == kWindow && lostIn(kWindow) < kLostSlack) { heeds_from_s_ = now_s_; }  // it is over
+    if (!leavesMissesAlone() && why_ == kOthersMiss) { why_.clear(); }
 }
 
 void Governor::raiseShare() {
@@ -253,13 +273,15 @@ void Governor::measure(const GovernedFrame& frame) {
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
     const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
-    const bool is_heeded = now_s_ >= heeds_from_s_;
-    if (!is_heeded && recent_lost_.size() == kWindow && lostIn(kWindow) < kLostSlack) { heeds_from_s_ = now_s_; }  // it is over
-    const bool is_over = takes_too_long || (is_heeded && missesDisplays());
+    lookAfterMisses();
+    const bool is_over = takes_too_long || (!leavesMissesAlone() && missesDisplays());
     const double now_ms = median(is_over ? at_once : kWindow);
     learn(now_ms);
     if (is_over) {
-        if (!takes_too_long) { lowerShare(now_ms); }
+        if (!takes_too_long) {
+            if (!before_misses_) { before_misses_ = {current_, now_ms, usuallyLost(missesAtOnce() ? kOverAtOnce : kOftenOf)}; }
+            lowerShare(now_ms);
+        }
         held_until_s_ = now_s_ + hold_s_;
         makeItFit(now_ms);
         if (!takes_too_long && missesWhateverIsDrawn()) { leaveMissesAlone(); }
@@ -301,6 +323,7 @@ void Governor::giveBack(double now_ms) {
     beaten_ = false;
     raiseShare();
     if (recent_ms_.size() >= kTrialFrames) { downs_ = 0; }
+    if (recent_ms_.size() >= kBlameFrames) { before_misses_.reset(); }
     const bool is_calm = now_s_ - changed_s_ >= kBetweenChangesSeconds;
     // A lossy method that turned out slower than what loses nothing is left, over the period or not.
     if (is_calm && level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving) {

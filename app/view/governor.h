@@ -66,11 +66,12 @@ private:
     void buildLadder();
     [[nodiscard]] double median(std::size_t frames) const;
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
-    // Periods lost by so many frames: all together, none with more than counts; and by each, whatever it was.
+    // Periods lost by so many frames: all together, none with more than counts; and by each of the two thirds that lost least.
     [[nodiscard]] double lostIn(std::size_t last) const;
-    [[nodiscard]] double meanLost(std::size_t last) const;
+    [[nodiscard]] double usuallyLost(std::size_t last) const;
     // Whether displays were missed, again and again, however long the device says that frames took.
     [[nodiscard]] bool missesDisplays() const;
+    [[nodiscard]] bool missesAtOnce() const;  // one after the other
     // What frames may take: the period, or as much of it as others leave.
     [[nodiscard]] double roomMs() const { return share_ * period_ms_; }
     // Displays are missed at this: there is less room than was thought.
@@ -79,6 +80,9 @@ private:
     // Whether to give up quality has gained nothing: then it is given back, and for a while misses change nothing.
     [[nodiscard]] bool missesWhateverIsDrawn() const;
     void leaveMissesAlone();
+    [[nodiscard]] bool leavesMissesAlone() const { return now_s_ < heeds_from_s_; }
+    // Whether that is over.
+    void lookAfterMisses();
     // Of a level, from what the current one costs now.
     [[nodiscard]] double expectedMs(std::size_t level, double now_ms) const;
     // The best level expected to fit into `most_ms`; the cheapest if none does.
@@ -118,8 +122,8 @@ private:
         std::size_t level = 0;
         double ms = 0.0, lost = 0.0;  // of a frame
     };
-    Before before_misses_;                          // and before anything was given up for them
-    double heeds_from_s_ = 0.0, unheeded_s_ = 0.0;  // when misses count again, and how long they did not
+    std::optional<Before> before_misses_;                            // and before anything was given up for them
+    double missed_s_ = 0.0, heeds_from_s_ = 0.0, unheeded_s_ = 0.0;  // the last one; when they count again, and how long they did not
 };
 
 }  // namespace binosplat

@@ -119,7 +119,8 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         owner.frames.waited = frame.display_time;
         owner.frames.should_render = is_visible && state.should_render;
         output.predictedDisplayTime = frame.display_time;
-        output.predictedDisplayPeriod = simulation.clock.period() * (simulation.script.stretches_period ? 1 + missed : 1);
+        output.predictedDisplayPeriod =
+            simulation.clock.period() * (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);
         output.shouldRender = owner.frames.should_render;
         if (!simulation.clock.isReal()) frame.wake_time = {};
         return successOf(owner);
