@@ -85,9 +85,16 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
     commands.beginPass(role + "1_cull");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
     commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass), {scene.splatShape()}),
-                          gpu::CullPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,
-                                        scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(eyes.first),
-                                        static_cast<gpu::uint>(eyes.count), buffers.visible.capacity()},
+                          gpu::CullPass{.chunks = scene.chunks(),
+                                        .eyes = buffers.eyes(),
+                                        .visible_bits = buffers.visibleBits(),
+                                        .group_counts = buffers.groupCounts(),
+                                        .visible = visible,
+                                        .splat_count = scene.splatCount(),
+                                        .chunk_bits = scene.chunkBits(),
+                                        .first_eye = static_cast<gpu::uint>(eyes.first),
+                                        .eye_count = static_cast<gpu::uint>(eyes.count),
+                                        .capacity = buffers.visible.capacity()},
                           scene.splatCount(), gpu::kCullBlock);
     recordOrder(commands, scene, buffers, eyes, role);
 }
@@ -97,9 +104,17 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
     commands.beginPass(role + "2_compact");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
     commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass), {eyes.middle ? 1u : 0u}),
-                          gpu::CompactPass{scene.chunks(), buffers.eyes(), buffers.visibleBits(), buffers.groupCounts(), visible,
-                                           buffers.visible.order().keys, buffers.visible.order().values, scene.splatCount(),
-                                           scene.chunkBits(), static_cast<gpu::uint>(eyes.order_eye), eyes.middle.value_or(gpu::Place{})},
+                          gpu::CompactPass{.chunks = scene.chunks(),
+                                           .eyes = buffers.eyes(),
+                                           .visible_bits = buffers.visibleBits(),
+                                           .group_offsets = buffers.groupCounts(),
+                                           .visible = visible,
+                                           .keys = buffers.visible.order().keys,
+                                           .splats = buffers.visible.order().values,
+                                           .splat_count = scene.splatCount(),
+                                           .chunk_bits = scene.chunkBits(),
+                                           .order_eye = static_cast<gpu::uint>(eyes.order_eye),
+                                           .middle = eyes.middle.value_or(gpu::Place{})},
                           scene.splatCount(), gpu::kCullBlock);
     commands.beginPass(role + "3_sort_depth");
     // Four rounds: the result is where the input was.
@@ -113,82 +128,118 @@ const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool mas
                          scene.splatShape(), gpu::kCellsPerTile * threads_per_cell_});
 }
 
+// One eye's part of a recording: passes 4 to 7.
+struct Passes::EyePart {
+    Commands& commands;
+    const GpuScene& scene;
+    const FrameBuffers& buffers;
+    const EyeTarget& target;
+    TileMask tiles;  // those that are rendered
+    bool lists_tiles;
+    const std::string& role;
+
+    [[nodiscard]] gpu::uint eye() const { return static_cast<gpu::uint>(target.eye); }
+    [[nodiscard]] std::uint32_t masked() const { return tiles.mask.value != 0 ? 1 : 0; }
+    // Where the lists' states lie in the frame's.
+    [[nodiscard]] std::uint64_t visibleList() const {
+        return lists_tiles ? offsetof(FrameState, masked_visible) : FrameBuffers::visibleList(target.list);
+    }
+    [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::pairList(target.eye); }
+    [[nodiscard]] auto visible() const { return buffers.state.address<gpu::ListState>(visibleList()); }
+    [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(pairList()); }
+    [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(offsetof(FrameState, counters)).at(eye()); }
+    [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
+    [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
+};
+
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                        const std::string& role) {
-    record(commands, scene, buffers, target, nullptr, role);
+    record({commands, scene, buffers, target, {target.shown, {}}, false, role});
 }
 
 void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                          const TileMask& mask, const std::string& role) {
-    record(commands, scene, buffers, target, &mask, role);
+    record({commands, scene, buffers, target, mask, true, role});
 }
 
-void Passes::record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
-                    const std::string& role) {
-    const auto eye = static_cast<gpu::uint>(target.eye);
-    const std::uint64_t visible_list = mask != nullptr ? offsetof(FrameState, masked_visible) : FrameBuffers::visibleList(target.list);
-    const std::uint64_t pair_list = FrameBuffers::pairList(target.eye);
-    const auto visible = buffers.state.address<gpu::ListState>(visible_list);
-    const auto pairs = buffers.state.address<gpu::ListState>(pair_list);
-    const auto counters = buffers.state.address<gpu::EyeCounters>(offsetof(FrameState, counters)).at(eye);
-    const auto per_visible = visible_list + offsetof(gpu::ListState, per_block);
-    const auto per_pair = pair_list + offsetof(gpu::ListState, per_item);
-    const auto scratch = buffers.scratch.address<gpu::uint>();
-    const TileMask tiles = mask != nullptr ? *mask : TileMask{target.shown, {}};
+void Passes::record(const EyePart& part) {
+    part.commands.beginPass(part.role + "4_project");
+    recordProjected(part);
+    part.commands.beginPass(part.role + "5_bin");
+    recordBinned(part);
+    part.commands.beginPass(part.role + "6_sort_tiles");
+    const KeyValues sorted = sort().record(part.commands, part.target.pairs.pairs, part.target.pairs.spare, part.scratch(),
+                                           part.buffers.state, part.pairList(), tileBits(part.target.size_tiles));
+    part.commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)),
+                                   gpu::TileRangesPass{.tiles = sorted.keys, .pairs = part.pairs(), .ranges = part.ranges()},
+                                   part.buffers.state, part.pairList() + offsetof(gpu::ListState, per_item));
+    part.commands.beginPass(part.role + "7_rasterize");
+    recordRasterized(part, sorted);
+}
 
-    commands.beginPass(role + "4_project");
-    const std::uint32_t masked = tiles.mask.value != 0 ? 1 : 0;
-    commands.dispatchIndirect(
-        kernels_.get("4_project", sizeof(gpu::ProjectPass), {static_cast<std::uint32_t>(scene.shDegree()), masked, scene.splatKind()}),
-        gpu::ProjectPass{scene.chunks(), buffers.eyes(), buffers.visible.order().values, visible, buffers.visible.splats(),
-                         buffers.visible.tileSets(), buffers.visible.tileCounts(), scratch, pairs, counters, tiles.mask, scene.chunkBits(),
-                         eye, target.pairs.capacity},
-        buffers.state, per_visible);
-    commands.beginPass(role + "5_bin");
-    const KeyValues& unsorted = target.pairs.pairs;
-    const auto ranges = buffers.tile_ranges.address<gpu::uvec2>();
-    const gpu::BinPass bin{buffers.visible.splats(),
-                           buffers.visible.tileSets(),
-                           buffers.visible.tileCounts(),
-                           scratch,
-                           visible,
-                           pairs,
-                           unsorted.keys,
-                           unsorted.values,
-                           target.pairs.spare.keys,
-                           target.pairs.spare.values,
-                           counters,
-                           tiles.mask,
-                           ranges,
-                           target.size_tiles};
-    commands.dispatchIndirect(kernels_.get("5_bin", sizeof(gpu::BinPass)), bin, buffers.state, per_visible);
-    commands.dispatch(kernels_.get("5_bin_large", sizeof(gpu::BinPass), {masked, scene.splatShape()}), bin, gpu::kBinLargeGroups);
-    commands.beginPass(role + "6_sort_tiles");
-    const KeyValues sorted =
-        sort().record(commands, unsorted, target.pairs.spare, scratch, buffers.state, pair_list, tileBits(target.size_tiles));
-    commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)), gpu::TileRangesPass{sorted.keys, pairs, ranges},
-                              buffers.state, per_pair);
-    commands.beginPass(role + "7_rasterize");
-    const gpu::RasterizePass rasterize{.eyes = buffers.eyes(),
-                                       .splats = buffers.visible.splats(),
+void Passes::recordProjected(const EyePart& part) {
+    const gpu::ProjectPass project{.chunks = part.scene.chunks(),
+                                   .eyes = part.buffers.eyes(),
+                                   .order = part.buffers.visible.order().values,
+                                   .visible = part.visible(),
+                                   .splats = part.buffers.visible.splats(),
+                                   .tile_sets = part.buffers.visible.tileSets(),
+                                   .tile_counts = part.buffers.visible.tileCounts(),
+                                   .group_sums = part.scratch(),
+                                   .pairs = part.pairs(),
+                                   .counters = part.counters(),
+                                   .tile_mask = part.tiles.mask,
+                                   .chunk_bits = part.scene.chunkBits(),
+                                   .eye = part.eye(),
+                                   .capacity = part.target.pairs.capacity};
+    part.commands.dispatchIndirect(kernels_.get("4_project", sizeof(project),
+                                                {static_cast<std::uint32_t>(part.scene.shDegree()), part.masked(), part.scene.splatKind()}),
+                                   project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
+}
+
+void Passes::recordBinned(const EyePart& part) {
+    const gpu::BinPass bin{.splats = part.buffers.visible.splats(),
+                           .tile_sets = part.buffers.visible.tileSets(),
+                           .tile_counts = part.buffers.visible.tileCounts(),
+                           .group_sums = part.scratch(),
+                           .visible = part.visible(),
+                           .pairs = part.pairs(),
+                           .tiles = part.target.pairs.pairs.keys,
+                           .ranks = part.target.pairs.pairs.values,
+                           .large_splats = part.target.pairs.spare.keys,
+                           .large_begins = part.target.pairs.spare.values,
+                           .counters = part.counters(),
+                           .tile_mask = part.tiles.mask,
+                           .ranges = part.ranges(),
+                           .size_tiles = part.target.size_tiles};
+    part.commands.dispatchIndirect(kernels_.get("5_bin", sizeof(bin)), bin, part.buffers.state,
+                                   part.visibleList() + offsetof(gpu::ListState, per_block));
+    part.commands.dispatch(kernels_.get("5_bin_large", sizeof(bin), {part.masked(), part.scene.splatShape()}), bin, gpu::kBinLargeGroups);
+}
+
+void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
+    const EyeTarget& target = part.target;
+    const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
+                                       .splats = part.buffers.visible.splats(),
                                        .ranks = sorted.values,
-                                       .ranges = ranges,
+                                       .ranges = part.ranges(),
                                        .colours = target.image->colours.address<gpu::vec4>(),
                                        .half_colours = target.image->colours.address<gpu::uvec2>(),
                                        .depths = target.image->depths.address<float>(),
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,
-                                       .tile_list = tiles.list,
-                                       .masked_tiles = buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                       .tile_list = part.tiles.list,
+                                       .masked_tiles = part.buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
                                        .background = target.background,
-                                       .eye = eye,
+                                       .eye = part.eye(),
                                        .row_words = target.row_words};
-    if (mask == nullptr) {  // hidden tiles have no pairs, and so become background
-        commands.dispatch(rasterizeKernel(scene, target.kept, false), rasterize, target.size_tiles.x, target.size_tiles.y);
-    } else {
-        commands.dispatchIndirect(rasterizeKernel(scene, target.kept, true), rasterize, buffers.state,
-                                  offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
+    const Kernel& kernel = rasterizeKernel(part.scene, target.kept, part.lists_tiles);
+    if (part.lists_tiles) {
+        part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,
+                                       offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
+    } else {  // hidden tiles have no pairs, and so become background
+        part.commands.dispatch(kernel, rasterize, target.size_tiles.x, target.size_tiles.y);
     }
 }
 

@@ -89,8 +89,11 @@ public:
                      const std::string& role);
 
 private:
-    void record(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask* mask,
-                const std::string& role);
+    struct EyePart;
+    void record(const EyePart& part);
+    void recordProjected(const EyePart& part);
+    void recordBinned(const EyePart& part);
+    void recordRasterized(const EyePart& part, const KeyValues& sorted);
     const Kernel& rasterizeKernel(const GpuScene& scene, Kept kept, bool masked);
     const Sort& sort();
 

@@ -58,10 +58,22 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
-        commands.dispatchIndirect(count_, gpu::SortCountPass{in.keys, counts, digit_begins, list, shift, digits}, lists, groups);
         commands.dispatchIndirect(
-            scatter_, gpu::SortScatterPass{in.keys, in.values, spare.keys, spare.values, counts, digit_begins, list, shift, digits}, lists,
-            groups);
+            count_,
+            gpu::SortCountPass{
+                .keys = in.keys, .histograms = counts, .digit_begins = digit_begins, .list = list, .shift = shift, .digits = digits},
+            lists, groups);
+        commands.dispatchIndirect(scatter_,
+                                  gpu::SortScatterPass{.keys_in = in.keys,
+                                                       .values_in = in.values,
+                                                       .keys_out = spare.keys,
+                                                       .values_out = spare.values,
+                                                       .histograms = counts,
+                                                       .digit_begins = digit_begins,
+                                                       .list = list,
+                                                       .shift = shift,
+                                                       .digits = digits},
+                                  lists, groups);
         std::swap(in, spare);
         shift += bits;
     }
