@@ -356,7 +356,7 @@ TEST_CASE("methodsSweepTheirSettings") {
     CHECK(viewsOf(plan, "builtin:fence", options.run).at(0).views.at(0).name.empty());
 }
 
-TEST_CASE("aSizeOfTheCommandLineTakesThePlaceOfThoseOfASeries") {
+TEST_CASE("sizeAndRepeatsOfTheCommandLineTakeThePlaceOfTheConfigs") {
     const Workplace work;
     const std::string config = (work.path / "a.toml").string();
     writeText(config, "[bench]\nscenes = [\"builtin:fence\"]\n[[series]]\nname = \"a\"\nsizes = [\"64x48\", \"128x96\"]\n");
@@ -366,6 +366,9 @@ TEST_CASE("aSizeOfTheCommandLineTakesThePlaceOfThoseOfASeries") {
     };
     CHECK(sizesOf({}) == std::vector{glm::uvec2(64, 48), glm::uvec2(128, 96)});
     CHECK(sizesOf({"--size", "32x16"}) == std::vector{glm::uvec2(32, 16)});
+    writeText(config, "[bench]\nscenes = [\"builtin:fence\"]\nrepeats = 7\n");
+    CHECK(planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", config})).repeats == 7);
+    CHECK(planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", config, "--repeats", "3"})).repeats == 3);
 }
 
 TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralWays") {

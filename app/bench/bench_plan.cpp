@@ -142,6 +142,7 @@ BenchPlan planBench(const BenchOptions& options) {
     if (plan.scenes.empty()) {
         throw Error(ExitCode::kUsage, "SCENE is required: on the command line or as `scenes` in the config's [bench]");
     }
+    if (options.repeats > 0) { plan.repeats = options.repeats; }
     if (plan.series.empty()) { plan.series.push_back({"frame", {0}, {default_size_px}}); }
     if (const std::string weights = lpipsWeights(bench, options); !weights.empty()) {
         plan.lpips.emplace(weights);

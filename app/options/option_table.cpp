@@ -153,6 +153,8 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
          field::flag<&BenchOptions::orders>()},
         {{"every", "", kBench, "N", "only every Nth pose of --motion or camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
+        {{"repeats", "", kBench, "N", "frames of each method that count", "5, or what the config says"},
+         noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
         {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
          field::text<&BenchOptions::lpips_weights>()},
     };
