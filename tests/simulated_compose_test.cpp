@@ -377,6 +377,23 @@ TEST_CASE("picturesInFilesComeBackAndTheFilesAreTheSameEveryTime") {
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("aPictureIsNotWrittenThroughALinkThatWaitsWhereItsUnfinishedFileWillBe") {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("binosplat_planted_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder / ".c.unfinished.png" / "somebody's");
+    std::ofstream(folder / "victim") << "keep me";
+    for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder / name); }
+    const RgbPicture picture{{1, 1}, {1, 2, 3}};
+    writePng(folder / "a.png", picture);
+    writePng(folder / "b.png", picture);
+    CHECK(readPng(folder / "a.png") == picture);
+    CHECK(readPng(folder / "b.png") == picture);
+    CHECK(std::filesystem::file_size(folder / "victim") == 7);
+    CHECK_THROWS_WITH_AS(writePng(folder / "c.png", picture), (folder / "c.png: cannot be written (File exists)").c_str(),
+                         std::runtime_error);
+    CHECK(std::filesystem::exists(folder / ".c.unfinished.png" / "somebody's"));
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("aCylindersPictureLiesOnItsArcAboutTheMiddle") {
     // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.
     Canvas canvas({2, 1}, {255, 0, 0, 255});

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -40,13 +43,19 @@ void writePng(const fs::path& path, const RgbPicture& picture) {
     // Fast to pack: a run writes many.
     image.flags = PNG_IMAGE_FLAG_FAST;
     std::error_code error;
+    fs::remove(unfinished, error);
+    // Exclusively: what lies or links there by now is somebody else's.
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(unfinished.c_str(), "wbx"), &std::fclose);
+    if (file == nullptr) { refuse(path, "written", std::strerror(errno)); }
     std::string reason;
-    if (png_image_write_to_file(&image, unfinished.c_str(), 0, picture.bytes.data(), 0, nullptr) != 0) {
+    if (png_image_write_to_stdio(&image, file.get(), 0, picture.bytes.data(), 0, nullptr) == 0) {
+        reason = image.message;
+    } else if (std::fclose(file.release()) != 0) {
+        reason = std::strerror(errno);
+    } else {
         fs::rename(unfinished, path, error);
         if (!error) { return; }
         reason = error.message();
-    } else {
-        reason = image.message;
     }
     fs::remove(unfinished, error);
     refuse(path, "written", reason);
