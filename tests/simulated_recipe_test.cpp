@@ -72,6 +72,7 @@ const fs::path& installedManifest() {
 // hello_xr ends at the first key: its input stays open and silent.
 Run runHello(const std::string& name, const std::string& script) {
     std::ofstream(kWork / (name + ".script")) << script;
+    fs::remove_all(kWork / name);
     const std::string keys = (kWork / "keys").string();
     return shell("rm -f " + keys + " && mkfifo " + keys +
                  " && env -u BINOSPLAT_SIMULATED_SCRIPT -u BINOSPLAT_SIMULATED_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
@@ -120,7 +121,11 @@ TEST_CASE("a foreign program runs by the page's script, is seen, and runs the sa
     CHECK(frames.at(90)["session_state"] == "FOCUSED");
     CHECK(frames.at(90)["layers"].at(0)["type"] == "projection");
     CHECK(frames.at(90)["head"]["position"][0].get<double>() == doctest::Approx(0.5));
-    CHECK(fs::exists(kWork / "first/frame_000030.png"));
+    for (const nlohmann::json& frame : frames) {
+        if (frame.contains("picture")) CHECK_MESSAGE(fs::exists(kWork / "first" / frame["picture"]), frame["picture"]);
+    }
+    CHECK(frames.at(30)["picture"] == "frame_000030.png");
+    CHECK_FALSE(frames.at(31).contains("picture"));
 
     REQUIRE(runHello("second", script).exit_code == 0);
     const Run same = compareRuns("first", "second", "--tolerance 0 --pictures 0");

@@ -154,7 +154,8 @@ def main():
     parser.add_argument("expected", type=pathlib.Path)
     parser.add_argument("actual", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-5, help="by which numbers may be off (default 1e-5)")
-    parser.add_argument("--ignore", action="append", default=["swapchain"], metavar="KEY", help="a key that does not count, such as events")
+    parser.add_argument("--ignore", action="append", default=["swapchain", "picture"], metavar="KEY",
+                        help="a key that does not count, such as events (swapchain and picture never do)")
     parser.add_argument("--pictures", type=int, metavar="STEPS", help="compare the pictures, too; each channel may be off by STEPS of 255")
     parser.add_argument("--share", type=float, default=0.0, help="of a picture's pixels that may be off by more (default 0)")
     options = parser.parse_args()
