@@ -99,13 +99,16 @@ TEST_CASE("the folder builds alone and installs a library that its manifest find
     const Run needs = shell("ldd " + library.string());
     CHECK(contains(needs, "libpng"));
     for (const char* other : {"OpenImageIO", "fmt", "vulkan", "openxr", "not found"}) CHECK_MESSAGE(!contains(needs, other), needs.output);
-    for (const fs::directory_entry& file : fs::directory_iterator(kWork / "source")) {
+    std::size_t includes = 0;
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(kWork / "source")) {
         std::ifstream stream(file.path());
         for (std::string line; std::getline(stream, line);) {
-            if (line.starts_with("#include \"") && !line.starts_with("#include \"xr/simulated/"))
-                FAIL_CHECK(file.path().string(), ": ", line);
+            if (!line.starts_with("#include \"")) continue;
+            CHECK_MESSAGE(line.starts_with("#include \"xr/simulated/"), file.path().string(), ": ", line);
+            ++includes;
         }
     }
+    CHECK(includes > 100);
 }
 
 TEST_CASE("a foreign program runs by the page's script, is seen, and runs the same again") {
@@ -201,4 +204,24 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     CHECK(broken.exit_code == 2);
     CHECK(contains(broken, "d/frames.jsonl:1: not a line of JSON"));
     CHECK(compareRuns("a", "nowhere").exit_code == 2);
+    for (const char* no_frame : {"7", "[{}]", "null", "\"x\""}) {
+        write("d", std::string("{}\n") + no_frame + "\n", 100);
+        const Run run = compareRuns("a", "d");
+        CHECK(run.exit_code == 2);
+        CHECK(contains(run, "d/frames.jsonl:2: not a frame, must be an object of JSON"));
+    }
+    // A picture that ends in its signature, in its header, before and within its pixels.
+    write("d", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n", 100);
+    CHECK(compareRuns("a", "d", "--pictures 0").exit_code == 0);
+    const fs::path picture = kWork / "d/frame_000000.png";
+    const std::uintmax_t behind_pixels = 16;
+    for (const std::uintmax_t size :
+         {std::uintmax_t{0}, std::uintmax_t{7}, std::uintmax_t{20}, std::uintmax_t{33}, fs::file_size(picture) - behind_pixels - 1}) {
+        write("d", "{}\n", 100);
+        fs::resize_file(picture, size);
+        const Run run = compareRuns("a", "d", "--pictures 0");
+        CAPTURE(size);
+        CHECK(run.exit_code == 2);
+        CHECK_MESSAGE(run.output.starts_with("compare_frame_logs: " + picture.string() + ": "), run.output);
+    }
 }
