@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,7 @@ TEST_CASE("the folder builds alone and installs a library that its manifest find
     CHECK(manifest["runtime"]["name"] == "Simulated OpenXR runtime");
     const fs::path library = installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
     CHECK(fs::exists(library));
+    CHECK(fs::exists(kWork / "installed/share/doc/simulated_openxr_runtime/LICENSE"));
     // Of what is not in every Debian it needs libpng alone.
     const Run needs = shell("ldd " + library.string());
     CHECK(contains(needs, "libpng"));
@@ -169,6 +171,60 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
     CHECK(contains(tests, "100% tests passed, 0 tests failed out of 2"));
     const Run python = shell(environment + "python3 test_it.py");
     CHECK_MESSAGE(python.exit_code == 0, python.output);
+}
+
+TEST_CASE("the page's recipe for GitHub Actions does as it stands there") {
+    if (!isInstalled("hello_xr")) return;
+    REQUIRE(fs::exists(installedManifest()));
+    // A project with a copy of the folder, already built, and hello_xr as the program to be tested.
+    const fs::path workspace = kWork / "actions";
+    fs::remove_all(workspace);
+    fs::create_directories(workspace);
+    fs::create_directory_symlink(kWork / "source", workspace / "simulated");
+    fs::create_directory_symlink(kWork / "build", workspace / "runtime");
+    std::ofstream(workspace / "walk.script") << blockWith("press right trigger 0.5 0.7");
+    std::ofstream(workspace / "program") << "#!/bin/sh\nrm -f keys && mkfifo keys && exec hello_xr -g Vulkan2 0<>keys\n";
+    std::ofstream(workspace / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\n"
+                                                   "file(COPY_FILE program ${CMAKE_BINARY_DIR}/my_program)\n"
+                                                   "file(CHMOD ${CMAKE_BINARY_DIR}/my_program PERMISSIONS OWNER_ALL)\n";
+    std::istringstream lines(blockWith("runs-on: "));
+    std::string commands, environment, packages;
+    const auto after = [](const std::string& line, const char* mark) {
+        const std::size_t place = line.find(mark);
+        return place == std::string::npos ? std::string() : line.substr(place + std::string(mark).size());
+    };
+    for (std::string line; std::getline(lines, line);) {
+        const std::string command = after(line, "- run: ");
+        // The step that needs root is the one of "Build it".
+        if (command.find("sudo ") != std::string::npos)
+            packages = after(command, "apt-get install -y ");
+        else if (!command.empty())
+            commands += command + "\n";
+        const bool is_variable = line.find("XR_RUNTIME_JSON: ") != std::string::npos || line.find("SIMULATED_OPENXR_") != std::string::npos;
+        if (!is_variable) continue;
+        const std::size_t place = line.find(": ");
+        std::string value = line.substr(place + 2);
+        const std::string mark = "${{ github.workspace }}";
+        if (value.starts_with(mark)) value.replace(0, mark.size(), workspace.string());
+        environment += "export " + line.substr(line.find_first_not_of(' '), place - line.find_first_not_of(' ')) + "='" + value + "'\n";
+    }
+    CHECK(!packages.empty());
+    CHECK(pageText().find("\nsudo apt-get install " + packages + "\n") != std::string::npos);
+    const Run run = shell("cd " + workspace.string() + " && unset BINOSPLAT_SIMULATED_SCRIPT BINOSPLAT_SIMULATED_OUT\n" + environment +
+                          "set -ex\n" + commands);
+    CHECK_MESSAGE(run.exit_code == 0, run.output);
+    CHECK(contains(run, "+ ./build/my_program"));
+    CHECK(fs::exists(workspace / "headset/share/openxr/1/simulated_openxr_runtime.json"));
+    CHECK(fs::exists(workspace / "out/frame_000030.png"));
+}
+
+TEST_CASE("the page says where things are installed") {
+    REQUIRE(fs::exists(installedManifest()));
+    for (const char* file :
+         {"lib/libsimulated_openxr_runtime.so", "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
+        CHECK_MESSAGE(pageText().find("`" + std::string(file) + "`") != std::string::npos, file);
+        CHECK_MESSAGE(fs::exists(kWork / "installed" / file), file);
+    }
 }
 
 TEST_CASE("the tool that compares logs says what differs, within what it was told") {
