@@ -24,7 +24,9 @@ std::string textOf(const fs::path& file) {
 
 std::vector<fs::path> documents() {
     std::vector<fs::path> files;
-    for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "third_party/NOTICES.md"}) { files.push_back(kSource / name); }
+    for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "third_party/NOTICES.md", "xr/simulated/README.md"}) {
+        files.push_back(kSource / name);
+    }
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / "docs")) {
         if (entry.path().extension() == ".md") { files.push_back(entry.path()); }
     }
@@ -111,4 +113,9 @@ TEST_CASE("files of the source tree that the documents name exist") {
         }
     }
     CHECK(files > 20);
+}
+
+TEST_CASE("the simulated runtime's folder has the same licence") {
+    REQUIRE(!textOf(kSource / "LICENSE").empty());
+    CHECK(textOf(kSource / "xr" / "simulated" / "LICENSE") == textOf(kSource / "LICENSE"));
 }

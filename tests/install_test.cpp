@@ -54,6 +54,14 @@ TEST_CASE("an installed viewer runs on the installed simulated runtime") {
     const Outcome without = work.runCommand(view);
     CHECK(without.exit_code == (fs::exists("/usr/share/openxr/1/binosplat_simulated_runtime.json") ? 0 : 3));
     REQUIRE(install(work, prefix, "runtime").exit_code == 0);
+    // Other people's programs load the library: it brings what it can.
+    const Outcome needs = work.runCommand("ldd \"$(find '" + prefix.string() + "' -name 'libbinosplat_simulated_runtime.so')\"");
+    CHECK(needs.output.find("libpng") != std::string::npos);
+    CHECK_MESSAGE(needs.output.find("libfmt") == std::string::npos, needs.output);
+    for (const char* page : {"LICENSE", "copyright", "NOTICES.md", "openxr_runtime.md", "openxr_conformance.md", "simulated_script.md",
+                             "test_your_openxr_program.md"}) {
+        CHECK_MESSAGE(fs::exists(prefix / "share" / "doc" / "binosplat-simulated-runtime" / page), page);
+    }
     const Outcome shown = work.runCommand(view);
     INFO(shown.errors);
     CHECK(shown.exit_code == 0);

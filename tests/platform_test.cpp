@@ -191,15 +191,16 @@ TEST_CASE("settings, headsets, cameras, head motion and pictures are files of a 
     fs::create_directory(work.path / "folder");
     write(work.path / "long", "");
     fs::resize_file(work.path / "long", std::uintmax_t{100} << 20);
-    const std::array<std::function<void(const fs::path&)>, 4> readers{
-        [](const fs::path& path) { (void)readSettingsFile(path); }, [](const fs::path& path) { (void)readHeadset(path); },
-        [](const fs::path& path) { (void)readCameraFile(path); },
-        [](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }};
-    for (const auto& read : readers) {
+    const std::array<std::pair<std::function<void(const fs::path&)>, const char*>, 4> readers{
+        std::pair([](const fs::path& path) { (void)readSettingsFile(path); }, "longer than 4 MiB"),
+        std::pair([](const fs::path& path) { (void)readHeadset(path); }, "longer than 4 MiB"),
+        std::pair([](const fs::path& path) { (void)readCameraFile(path); }, "longer than 16 MiB"),
+        std::pair([](const fs::path& path) { (void)readHeadMotion(path, MotionAxes::kOpenXr); }, "longer than 16 MiB")};
+    for (const auto& [read, too_long] : readers) {
         for (const auto& [name, reason] : {std::pair("pipe", "not a regular file"), std::pair("folder", "is a directory"),
-                                           std::pair("long", "longer than 16 MiB"), std::pair("none", "No such file or directory")}) {
+                                           std::pair("long", too_long), std::pair("none", "No such file or directory")}) {
             const fs::path path = work.path / name;
-            const std::string error = errorOf([&] { read(path); });
+            const std::string error = errorOf([&, &read = read] { read(path); });
             CHECK(error.starts_with(fmt::format("{}: cannot be read ({}), must be a", path.string(), reason)));
             CHECK(error.find('\n') == std::string::npos);
         }
@@ -218,7 +219,8 @@ TEST_CASE("a text file of the most bytes is read, one more is too many") {
     write(path, std::string(kMostTextBytes, 'a'));
     CHECK(readTextFile(path, "a text").size() == kMostTextBytes);
     std::ofstream(path, std::ios::app) << 'b';
-    CHECK(errorOf([&] { (void)readTextFile(path, "a text"); }) == path.string() + ": cannot be read (longer than 16 MiB), must be a text");
+    CHECK(errorOf([&] { (void)readTextFile(path, "a text"); }) == path.string() + ": cannot be read (longer than 4 MiB), must be a text");
+    CHECK(readTextFile(path, "a text", kMostRecordingBytes).size() == kMostTextBytes + 1);
     write(path, "");
     CHECK(readTextFile(path, "a text").empty());
 }

@@ -377,6 +377,24 @@ TEST_CASE("picturesInFilesComeBackAndTheFilesAreTheSameEveryTime") {
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("aPictureIsNotWrittenThroughALinkOrOverAnUnfinishedOne") {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("binosplat_planted_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "victim") << "keep me";
+    for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder / name); }
+    std::ofstream(unfinishedPicture(folder / "c.png")) << "keep me";
+    const RgbPicture picture{{1, 1}, {1, 2, 3}};
+    for (const char* name : {"a.png", "c.png"}) {
+        CHECK_THROWS_WITH_AS(writePng(folder / name, picture), ((folder / name).string() + ": cannot be written (File exists)").c_str(),
+                             std::runtime_error);
+    }
+    writePng(folder / "b.png", picture);
+    CHECK(readPng(folder / "b.png") == picture);
+    CHECK(std::filesystem::file_size(folder / "victim") == 7);
+    CHECK(std::filesystem::file_size(unfinishedPicture(folder / "c.png")) == 7);
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("aCylindersPictureLiesOnItsArcAboutTheMiddle") {
     // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.
     Canvas canvas({2, 1}, {255, 0, 0, 255});

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 using namespace simulated;
 using Json = nlohmann::json;
@@ -88,48 +90,128 @@ TEST_CASE("namesThatAreNoUtf8DoNotStopTheLog") {
     CHECK(Json::parse(frameLine(record))["events"].size() == 1);
 }
 
+TEST_CASE("aFrameThatHasAPictureNamesIt") {
+    FrameRecord record = someRecord();
+    CHECK_FALSE(Json::parse(frameLine(record)).contains("picture"));
+    record.picture = pictureName(12);
+    CHECK(Json::parse(frameLine(record))["picture"] == "frame_000012.png");
+    CHECK(pictureName(1234567) == "frame_1234567.png");
+}
+
 TEST_CASE("linesAreThereBeforeTheLogIsClosed") {
     const std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_log_" + std::to_string(::getpid()) + ".jsonl");
     FrameLog log(path);
     log.write(someRecord());
     log.write(someRecord());
     CHECK(std::filesystem::file_size(path) == 2 * (frameLine(someRecord()).size() + 1));
-    std::filesystem::remove(path);
     CHECK_THROWS_AS(FrameLog(path / "none" / "a.jsonl"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(FrameLog(path).write(someRecord()), (path.string() + ": cannot be made (File exists)").c_str(),
+                         std::runtime_error);
+    CHECK(std::filesystem::file_size(path) > 0);
+    std::filesystem::remove(path);
 }
 
-TEST_CASE("aFolderIsEmptiedOfAnEarlierRunsPicturesAndOfNothingElse") {
-    namespace fs = std::filesystem;
-    const fs::path folder = fs::temp_directory_path() / ("binosplat_old_output_" + std::to_string(::getpid()));
-    const auto fill = [&](const std::string& log) {
-        fs::remove_all(folder);
-        fs::create_directories(folder / "frame_000009.png");
-        for (const char* name : {"frame_000000.png", "frame_1234567.png", ".frame_000001.unfinished.png", "frame_12.png",
-                                 "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png", "notes.txt"}) {
-            std::ofstream(folder / name) << "x";
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder that an earlier run wrote to, among others.
+struct UsedFolder {
+    fs::path path = fs::temp_directory_path() / ("binosplat_old_output_" + std::to_string(::getpid()));
+
+    explicit UsedFolder(const std::set<std::string>& names) {
+        fs::create_directories(path);
+        for (const std::string& name : names) { std::ofstream(path / name) << "x"; }
+    }
+    ~UsedFolder() { fs::remove_all(path); }
+    UsedFolder(const UsedFolder&) = delete;
+    UsedFolder& operator=(const UsedFolder&) = delete;
+
+    void log(const std::vector<std::string>& pictures) const {
+        FrameRecord record = someRecord();
+        record.frame = 0;
+        std::ofstream stream(path / kLogName);
+        for (const std::string& picture : pictures) {
+            record.picture = picture;
+            stream << frameLine(record) << "\n";
         }
-        std::ofstream(folder / "elsewhere") << "x";
-        fs::create_symlink("elsewhere", folder / "frame_000002.png");
-        std::ofstream(folder / "frames.jsonl") << log;
-        removeOldOutput(folder);
-        std::set<std::string> left;
-        for (const auto& entry : fs::directory_iterator(folder)) { left.insert(entry.path().filename().string()); }
-        return left;
-    };
-    FrameRecord first = someRecord();
-    first.frame = 0;
-    const std::set<std::string> all = fill("somebody else's log\n");
-    CHECK(all.size() == 12);
-    std::set<std::string> kept = all;
-    for (const char* ours : {"frame_000000.png", "frame_1234567.png", ".frame_000001.unfinished.png"}) { kept.erase(ours); }
-    CHECK(fill(frameLine(first) + "\n") == kept);
-    // A log that goes elsewhere is not this folder's.
-    fs::remove(folder / "frames.jsonl");
-    std::ofstream(folder / "log") << frameLine(first) << "\n";
-    fs::create_symlink("log", folder / "frames.jsonl");
-    std::ofstream(folder / "frame_000000.png") << "x";
-    removeOldOutput(folder);
-    CHECK(fs::exists(folder / "frame_000000.png"));
-    removeOldOutput(folder / "nowhere");
-    fs::remove_all(folder);
+    }
+    [[nodiscard]] std::set<std::string> names() const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::directory_iterator(path)) { names.insert(entry.path().filename().string()); }
+        return names;
+    }
+    void checkRefuses(const std::string& name, const FrameChoice& frames = {}) const {
+        const std::set<std::string> before = names();
+        CHECK_THROWS_WITH_AS(removeOldOutput(path, true, frames),
+                             ((path / name).string() + ": not what an earlier run left here, must be moved elsewhere").c_str(),
+                             std::runtime_error);
+        CHECK(names() == before);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("aFolderIsEmptiedOfWhatAnEarlierRunsLogNamesAndOfNothingElse") {
+    const std::set<std::string> others{"frame_12.png",      "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png",
+                                       "frame_0000007.png", "notes.txt",        "frame_000001.png", ".frame_000005.unfinished.png"};
+    std::set<std::string> all = others;
+    all.insert({"frame_000000.png", "frame_1234567.png", ".frame_000002.unfinished.png"});
+    const UsedFolder folder(all);
+    folder.log({"frame_000000.png", "", "frame_000002.png", "frame_1234567.png", "notes.txt",
+                "../" + folder.path.filename().string() + "/notes.txt"});
+    std::ofstream(folder.path / kLogName, std::ios::app)
+        << "{\"picture\":7}\n[\"picture\":]\n[{\"picture\":1}]\n{\"picture\":\"frame_000001.p";
+    // The last run had every third picture; this one has none.
+    removeOldOutput(folder.path, false, {});
+    CHECK(folder.names() == others);
+    removeOldOutput(folder.path / "nowhere", true, {});
+}
+
+TEST_CASE("aRunsFilesDoNotReplaceOthers") {
+    SUBCASE("a log") {
+        const UsedFolder folder({"frame_000000.png"});
+        std::ofstream(folder.path / kLogName) << "somebody else's log\n";
+        folder.checkRefuses(kLogName);
+    }
+    SUBCASE("a link to a log, or to nothing") {
+        const UsedFolder folder({"frame_000000.png"});
+        folder.log({"frame_000000.png"});
+        fs::rename(folder.path / kLogName, folder.path / "log");
+        for (const char* target : {"log", "nothing"}) {
+            fs::create_symlink(target, folder.path / kLogName);
+            folder.checkRefuses(kLogName);
+            fs::remove(folder.path / kLogName);
+        }
+    }
+    SUBCASE("pictures that no log names, as far as this run writes such ones") {
+        const UsedFolder folder({"frame_000003.png"});
+        folder.checkRefuses("frame_000003.png");
+        // Nor does a log from before logs named pictures.
+        folder.log({""});
+        folder.checkRefuses("frame_000003.png");
+        folder.checkRefuses("frame_000003.png", {0, 100, 3});
+        removeOldOutput(folder.path, true, {0, 100, 2});
+        removeOldOutput(folder.path, false, {});
+        CHECK(folder.names() == std::set<std::string>{"frame_000003.png"});
+    }
+    SUBCASE("links and folders that bear a picture's name, though the log names it") {
+        const UsedFolder folder({"elsewhere"});
+        fs::create_symlink("elsewhere", folder.path / "frame_000002.png");
+        folder.log({"frame_000002.png", "frame_000009.png"});
+        folder.checkRefuses("frame_000002.png");
+        fs::remove(folder.path / "frame_000002.png");
+        fs::create_directory(folder.path / "frame_000009.png");
+        folder.checkRefuses("frame_000009.png");
+    }
+    SUBCASE("an unfinished picture") {
+        const UsedFolder folder({".frame_000001.unfinished.png"});
+        folder.checkRefuses(".frame_000001.unfinished.png");
+    }
+    SUBCASE("but an empty log is that of a run without frames") {
+        const UsedFolder folder({kLogName});
+        fs::resize_file(folder.path / kLogName, 0);
+        removeOldOutput(folder.path, true, {});
+        CHECK(folder.names().empty());
+    }
 }

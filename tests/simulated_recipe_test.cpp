@@ -8,7 +8,9 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "xr/simulated/compose/picture_file.h"
@@ -72,6 +74,7 @@ const fs::path& installedManifest() {
 // hello_xr ends at the first key: its input stays open and silent.
 Run runHello(const std::string& name, const std::string& script) {
     std::ofstream(kWork / (name + ".script")) << script;
+    fs::remove_all(kWork / name);
     const std::string keys = (kWork / "keys").string();
     return shell("rm -f " + keys + " && mkfifo " + keys +
                  " && env -u BINOSPLAT_SIMULATED_SCRIPT -u BINOSPLAT_SIMULATED_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
@@ -94,17 +97,21 @@ TEST_CASE("the folder builds alone and installs a library that its manifest find
     CHECK(manifest["runtime"]["name"] == "Simulated OpenXR runtime");
     const fs::path library = installedManifest().parent_path() / manifest["runtime"]["library_path"].get<std::string>();
     CHECK(fs::exists(library));
+    CHECK(fs::exists(kWork / "installed/share/doc/simulated_openxr_runtime/LICENSE"));
     // Of what is not in every Debian it needs libpng alone.
     const Run needs = shell("ldd " + library.string());
     CHECK(contains(needs, "libpng"));
     for (const char* other : {"OpenImageIO", "fmt", "vulkan", "openxr", "not found"}) CHECK_MESSAGE(!contains(needs, other), needs.output);
-    for (const fs::directory_entry& file : fs::directory_iterator(kWork / "source")) {
+    std::size_t includes = 0;
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(kWork / "source")) {
         std::ifstream stream(file.path());
         for (std::string line; std::getline(stream, line);) {
-            if (line.starts_with("#include \"") && !line.starts_with("#include \"xr/simulated/"))
-                FAIL_CHECK(file.path().string(), ": ", line);
+            if (!line.starts_with("#include \"")) continue;
+            CHECK_MESSAGE(line.starts_with("#include \"xr/simulated/"), file.path().string(), ": ", line);
+            ++includes;
         }
     }
+    CHECK(includes > 100);
 }
 
 TEST_CASE("a foreign program runs by the page's script, is seen, and runs the same again") {
@@ -120,7 +127,11 @@ TEST_CASE("a foreign program runs by the page's script, is seen, and runs the sa
     CHECK(frames.at(90)["session_state"] == "FOCUSED");
     CHECK(frames.at(90)["layers"].at(0)["type"] == "projection");
     CHECK(frames.at(90)["head"]["position"][0].get<double>() == doctest::Approx(0.5));
-    CHECK(fs::exists(kWork / "first/frame_000030.png"));
+    for (const nlohmann::json& frame : frames) {
+        if (frame.contains("picture")) CHECK_MESSAGE(fs::exists(kWork / "first" / frame["picture"]), frame["picture"]);
+    }
+    CHECK(frames.at(30)["picture"] == "frame_000030.png");
+    CHECK_FALSE(frames.at(31).contains("picture"));
 
     REQUIRE(runHello("second", script).exit_code == 0);
     const Run same = compareRuns("first", "second", "--tolerance 0 --pictures 0");
@@ -163,6 +174,71 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
     CHECK_MESSAGE(python.exit_code == 0, python.output);
 }
 
+TEST_CASE("the page's recipe for GitHub Actions does as it stands there") {
+    if (!isInstalled("hello_xr")) return;
+    REQUIRE(fs::exists(installedManifest()));
+    // A project with the runtime as its step built and installed it, and hello_xr as the program to be tested.
+    const fs::path workspace = kWork / "actions";
+    fs::remove_all(workspace);
+    fs::create_directories(workspace);
+    fs::create_directory_symlink(kWork / "installed", workspace / "headset");
+    std::ofstream(workspace / "walk.script") << blockWith("press right trigger 0.5 0.7");
+    std::ofstream(workspace / "program") << "#!/bin/sh\nrm -f keys && mkfifo keys && exec hello_xr -g Vulkan2 0<>keys\n";
+    std::ofstream(workspace / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\n"
+                                                   "file(COPY_FILE program ${CMAKE_BINARY_DIR}/my_program)\n";
+    fs::permissions(workspace / "program", fs::perms::owner_all);
+    std::istringstream lines(blockWith("runs-on: "));
+    std::string commands, environment, packages, build;
+    const auto after = [](const std::string& line, const char* mark) {
+        const std::size_t place = line.find(mark);
+        return place == std::string::npos ? std::string() : line.substr(place + std::string(mark).size());
+    };
+    for (std::string line; std::getline(lines, line);) {
+        const std::string command = after(line, "- run: ");
+        if (command.find("sudo ") != std::string::npos)
+            packages = after(command, "apt-get install -y ");
+        else if (command.starts_with("cmake -S simulated "))
+            build = command;
+        else if (!command.empty())
+            commands += command + "\n";
+        const bool is_variable = line.find("XR_RUNTIME_JSON: ") != std::string::npos || line.find("SIMULATED_OPENXR_") != std::string::npos;
+        if (!is_variable) continue;
+        const std::size_t place = line.find(": ");
+        std::string value = line.substr(place + 2);
+        const std::string mark = "${{ github.workspace }}";
+        if (value.starts_with(mark)) value.replace(0, mark.size(), workspace.string());
+        environment += "export " + line.substr(line.find_first_not_of(' '), place - line.find_first_not_of(' ')) + "='" + value + "'\n";
+    }
+    // The steps that need root or a compiler are those of "Build it", under other names.
+    CHECK(!packages.empty());
+    CHECK(pageText().find("\nsudo apt-get install " + packages + "\n") != std::string::npos);
+    std::string built = blockWith("cmake -S xr/simulated -B build");
+    built = built.substr(built.find("cmake -S"));
+    built = built.substr(0, built.find('\n'));
+    for (const auto& [there, here] :
+         {std::pair("xr/simulated", "simulated"), std::pair("-B build", "-B runtime"), std::pair("--build build", "--build runtime"),
+          std::pair("--install build", "--install runtime"), std::pair("$HOME/simulated-openxr", "$PWD/headset")}) {
+        const std::size_t place = built.find(there);
+        REQUIRE_MESSAGE(place != std::string::npos, there);
+        built.replace(place, std::string(there).size(), here);
+    }
+    CHECK(build.starts_with(built));
+    const Run run = shell("cd " + workspace.string() + " && unset BINOSPLAT_SIMULATED_SCRIPT BINOSPLAT_SIMULATED_OUT\n" + environment +
+                          "export CMAKE_GENERATOR=Ninja\nset -ex\n" + commands);
+    CHECK_MESSAGE(run.exit_code == 0, run.output);
+    CHECK(contains(run, "+ ./build/my_program"));
+    CHECK(fs::exists(workspace / "out/frame_000030.png"));
+}
+
+TEST_CASE("the page says where things are installed") {
+    REQUIRE(fs::exists(installedManifest()));
+    for (const char* file :
+         {"lib/libsimulated_openxr_runtime.so", "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
+        CHECK_MESSAGE(pageText().find("`" + std::string(file) + "`") != std::string::npos, file);
+        CHECK_MESSAGE(fs::exists(kWork / "installed" / file), file);
+    }
+}
+
 TEST_CASE("the tool that compares logs says what differs, within what it was told") {
     if (!isInstalled("python3")) return;
     REQUIRE(fs::exists(installedManifest()));
@@ -196,4 +272,24 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     CHECK(broken.exit_code == 2);
     CHECK(contains(broken, "d/frames.jsonl:1: not a line of JSON"));
     CHECK(compareRuns("a", "nowhere").exit_code == 2);
+    for (const char* no_frame : {"7", "[{}]", "null", "\"x\""}) {
+        write("d", std::string("{}\n") + no_frame + "\n", 100);
+        const Run run = compareRuns("a", "d");
+        CHECK(run.exit_code == 2);
+        CHECK(contains(run, "d/frames.jsonl:2: not a frame, must be an object of JSON"));
+    }
+    // A picture that ends in its signature, in its header, before and within its pixels.
+    write("d", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n", 100);
+    CHECK(compareRuns("a", "d", "--pictures 0").exit_code == 0);
+    const fs::path picture = kWork / "d/frame_000000.png";
+    const std::uintmax_t behind_pixels = 16;
+    for (const std::uintmax_t size :
+         {std::uintmax_t{0}, std::uintmax_t{7}, std::uintmax_t{20}, std::uintmax_t{33}, fs::file_size(picture) - behind_pixels - 1}) {
+        write("d", "{}\n", 100);
+        fs::resize_file(picture, size);
+        const Run run = compareRuns("a", "d", "--pictures 0");
+        CAPTURE(size);
+        CHECK(run.exit_code == 2);
+        CHECK_MESSAGE(run.output.starts_with("compare_frame_logs: " + picture.string() + ": "), run.output);
+    }
 }

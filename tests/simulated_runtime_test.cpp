@@ -162,7 +162,7 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     std::filesystem::create_directories(headset.written);
     const std::filesystem::path picture = headset.written / "frame_000003.png";
     std::ofstream(picture) << "x";
-    std::ofstream(headset.written / "frames.jsonl") << "{\"frame\":0,\"display_time_ns\":1}\n";
+    std::ofstream(headset.written / "frames.jsonl") << "{\"frame\":0,\"display_time_ns\":1,\"picture\":\"frame_000003.png\"}\n";
     const Direct runtime;
     const auto create = runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance");
     const std::vector<const char*> unknown{"XR_KHR_nothing"};
@@ -176,6 +176,14 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
     CHECK_FALSE(std::filesystem::exists(picture));
     CHECK(std::filesystem::file_size(headset.written / "frames.jsonl") == 0);
     CHECK(runtime.function<PFN_xrDestroyInstance>(instance, "xrDestroyInstance")(instance) == XR_SUCCESS);
+    // Somebody else's log, here behind a link.
+    std::ofstream(headset.folder / "victim") << "keep me";
+    std::filesystem::remove(headset.written / "frames.jsonl");
+    std::filesystem::create_symlink(headset.folder / "victim", headset.written / "frames.jsonl");
+    const std::string explained = explainedBy([&] { CHECK(create(&info, &instance) == XR_ERROR_RUNTIME_FAILURE); });
+    CHECK(explained == "simulated runtime: xrCreateInstance: " + (headset.written / "frames.jsonl").string() +
+                           ": not what an earlier run left here, must be moved elsewhere\n");
+    CHECK(std::filesystem::file_size(headset.folder / "victim") == 7);
 }
 
 TEST_CASE("openxr_runtime_list finds it") {

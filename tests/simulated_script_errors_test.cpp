@@ -173,6 +173,8 @@ TEST_CASE("filesThatCannotBeReadAreSaidWithTheLineThatNamesThem") {
     folder.refuses("head-motion /dev/zero", "/dev/zero: cannot be read (not a regular file)");
     folder.write("long.csv", std::string((std::size_t{16} << 20) + 1, '#'));
     folder.refuses("head-motion long.csv", "cannot be read (longer than 16 MiB)");
+    folder.write("long.toml", std::string((std::size_t{4} << 20) + 1, '#'));
+    folder.refuses("headset long.toml", "cannot be read (longer than 4 MiB)");
     CHECK_THROWS_WITH_AS((void)Script::load(folder.path / "none.script"),
                          (folder.path.string() + "/none.script: cannot be read (No such file or directory), must be a script").c_str(),
                          ScriptError);

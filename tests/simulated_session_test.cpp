@@ -80,7 +80,7 @@ TEST_CASE_FIXTURE(SessionFixture, "what belongs to a session ends with it") {
     CHECK(states().empty());
 }
 
-TEST_CASE_FIXTURE(SessionFixture, "a handle of one type is none of another") {
+TEST_CASE_FIXTURE(SessionFixture, "a handle of one type is not taken for another") {
     CHECK(xrDestroySession(reinterpret_cast<XrSession>(local)) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroySpace(reinterpret_cast<XrSpace>(session)) == XR_ERROR_HANDLE_INVALID);
     CHECK(xrDestroySwapchain(reinterpret_cast<XrSwapchain>(instance)) == XR_ERROR_HANDLE_INVALID);

@@ -251,3 +251,15 @@ TEST_CASE("a script that the simulated headset does not take is bad input, and n
     CHECK(outcome.errors.find("broken.script, see docs/simulated_script.md") != std::string::npos);
     CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
 }
+
+TEST_CASE("a folder whose files would be replaced is bad input, and they stay") {
+    const Workplace work;
+    std::filesystem::create_directories(work.path / "mine");
+    std::ofstream(work.path / "mine" / "frame_000000.png") << "holiday";
+    const Outcome outcome = work.run("view builtin:fence --frames 3 --simulate --out mine");
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.errors.find("mine/frame_000000.png: not what an earlier run left here, must be moved elsewhere\n") != std::string::npos);
+    CHECK(outcome.errors.find("--out: the simulated headset does not begin with mine") != std::string::npos);
+    CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);
+    CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));
+}

@@ -33,7 +33,7 @@ std::uint64_t numberAt(std::span<const unsigned char> bytes, std::size_t at, std
 // Its bytes, or why there are none.
 std::string readFont(const fs::path& file, std::string& complaint) {
     try {
-        std::string bytes = readTextFile(file, "a TrueType font");
+        std::string bytes = readTextFile(file, "a TrueType font", kMostRecordingBytes);
         if (looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()})) { return bytes; }
         complaint = fmt::format("{}: is no whole TrueType font", file.string());
     } catch (const Error& error) { complaint = error.what(); }

@@ -74,7 +74,8 @@ void runView(const ViewOptions& given) {
     } catch (const xr::RuntimeFailed&) {
         // The runtime has said where and why.
         check(!options.simulate || options.script.empty(),
-              "--simulate: the simulated headset does not take {}, see docs/simulated_script.md", options.script);
+              "--simulate: the simulated headset does not begin with {}, see docs/simulated_script.md", options.script);
+        check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());
         throw;
     }
     showScene(options, settings, *instance);

@@ -89,7 +89,7 @@ FileCamera readCamera(const Place& place, const Json& camera) {
 
 std::vector<FileCamera> readCameraFile(const std::filesystem::path& path) {
     const std::string file = path.string();
-    const std::string text = readTextFile(path, "a cameras.json");
+    const std::string text = readTextFile(path, "a cameras.json", kMostRecordingBytes);
     Json root;
     try {
         // Cameras are four levels deep; what is much deeper cannot even be quoted in a message.

@@ -20,7 +20,7 @@ HeadMotion parseHeadMotion(std::string_view text, const std::string& file, Motio
 }
 
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes) {
-    return parseHeadMotion(readTextFile(path, "a CSV file of head motion"), path.string(), axes);
+    return parseHeadMotion(readTextFile(path, "a CSV file of head motion", kMostRecordingBytes), path.string(), axes);
 }
 
 }  // namespace binosplat

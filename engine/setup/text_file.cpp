@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-std::string readTextFile(const std::filesystem::path& path, const std::string& expected) {
+std::string readTextFile(const std::filesystem::path& path, const std::string& expected, std::size_t most_bytes) {
     std::string reason;
     const File file = openRegularFile(path, reason);
     check(file != nullptr, "{}: cannot be read ({}), must be {}", path.string(), reason, expected);
@@ -22,8 +22,7 @@ std::string readTextFile(const std::filesystem::path& path, const std::string& e
         const std::size_t got = std::fread(text.data() + end, 1, text.size() - end, file.get());
         check(std::ferror(file.get()) == 0, "{}: cannot be read ({}), must be {}", path.string(), std::strerror(errno), expected);
         text.resize(end + got);
-        check(text.size() <= kMostTextBytes, "{}: cannot be read (longer than {} MiB), must be {}", path.string(), kMostTextBytes >> 20,
-              expected);
+        check(text.size() <= most_bytes, "{}: cannot be read (longer than {} MiB), must be {}", path.string(), most_bytes >> 20, expected);
     } while (std::exchange(end, text.size()) < text.size());
     return text;
 }

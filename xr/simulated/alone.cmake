@@ -24,7 +24,7 @@ file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/include/xr/simu
 add_library(binosplat_flags INTERFACE)
 target_include_directories(binosplat_flags INTERFACE ${CMAKE_BINARY_DIR}/include)
 
-foreach(name vulkan openxr_headers glm fmt json png)
+foreach(name vulkan openxr_headers glm fmt_inside json png)
     add_library(third_party_${name} INTERFACE)
 endforeach()
 target_link_libraries(third_party_vulkan INTERFACE Vulkan::Headers)
@@ -32,7 +32,7 @@ target_link_libraries(third_party_openxr_headers INTERFACE OpenXR::headers)
 target_link_libraries(third_party_glm INTERFACE glm::glm)
 target_compile_definitions(third_party_glm INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM_ENABLE_EXPERIMENTAL)
 # The library is loaded into other people's programs: it brings its own fmt.
-target_link_libraries(third_party_fmt INTERFACE fmt::fmt-header-only)
+target_link_libraries(third_party_fmt_inside INTERFACE fmt::fmt-header-only)
 target_link_libraries(third_party_json INTERFACE nlohmann_json::nlohmann_json)
 target_link_libraries(third_party_png INTERFACE PNG::PNG)
 add_library(third_party_toml STATIC files/toml_guard.cpp)

@@ -31,8 +31,10 @@ def read_log(place):
     for number, line in enumerate(lines, 1):
         try:
             frames.append(json.loads(line))
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise Unreadable(f"{path}:{number}: not a line of JSON ({error})")
+        if not isinstance(frames[-1], dict):
+            raise Unreadable(f"{path}:{number}: not a frame, must be an object of JSON")
     return frames
 
 
@@ -74,7 +76,7 @@ def read_png(path):
     while place + 8 <= len(data):
         length, kind = struct.unpack(">I4s", data[place : place + 8])
         body = data[place + 8 : place + 8 + length]
-        if kind == b"IHDR":
+        if kind == b"IHDR" and len(body) == 13:
             header = struct.unpack(">IIBBBBB", body)
         elif kind == b"IDAT":
             packed += body
@@ -83,7 +85,10 @@ def read_png(path):
         raise Unreadable(f"{path}: not 8-bit RGB")
     width, height = header[:2]
     try:
-        return width, height, unfilter(zlib.decompress(packed), width, height)
+        raw = zlib.decompress(packed)
+        if len(raw) != height * (3 * width + 1):
+            raise Unreadable(f"{path}: broken (not of its size)")
+        return width, height, unfilter(raw, width, height)
     except (zlib.error, IndexError) as error:
         raise Unreadable(f"{path}: broken ({error})")
 
@@ -154,7 +159,8 @@ def main():
     parser.add_argument("expected", type=pathlib.Path)
     parser.add_argument("actual", type=pathlib.Path)
     parser.add_argument("--tolerance", type=float, default=1e-5, help="by which numbers may be off (default 1e-5)")
-    parser.add_argument("--ignore", action="append", default=["swapchain"], metavar="KEY", help="a key that does not count, such as events")
+    parser.add_argument("--ignore", action="append", default=["swapchain", "picture"], metavar="KEY",
+                        help="a key that does not count, such as events (swapchain and picture never do)")
     parser.add_argument("--pictures", type=int, metavar="STEPS", help="compare the pictures, too; each channel may be off by STEPS of 255")
     parser.add_argument("--share", type=float, default=0.0, help="of a picture's pixels that may be off by more (default 0)")
     options = parser.parse_args()

@@ -8,7 +8,7 @@ namespace simulated {
 
 struct Setting {
     std::string variable;         // the name that is set
-    const char* value = nullptr;  // null if none is
+    const char* value = nullptr;  // null if none is set
 
     [[nodiscard]] bool isSet() const { return value != nullptr && *value != '\0'; }
 };

@@ -1,4 +1,5 @@
-# The library, its manifest for XR_RUNTIME_JSON, and the tool that compares two logs. The manifest finds the library relative to itself.
+# The library, its manifest for XR_RUNTIME_JSON, the tool that compares two logs, the licence, and the pages that lie in docs/ unless this
+# folder was copied without them. The manifest finds the library relative to itself.
 include(GNUInstallDirs)
 set(manifest_folder ${CMAKE_INSTALL_DATADIR}/openxr/1)
 file(RELATIVE_PATH library_folder /prefix/${manifest_folder} /prefix/${CMAKE_INSTALL_LIBDIR})
@@ -7,3 +8,17 @@ configure_file(simulated_runtime.json.in ${CMAKE_BINARY_DIR}/install/${SIMULATED
 install(TARGETS binosplat_simulated_runtime LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
 install(FILES ${CMAKE_BINARY_DIR}/install/${SIMULATED_NAME}.json DESTINATION ${manifest_folder} COMPONENT runtime)
 install(PROGRAMS compare_frame_logs.py DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME compare_frame_logs COMPONENT runtime)
+
+if(SIMULATED_ALONE)
+    set(documents ${CMAKE_INSTALL_DATADIR}/doc/${SIMULATED_NAME})
+else()
+    set(documents ${CMAKE_INSTALL_DATADIR}/doc/binosplat-simulated-runtime)
+endif()
+install(FILES LICENSE DESTINATION ${documents} COMPONENT runtime)
+install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT runtime)
+set(repository ${CMAKE_CURRENT_SOURCE_DIR}/../..)
+foreach(page docs/test_your_openxr_program.md docs/simulated_script.md docs/openxr_runtime.md docs/openxr_conformance.md third_party/NOTICES.md)
+    if(EXISTS ${repository}/${page})
+        install(FILES ${repository}/${page} DESTINATION ${documents} COMPONENT runtime)
+    endif()
+endforeach()

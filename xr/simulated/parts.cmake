@@ -4,4 +4,4 @@ add_library(binosplat_simulated_parts STATIC compose/geometry.cpp script/hand_mo
             api/profiles.cpp compose/compose.cpp compose/seen_shapes.cpp compose/texels.cpp
             compose/picture_file.cpp log/frame_log.cpp compose/old_output.cpp)
 set_target_properties(binosplat_simulated_parts PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_link_libraries(binosplat_simulated_parts PUBLIC binosplat_flags third_party_glm binosplat_files PRIVATE third_party_fmt third_party_json third_party_toml third_party_png)
+target_link_libraries(binosplat_simulated_parts PUBLIC binosplat_flags third_party_glm binosplat_files PRIVATE third_party_fmt_inside third_party_json third_party_toml third_party_png)

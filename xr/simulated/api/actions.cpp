@@ -16,7 +16,7 @@ void checkNames(const std::string& name, const std::string& localized_name) {
     require(isPathLevel(name), XR_ERROR_PATH_FORMAT_INVALID, "a name has characters that a path may not have");
 }
 
-// Among those that are alive: a destroyed one gives its names free.
+// Among live ones only: a destroyed one frees its names.
 template <class T>
 void checkUnique(const Object& parent, const std::string& name, const std::string& localized_name) {
     for (const auto& child : parent.children) {

@@ -111,7 +111,7 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
         checkPose(pose);
         const std::optional<Pose> stage_from_space =
             stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));
-        require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "nobody knows where the space is");
+        require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "the place of the space is not known");
         Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
         if (input.name == "grip_surface/pose" || input.name == "palm_ext/pose")
             stage_from_pose = compose(stage_from_pose, inverse(gripFromPalm(checkedDevice(owner, topLevelPath))));

@@ -1,4 +1,4 @@
-// Where OpenXR's time comes from. In lock-step, the default, a frame takes exactly one period however long it took to render, nobody
+// Where OpenXR's time comes from. In lock-step, the default, a frame takes exactly one period however long it took to render, nothing
 // sleeps, and every run is the same. With the real clock, frames are paced as by a display.
 #pragma once
 
@@ -33,8 +33,8 @@ public:
     XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
     // Another display rate, from the next frame on.
     void setPeriod(XrDuration period);
-    // What CLOCK_MONOTONIC says less OpenXR's time, the same for the clock's life. In lock-step the two are told apart when this is
-    // first asked for; with the real clock they go alike, and time begins then if there was no frame yet.
+    // CLOCK_MONOTONIC minus OpenXR's time, the same for the clock's life. In lock-step it is fixed when this is first asked for; with the
+    // real clock both run at the same rate, and time begins with this call if there was no frame yet.
     std::int64_t monotonicOffset();
 
 private:

@@ -144,7 +144,7 @@ void Device::checkImage(const ImageInfo& info) const {
     vk::ImageFormatProperties limits;
     const vk::Result result = physical_device.getImageFormatProperties(wanted.format, wanted.imageType, wanted.tiling, wanted.usage,
                                                                        wanted.flags, &limits, dispatch);
-    require(result == vk::Result::eSuccess, XR_ERROR_FEATURE_UNSUPPORTED, "the device cannot use this format so");
+    require(result == vk::Result::eSuccess, XR_ERROR_FEATURE_UNSUPPORTED, "the device cannot use this format in this way");
     require(info.size.width <= limits.maxExtent.width && info.size.height <= limits.maxExtent.height &&
                 info.layers <= limits.maxArrayLayers && info.mips <= limits.maxMipLevels,
             XR_ERROR_VALIDATION_FAILURE, "an image beyond the device's limits");

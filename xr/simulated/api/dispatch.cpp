@@ -45,7 +45,7 @@ XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoid
         if (instance != XR_NULL_HANDLE)
             owner = &get<Instance>(instance);
         else
-            require(needsNoInstance(name), XR_ERROR_HANDLE_INVALID, "this function wants an instance");
+            require(needsNoInstance(name), XR_ERROR_HANDLE_INVALID, "this function needs an instance");
         for (const Entry& entry : kEntries) {
             if (std::strcmp(entry.name, name) != 0) continue;
             if (entry.extension != nullptr && !owner->extensions.contains(entry.extension)) break;

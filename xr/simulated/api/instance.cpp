@@ -29,7 +29,7 @@ Script scriptBeforeInstance() {
 
 void checkApplication(const XrApplicationInfo& application) {
     const auto isEnded = [](const auto& name) { return strnlen(name, sizeof name) < sizeof name; };
-    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "nothing ends a name");
+    require(isEnded(application.applicationName) && isEnded(application.engineName), XR_ERROR_NAME_INVALID, "a name is not terminated");
     require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
@@ -38,7 +38,7 @@ void checkApplication(const XrApplicationInfo& application) {
 }
 
 [[noreturn]] void refuseExtension(const char* name) {
-    // Programs of other graphics are not let into a session that cannot be: they hear at once what there is.
+    // Programs with other graphics could have no session here: they are told at once what there is.
     for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
         if (std::strcmp(name, graphics) != 0) continue;
         throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT,

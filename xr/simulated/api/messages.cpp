@@ -71,7 +71,7 @@ const XrDebugUtilsMessengerCreateInfoEXT& checkedMessenger(const XrDebugUtilsMes
             "no or unknown severities");
     require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE,
             "no or unknown types of messages");
-    require(checked_info.userCallback != nullptr, XR_ERROR_VALIDATION_FAILURE, "nobody to call back");
+    require(checked_info.userCallback != nullptr, XR_ERROR_VALIDATION_FAILURE, "no callback");
     return checked_info;
 }
 

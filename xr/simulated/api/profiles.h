@@ -8,7 +8,7 @@
 
 namespace simulated {
 
-// kNone: it is an extension's alone.
+// kNone: only an extension has it.
 enum class Since { k1_0, k1_1, kNone };
 
 struct Profile {

@@ -21,14 +21,14 @@ bool wantsRealClock() {
     return clock == "real";
 }
 
-std::optional<Output> makeOutput() {
+std::optional<Output> makeOutput(const Script& script) {
     const Setting setting = settingOf("OUT");
     if (!setting.isSet()) return std::nullopt;
     const std::filesystem::path folder(setting.value);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")");
-    removeOldOutput(folder);
+    removeOldOutput(folder, script.writes_pictures, script.frames);
     return Output{folder, FrameLog(folder / kLogName)};
 }
 
@@ -76,8 +76,9 @@ std::unique_ptr<Simulation> Simulation::begin() {
     Script script = scriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz), script.irregularity);
     std::string profile = favouriteProfile(script);
+    std::optional<Output> output = makeOutput(script);
     const double rate_hz = script.rate_hz;
-    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, makeOutput(), std::move(profile), rate_hz});
+    return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, std::move(output), std::move(profile), rate_hz});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {

@@ -33,8 +33,8 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
 
 bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
 
-// A lost head is nowhere, but for itself; one of which only the turn is known has a place, though not a true one. A gaze is on the head,
-// and tracked whole or not at all.
+// A head that is not tracked has no place but relative to itself; where only its turn is known, its place is given and not tracked. A gaze
+// is on the head, and tracked whole or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
     const bool gaze = isGaze(space), base_gaze = isGaze(base);
@@ -115,7 +115,7 @@ std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
 
 namespace {
 
-// Of 1.1's xrLocateSpaces and its elder.
+// Of 1.1's xrLocateSpaces and its predecessor.
 XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
     const Session& owner = getSession(session);
     const XrSpacesLocateInfo& info = checked(locate_info, XR_TYPE_SPACES_LOCATE_INFO);

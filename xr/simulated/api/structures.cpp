@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kLongestChain = 64;
 
-// Follow bytes after a leading byte, -1 if none may lead so. Overlong forms and surrogates are left to the check below.
+// How many bytes follow this leading byte, -1 if it cannot lead. Overlong forms and surrogates are left to the check below.
 int followersOf(unsigned char lead) {
     if (lead < 0x80) return 0;
     if (lead >= 0xC2 && lead < 0xE0) return 1;
@@ -50,7 +50,7 @@ const XrBaseInStructure* findInChain(const void* next, XrStructureType type) {
 
 std::string textOf(const char* characters, std::size_t size) {
     const std::size_t length = strnlen(characters, size);
-    require(length < size, XR_ERROR_VALIDATION_FAILURE, "nothing ends a string");
+    require(length < size, XR_ERROR_VALIDATION_FAILURE, "a string is not terminated");
     require(isUtf8({characters, length}), XR_ERROR_VALIDATION_FAILURE, "a string is not UTF-8");
     return {characters, length};
 }

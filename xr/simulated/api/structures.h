@@ -11,7 +11,7 @@
 
 namespace simulated {
 
-// Unknown structures of a chain are passed over, as the specification demands; a chain that bites its tail is refused.
+// Unknown structures of a chain are passed over, as the specification demands; one that never ends is refused.
 void checkChain(const void* next);
 const XrBaseInStructure* findInChain(const void* next, XrStructureType type);
 
@@ -64,7 +64,7 @@ inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* b
     return XR_SUCCESS;
 }
 
-// A fixed array's text; XR_ERROR_VALIDATION_FAILURE if nothing ends it or it is not UTF-8.
+// A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it has no end or is not UTF-8.
 std::string textOf(const char* characters, std::size_t size);
 template <std::size_t size>
 std::string textOf(const char (&characters)[size]) {

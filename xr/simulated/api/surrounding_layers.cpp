@@ -9,7 +9,7 @@
 namespace simulated {
 namespace {
 
-constexpr float kSlack = 1e-4f;  // an angle of 2 pi as somebody's float
+constexpr float kSlack = 1e-4f;  // 2 pi rounded to float is more than 2 pi
 constexpr float kPi = std::numbers::pi_v<float>;
 
 // Also infinite: then it is as 0.

@@ -51,7 +51,7 @@ ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
     const XrSwapchainUsageFlags foreign =
         is_colour ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
-    require((info.usageFlags & foreign) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "colour formats are no depth attachments, nor the reverse");
+    require((info.usageFlags & foreign) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "a colour format as depth attachment, or the reverse");
     require(info.width > 0 && info.height > 0 && info.arraySize > 0 && info.mipCount > 0 && info.sampleCount > 0,
             XR_ERROR_VALIDATION_FAILURE, "a size is 0");
     require(info.width <= kMostSwapchainPixels && info.height <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE,

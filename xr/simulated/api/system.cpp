@@ -89,7 +89,7 @@ XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId system
         checkViewConfiguration(owner, viewConfigurationType);
         XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
         output.viewConfigurationType = viewConfigurationType;
-        // Scripts change the angles in mid-run.
+        // Scripts change the angles during a run.
         output.fovMutable = XR_TRUE;
         return XR_SUCCESS;
     });

@@ -1,4 +1,4 @@
-// XR_KHR_vulkan_enable2 and its elder: the application's Vulkan instance and device are made through the runtime, which needs nothing
+// XR_KHR_vulkan_enable2 and its predecessor: the application's Vulkan instance and device are made through the runtime, which needs nothing
 // of them beyond what the application asks for.
 #include <charconv>
 #include <cstring>
@@ -123,7 +123,8 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
         result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
         if (result == VK_SUCCESS) owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr;
-        // What Vulkan says stands in vulkanResult; this call did what it was asked for. A machine without driver is said all the same.
+        // What Vulkan says stands in vulkanResult; this call did what it was asked for. A machine without a driver is reported all the
+        // same.
         if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
             explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");
         return XR_SUCCESS;

@@ -1,14 +1,20 @@
 // What an earlier run left in the folder that this one writes to.
 #pragma once
 
+#include "xr/simulated/script/script.h"
+
 #include <filesystem>
+#include <string>
 
 namespace simulated {
 
 inline constexpr const char* kLogName = "frames.jsonl";
 
-// Removes the pictures of an earlier run, which a log that this runtime wrote says were here; nothing where there is no such log, and no
-// file of any other name. Pictures that cannot be removed stay.
-void removeOldOutput(const std::filesystem::path& folder);
+// "frame_000012.png"
+[[nodiscard]] std::string pictureName(std::uint64_t frame);
+
+// Removes the log of an earlier run and the pictures that it names, finished or not, and no other file. Throws std::runtime_error, and
+// removes nothing, if files that a run with these pictures would write are there and not of an earlier run: the log or a picture.
+void removeOldOutput(const std::filesystem::path& folder, bool writes_pictures, const FrameChoice& frames);
 
 }  // namespace simulated

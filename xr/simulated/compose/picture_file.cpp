@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -31,22 +34,29 @@ struct PngImage : png_image {
 
 }  // namespace
 
+fs::path unfinishedPicture(const fs::path& path) { return path.parent_path() / fmt::format(".{}.unfinished.png", path.stem().string()); }
+
 void writePng(const fs::path& path, const RgbPicture& picture) {
-    const fs::path unfinished = path.parent_path() / fmt::format(".{}.unfinished.png", path.stem().string());
+    const fs::path unfinished = unfinishedPicture(path);
     PngImage image;
     image.width = picture.size_px.x;
     image.height = picture.size_px.y;
     image.format = PNG_FORMAT_RGB;
     // Fast to pack: a run writes many.
     image.flags = PNG_IMAGE_FLAG_FAST;
+    // Exclusively: what lies or links there is somebody else's.
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(unfinished.c_str(), "wbx"), &std::fclose);
+    if (file == nullptr) { refuse(path, "written", std::strerror(errno)); }
     std::error_code error;
     std::string reason;
-    if (png_image_write_to_file(&image, unfinished.c_str(), 0, picture.bytes.data(), 0, nullptr) != 0) {
+    if (png_image_write_to_stdio(&image, file.get(), 0, picture.bytes.data(), 0, nullptr) == 0) {
+        reason = image.message;
+    } else if (std::fclose(file.release()) != 0) {
+        reason = std::strerror(errno);
+    } else {
         fs::rename(unfinished, path, error);
         if (!error) { return; }
         reason = error.message();
-    } else {
-        reason = image.message;
     }
     fs::remove(unfinished, error);
     refuse(path, "written", reason);

@@ -7,7 +7,9 @@
 
 namespace simulated {
 
-// The file appears whole or not at all. Throws std::runtime_error naming it.
+// What the file is called until it is whole.
+[[nodiscard]] std::filesystem::path unfinishedPicture(const std::filesystem::path& path);
+// The file appears whole or not at all. Throws std::runtime_error naming it, also if there is an unfinished one already.
 void writePng(const std::filesystem::path& path, const RgbPicture& picture);
 [[nodiscard]] RgbPicture readPng(const std::filesystem::path& path);
 

@@ -11,7 +11,7 @@ namespace {
 
 bool isFinite(double radius_m) { return radius_m > 0.0 && std::isfinite(radius_m); }
 
-// Where a ray leaves the circle or sphere of this radius about the origin: the nearest place of its inside ahead. `a`, `b`, `c` are of
+// Where a ray leaves the circle or sphere of this radius about the origin: the nearest point ahead on its inside. `a`, `b`, `c` are of
 // a t^2 + 2 b t + c = 0.
 std::optional<double> wayOut(double a, double b, double c) {
     const double root = b * b - a * c;

@@ -1,8 +1,7 @@
 #include "xr/simulated/compose/show.h"
 
-#include <cstdio>
-
 #include "xr/simulated/api/layers.h"
+#include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/compose/picture_file.h"
 #include "xr/simulated/names.h"
 
@@ -33,7 +32,7 @@ Backdrop backdropOf(const Script& script, const XrFrameEndInfo& info) {
     return {{decodeSrgb(room.r), decodeSrgb(room.g), decodeSrgb(room.b)}, info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_ADDITIVE};
 }
 
-void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& folder) {
+void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& path) {
     const Simulation& simulation = *session.instance.simulation;
     const std::vector<Layer> layers = composableLayers(session, info, state);
     std::array<RgbPicture, kEyes> pictures;
@@ -42,9 +41,7 @@ void writePicture(const Session& session, const XrFrameEndInfo& info, const Stat
         pictures[side] =
             composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers, backdropOf(simulation.script, info));
     }
-    char name[32];
-    std::snprintf(name, sizeof name, "frame_%06llu.png", static_cast<unsigned long long>(simulation.frames_shown));
-    writePng(folder / name, sideBySide(pictures[kLeft], pictures[kRight]));
+    writePng(path, sideBySide(pictures[kLeft], pictures[kRight]));
 }
 
 }  // namespace
@@ -55,10 +52,14 @@ void showFrame(Session& session, const XrFrameEndInfo& info, const State& state)
         session.log_events.clear();
         return;
     }
-    const bool wants_picture = simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown);
-    if (wants_picture && info.layerCount > 0) writePicture(session, info, state, simulation.output->folder);
-    simulation.output->log.write(recordOf(session, info, state));
+    const bool has_picture =
+        simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown) && info.layerCount > 0;
+    FrameRecord record = recordOf(session, info, state);
+    if (has_picture) record.picture = pictureName(simulation.frames_shown);
     ++simulation.frames_shown;
+    // The log first: whatever a run leaves that ends meanwhile, its log names it.
+    simulation.output->log.write(record);
+    if (has_picture) writePicture(session, info, state, simulation.output->folder / record.picture);
 }
 
 }  // namespace simulated

@@ -8,7 +8,7 @@
 namespace simulated {
 
 // A rectangle of a picture, seen as linear light with the alpha as stored. Throws std::invalid_argument if the rectangle is empty or
-// not inside the picture, or if the picture has not the bytes it should.
+// not inside the picture, or if the picture does not have the bytes it should.
 class Sampler {
 public:
     Sampler(const Picture& picture, const Rect& rect);

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 namespace simulated {
@@ -65,17 +67,19 @@ std::string frameLine(const FrameRecord& record) {
     for (const LoggedLayer& layer : record.layers) { json["layers"].push_back(jsonOf(layer)); }
     json["events"] = record.events;
     if (record.gpu_ms) { json["gpu_ms"] = *record.gpu_ms; }
+    if (!record.picture.empty()) { json["picture"] = record.picture; }
     // Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary | std::ios::trunc) {
-    if (!stream_) { throw std::runtime_error(path_.string() + ": cannot be written, must be a file in a folder that exists"); }
+FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "wbx"), &std::fclose) {
+    if (file_ == nullptr) { throw std::runtime_error(path_.string() + ": cannot be made (" + std::strerror(errno) + ")"); }
 }
 
 void FrameLog::write(const FrameRecord& record) {
-    stream_ << frameLine(record) + '\n' << std::flush;
-    if (!stream_) { throw std::runtime_error(path_.string() + ": cannot be written (disk full?)"); }
+    const std::string line = frameLine(record) + '\n';
+    const bool is_written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size() && std::fflush(file_.get()) == 0;
+    if (!is_written) { throw std::runtime_error(path_.string() + ": cannot be written (" + std::strerror(errno) + ")"); }
 }
 
 }  // namespace simulated

@@ -5,8 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,6 +61,7 @@ struct FrameRecord {
     std::array<LoggedEye, 2> eyes;  // by Side
     std::vector<LoggedLayer> layers;
     std::vector<std::string> events;  // since the frame before: "state VISIBLE", "exit", "slow-images 3" ...
+    std::string picture;              // the file's name, empty if the frame has none
 };
 
 // One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
@@ -68,13 +70,13 @@ struct FrameRecord {
 // Lines are there as soon as they are written, so that a program that dies leaves a log of all frames before.
 class FrameLog {
 public:
-    // Begins the file anew. Throws std::runtime_error naming it.
+    // Makes the file, which must not be there. Throws std::runtime_error naming it.
     explicit FrameLog(const std::filesystem::path& path);
     void write(const FrameRecord& record);
 
 private:
     std::filesystem::path path_;
-    std::ofstream stream_;
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
 };
 
 }  // namespace simulated

@@ -14,8 +14,7 @@ namespace simulated {
 
 namespace fs = std::filesystem;
 
-std::string readText(const fs::path& path, const std::string& place, const char* expected) {
-    constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+std::string readText(const fs::path& path, const std::string& place, const char* expected, std::size_t most_bytes) {
     const auto refuse = [&](const std::string& reason) {
         throw ScriptError(fmt::format("{}{}: cannot be read ({}), must be {}", place, path.string(), reason, expected));
     };
@@ -26,10 +25,10 @@ std::string readText(const fs::path& path, const std::string& place, const char*
     if (!fs::is_regular_file(status)) { refuse("not a regular file"); }
     std::ifstream stream(path, std::ios::binary);
     if (!stream) { refuse(std::strerror(errno)); }
-    std::string text(std::min<std::uintmax_t>(fs::file_size(path, error), kMostBytes) + 1, '\0');
+    std::string text(std::min<std::uintmax_t>(fs::file_size(path, error), most_bytes) + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > kMostBytes) { refuse("longer than 16 MiB"); }
+    if (text.size() > most_bytes) { refuse(fmt::format("longer than {} MiB", most_bytes >> 20)); }
     return text;
 }
 

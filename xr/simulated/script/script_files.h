@@ -6,8 +6,13 @@
 
 namespace simulated {
 
-// The text of a regular file of at most 16 MiB. `place` is who names it, for messages ("walk.script:3: ", or nothing). Throws ScriptError.
-[[nodiscard]] std::string readText(const std::filesystem::path& path, const std::string& place, const char* expected);
+// What people write, and what programs record.
+inline constexpr std::size_t kMostTextBytes = std::size_t{4} << 20, kMostRecordingBytes = std::size_t{16} << 20;
+
+// The text of a regular file of at most `most_bytes`. `place` is who names it, for messages ("walk.script:3: ", or nothing). Throws
+// ScriptError.
+[[nodiscard]] std::string readText(const std::filesystem::path& path, const std::string& place, const char* expected,
+                                   std::size_t most_bytes = kMostTextBytes);
 
 // As headset_file.h describes it. Throws ScriptError with the file's own line.
 [[nodiscard]] files::HeadsetFile readHeadset(const std::string& text, const std::string& name);

@@ -72,7 +72,7 @@ void Parser::parseHeadMotionLine(Words& words) {
     if (words.takeIf("start")) { motion_start_s_ = words.time("the time at which the motion starts"); }
     if (words.takeIf("skip")) { motion_skip_s_ = words.number("the seconds to skip", 0.0, 1e6); }
     words.requireEnd();
-    head_motion_ = headTrack(readText(path, words.place() + ": ", "a CSV file of head motion"), path.string(), axes);
+    head_motion_ = headTrack(readText(path, words.place() + ": ", "a CSV file of head motion", kMostRecordingBytes), path.string(), axes);
     if (motion_skip_s_ > head_motion_->lastTime()) {
         words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_, head_motion_->lastTime());
     }
