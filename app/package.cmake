@@ -5,7 +5,9 @@ include(GNUInstallDirs)
 install(TARGETS binosplat RUNTIME COMPONENT viewer)
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/binosplat COMPONENT viewer)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer PATTERN "*.py" EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
+install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)  # where the pages link to it
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
 
 # The man page and the completions are what the program itself says.
 if(NOT CMAKE_CROSSCOMPILING)

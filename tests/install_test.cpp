@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <regex>
 
 namespace fs = std::filesystem;
 using binosplat::test::Outcome;
@@ -27,7 +28,7 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     INFO(installed.errors);
     REQUIRE(installed.exit_code == 0);
     for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
-                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/README.md", "share/man/man1/binosplat.1",
+                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright", "share/man/man1/binosplat.1",
                              "share/bash-completion/completions/binosplat", "share/zsh/vendor-completions/_binosplat",
                              "share/fish/vendor_completions.d/binosplat.fish"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
@@ -42,6 +43,26 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     CHECK(unknown.exit_code == 1);
     CHECK(unknown.errors.find("quest2") != std::string::npos);
     CHECK_FALSE(fs::exists(work.path / "other"));
+}
+
+TEST_CASE("links between the installed documents lead somewhere") {
+    const Workplace work;
+    REQUIRE(install(work, work.base / "prefix").exit_code == 0);
+    const fs::path documents = work.base / "prefix" / "share" / "doc" / "binosplat";
+    const std::regex link(R"(\]\(([^)\s#]+)[^)\s]*\))");
+    int links = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(documents)) {
+        if (entry.path().extension() != ".md") { continue; }
+        std::ifstream file(entry.path(), std::ios::binary);
+        const std::string text(std::istreambuf_iterator<char>(file), {});
+        for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{}; ++match) {
+            const std::string target = (*match)[1];
+            if (target.starts_with("http")) { continue; }
+            CHECK_MESSAGE(fs::exists(entry.path().parent_path() / target), entry.path().string() << ": " << target);
+            ++links;
+        }
+    }
+    CHECK(links > 50);
 }
 
 #ifdef BINOSPLAT_WITH_VIEWER
