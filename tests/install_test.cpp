@@ -82,6 +82,42 @@ TEST_CASE("an installed viewer runs on the installed simulated runtime") {
 }
 #endif
 
+TEST_CASE("packages of an untagged source say which, and those of a later commit are newer") {
+    const Workplace work;
+    fs::create_directories(work.path / "app");
+    fs::copy_file(BINOSPLAT_SOURCE_DIR "/app/package_version.cmake", work.path / "app" / "package_version.cmake");
+    std::ofstream(work.path / "print.cmake") << "set(CPACK_PACKAGE_VERSION 0.1.0)\ninclude(app/package_version.cmake)\n"
+                                                "execute_process(COMMAND ${CMAKE_COMMAND} -E echo_append ${CPACK_PACKAGE_VERSION})\n";
+    const auto version = [&] { return work.runCommand("GIT_CEILING_DIRECTORIES=\"$PWD/..\" '" BINOSPLAT_CMAKE "' -P print.cmake").output; };
+    const auto git = [&](const std::string& arguments) {
+        const Outcome done =
+            work.runCommand("git -c core.hooksPath= -c commit.gpgSign=false -c user.name=test -c user.email=test " + arguments);
+        INFO(done.errors);
+        REQUIRE(done.exit_code == 0);
+    };
+    const auto isOlder = [&](const std::string& first, const std::string& second) {
+        return work.runCommand("dpkg --validate-version '" + first + "' && dpkg --compare-versions '" + first + "' lt '" + second + "'")
+                   .exit_code == 0;
+    };
+    CHECK(version() == "0.1.0");  // no checkout
+    git("init -q");
+    git("add -A");
+    git("commit -q -m first");
+    const std::string first = version();
+    CHECK(first.starts_with("0.1.0~git1."));
+    CHECK(isOlder(first, "0.1.0"));
+    git("commit -q --allow-empty -m second");
+    const std::string second = version();
+    CHECK(isOlder(first, second));
+    git("tag v0.1.0");
+    CHECK(version() == "0.1.0");
+    git("commit -q --allow-empty -m third");
+    CHECK(version().starts_with("0.1.0+git3."));
+    CHECK(isOlder("0.1.0", version()));
+    std::ofstream(work.path / "print.cmake", std::ios::app) << "\n";
+    CHECK(version().ends_with(".dirty"));
+}
+
 TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
     const Workplace work;
     const fs::path headsets = work.base / "data" / "configs" / "headsets";
