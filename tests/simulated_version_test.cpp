@@ -24,10 +24,10 @@ TEST_CASE("the runtime negotiates 1.1, or what its loader can do with") {
     CHECK(XR_VERSION_MINOR(runtime.api) == 1);
     void* const library = dlopen(Direct::path().c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto negotiate = reinterpret_cast<Negotiate>(dlsym(library, "xrNegotiateLoaderRuntimeInterface"));
-    LoaderInfo elder;
-    elder.most_api = XR_MAKE_VERSION(1, 0, 0xFFF);
+    LoaderInfo older;
+    older.most_api = XR_MAKE_VERSION(1, 0, 0xFFF);
     RuntimeRequest request;
-    CHECK(negotiate(&elder, &request) == XR_SUCCESS);
+    CHECK(negotiate(&older, &request) == XR_SUCCESS);
     CHECK(XR_VERSION_MINOR(request.api) == 0);
     dlclose(library);
 }
@@ -112,12 +112,12 @@ TEST_CASE("LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL broug
         return std::find(types.begin(), types.end(), floor) != types.end();
     };
     {
-        const HeadlessSession elder(k1_0, {});
+        const HeadlessSession older(k1_0, {});
         XrSpace space = XR_NULL_HANDLE;
-        CHECK_FALSE(isListed(elder));
-        CHECK(elder.makeSpace(floor, space) == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
+        CHECK_FALSE(isListed(older));
+        CHECK(older.makeSpace(floor, space) == XR_ERROR_REFERENCE_SPACE_UNSUPPORTED);
         XrExtent2Df bounds;
-        CHECK(elder.xr<PFN_xrGetReferenceSpaceBoundsRect>("xrGetReferenceSpaceBoundsRect")(elder.session, floor, &bounds) ==
+        CHECK(older.xr<PFN_xrGetReferenceSpaceBoundsRect>("xrGetReferenceSpaceBoundsRect")(older.session, floor, &bounds) ==
               XR_ERROR_VALIDATION_FAILURE);
     }
     for (const auto& [version, extensions] :
@@ -234,9 +234,9 @@ TEST_CASE("the palm's surface is grip_surface in 1.1 and palm_ext by the extensi
     const char* const simple = "/interaction_profiles/khr/simple_controller";
     const char *const grip_surface = "/user/hand/left/input/grip_surface/pose", *const palm = "/user/hand/left/input/palm_ext/pose";
     {
-        const DirectInstance elder(k1_0, {});
-        CHECK(elder.suggest(simple, grip_surface) == XR_ERROR_PATH_UNSUPPORTED);
-        CHECK(elder.suggest(simple, palm) == XR_ERROR_PATH_UNSUPPORTED);
+        const DirectInstance older(k1_0, {});
+        CHECK(older.suggest(simple, grip_surface) == XR_ERROR_PATH_UNSUPPORTED);
+        CHECK(older.suggest(simple, palm) == XR_ERROR_PATH_UNSUPPORTED);
     }
     {
         const DirectInstance extended(k1_0, {XR_EXT_PALM_POSE_EXTENSION_NAME});

@@ -92,7 +92,7 @@ TEST_CASE_FIXTURE(VulkanFixture, "a device is made on the graphics device alone"
     CHECK(create(instance, &info, &made, &result) == XR_ERROR_SYSTEM_INVALID);
 }
 
-TEST_CASE("the elder extension has functions of its own, and needs no extensions of Vulkan") {
+TEST_CASE("the older extension has functions of its own, and needs no extensions of Vulkan") {
     const Headset headset(kQuietScript);
     const std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE_EXTENSION_NAME};
     const XrInstanceCreateInfo info = instanceInfo(extensions);
