@@ -5,7 +5,9 @@ include(GNUInstallDirs)
 install(TARGETS binosplat RUNTIME COMPONENT viewer)
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/binosplat COMPONENT viewer)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer PATTERN "*.py" EXCLUDE)
-install(FILES README.md CHANGELOG.md LICENSE third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)
+install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)  # where the pages link to it
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
 
 # The man page and the completions are what the program itself says.
 if(NOT CMAKE_CROSSCOMPILING)
@@ -25,7 +27,8 @@ endif()
 
 set(CPACK_PACKAGE_NAME binosplat)
 set(CPACK_PACKAGE_VENDOR "the binosplat authors")
-set(CPACK_PACKAGE_CONTACT "the binosplat authors <binosplat@localhost>")
+set(CPACK_PACKAGE_CONTACT "the binosplat authors")
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/app/package_version.cmake)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Gaussian splatting scenes in a VR headset")
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)

@@ -78,7 +78,7 @@ public:
     void show(const GpuScene& scene);
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
-    // frame is done again: the result is never that of a truncated list. Throws Error if the device has not the memory.
+    // frame is done again: the result is never that of a truncated list. Throws Error if the device lacks the memory.
     // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
     // For whoever shows frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last,

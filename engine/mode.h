@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// DESIGN, "the stereo methods".
+// What each costs and does is told in docs/how-it-works.md.
 enum class Mode {
     kMono,       // one eye
     kTwoPass,    // both eyes in full, nothing shared: the paper's reference

@@ -1,5 +1,5 @@
-// What only the operating system can say or do: platform_posix.cpp asks POSIX, platform_windows.cpp asks Windows. Nothing else includes a
-// header of a system.
+// What only the operating system can say or do: platform_posix.cpp asks POSIX, platform_windows.cpp asks Windows. Nothing else in engine/,
+// app/ and xr/ includes a header of a system, except the simulated runtime (dlopen).
 #pragma once
 
 #include <cstddef>

@@ -20,7 +20,7 @@ KernelTable presentKernels();
 
 class Presenter {
 public:
-    // Of images of `colour_format`. Throws Error if it has not four channels of 8 bits.
+    // Of images of `colour_format`. Throws Error if it does not have four channels of 8 bits.
     Presenter(const Context& context, vk::Format colour_format);
 
     [[nodiscard]] static bool takes(vk::Format colour_format);

@@ -119,3 +119,20 @@ TEST_CASE("the simulated runtime's folder has the same licence") {
     REQUIRE(!textOf(kSource / "LICENSE").empty());
     CHECK(textOf(kSource / "xr" / "simulated" / "LICENSE") == textOf(kSource / "LICENSE"));
 }
+
+TEST_CASE("every library that is built with has its row in the notices, and its licence if it is compiled in") {
+    const std::string notices = textOf(kSource / "third_party" / "NOTICES.md");
+    const std::size_t licences = notices.find("\n## Licences of what is compiled in");
+    REQUIRE(licences != std::string::npos);
+    std::string rows;
+    for (const std::string& row : findAll(notices.substr(0, licences), "\n(\\|[^\n]*)")) {
+        for (const char c : row) { rows += static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+        if (row.find("compiled in") == std::string::npos) { continue; }
+        const std::string link = row.substr(2, row.find(')') - 1);
+        CHECK_MESSAGE(notices.find(link, licences) != std::string::npos, "no licence of " << link);
+    }
+    const std::vector<std::string> libraries =
+        findAll(textOf(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
+    CHECK(libraries.size() > 10);
+    for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
+}

@@ -98,7 +98,7 @@ TEST_CASE("a signal ends render and bench as a shell expects, with nothing half-
     machine.checkFails(kBench, fault("submit", 12, "SIGTERM"), 143, "stopped by SIGTERM, nothing was written");
 }
 
-TEST_CASE("a full disk is said with the file, and no file is left") {
+TEST_CASE("on a full disk the message names the file, and no file is left") {
     // Files of so many blocks (512 bytes) at most: what goes beyond fails as on a full disk, if with another reason.
     const auto limit = [](int blocks) { return fmt::format("ulimit -f {};", blocks); };
     const Machine machine;

@@ -185,7 +185,7 @@ TEST_CASE("the flag of antialiased scenes goes through SPZ") {
     }
 }
 
-// The pictures add 0.3 px^2 along x alone: all but that is held against them. Along both axes, as trainings have it and as DESIGN says,
+// The pictures add 0.3 px^2 along x alone: all but that is held against them. Along both axes, as trainings and we have it,
 // they are 31.7 and 33.4 dB away.
 TEST_CASE("pictures of an independent renderer are met where the low-pass is theirs") {
     const auto data = sharedData();

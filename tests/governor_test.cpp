@@ -329,7 +329,7 @@ TEST_CASE("what others leave again is used again") {
     CHECK(run.last().settings == GovernedSettings{Mode::kShared, 0.22, 1.0});
 }
 
-TEST_CASE("where displays are missed whatever is drawn nothing is given up for it but for a moment, and that is said") {
+TEST_CASE("where displays are missed whatever is drawn nothing is given up for it but for a moment, and a message says so") {
     const Run run = govern(
         Quality::kFast, 200.0, [](double, const GovernedSettings& s) { return cost(7.0, 0.8, s); }, {}, kWish,
         [](double, double gpu_ms) { return lostBy(gpu_ms, 12.0, kPeriodMs); });
@@ -424,7 +424,7 @@ TEST_CASE("frames that come late now and then, or early for each that is late, c
     CHECK(govern(Quality::kFast, 20.0, fits, {}, kWish, alternating).changes().empty());
 }
 
-TEST_CASE("without times nothing is chosen, and that is said") {
+TEST_CASE("without times nothing is chosen, and a message says so") {
     const Run run = govern(Quality::kFast, 2.0, [](double, const GovernedSettings&) { return 0.0; });
     CHECK(run.changes().empty());
     CHECK(run.last().sentence.find("does not say") != std::string::npos);

@@ -117,7 +117,7 @@ TEST_CASE("broken settings") {
         for (const char* around :
              {"a = 2\"{}\"\n", "a = -2[\"{}\"]\n", "a = [--2[\"{}\"]]\n", "a = 2=\"{}\"\n", "a = [\nb=\"{}\"]\n", "a = [-{{\"{}\"\n",
               "a = 2]\"{}\"\n", "a = [[\"x\"]-\"{}\"]\n", "a = 2 [\"{}\"]\n", "a = \"\\\n\"{}\"\n"}) {
-            attempts.attempt("quotes that are none", fmt::format(fmt::runtime(around), letter));
+            attempts.attempt("letters that look like quotes", fmt::format(fmt::runtime(around), letter));
         }
     }
     attempts.attempt("several lines", "a = \"\"\"\nb\n\"\"\"\n");

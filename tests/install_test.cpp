@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <regex>
 
 namespace fs = std::filesystem;
 using binosplat::test::Outcome;
@@ -27,7 +28,7 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     INFO(installed.errors);
     REQUIRE(installed.exit_code == 0);
     for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
-                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/README.md", "share/man/man1/binosplat.1",
+                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright", "share/man/man1/binosplat.1",
                              "share/bash-completion/completions/binosplat", "share/zsh/vendor-completions/_binosplat",
                              "share/fish/vendor_completions.d/binosplat.fish"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
@@ -42,6 +43,26 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     CHECK(unknown.exit_code == 1);
     CHECK(unknown.errors.find("quest2") != std::string::npos);
     CHECK_FALSE(fs::exists(work.path / "other"));
+}
+
+TEST_CASE("links between the installed documents lead somewhere") {
+    const Workplace work;
+    REQUIRE(install(work, work.base / "prefix").exit_code == 0);
+    const fs::path documents = work.base / "prefix" / "share" / "doc" / "binosplat";
+    const std::regex link(R"(\]\(([^)\s#]+)[^)\s]*\))");
+    int links = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(documents)) {
+        if (entry.path().extension() != ".md") { continue; }
+        std::ifstream file(entry.path(), std::ios::binary);
+        const std::string text(std::istreambuf_iterator<char>(file), {});
+        for (std::sregex_iterator match(text.begin(), text.end(), link); match != std::sregex_iterator{}; ++match) {
+            const std::string target = (*match)[1];
+            if (target.starts_with("http")) { continue; }
+            CHECK_MESSAGE(fs::exists(entry.path().parent_path() / target), entry.path().string() << ": " << target);
+            ++links;
+        }
+    }
+    CHECK(links > 50);
 }
 
 #ifdef BINOSPLAT_WITH_VIEWER
@@ -68,6 +89,42 @@ TEST_CASE("an installed viewer runs on the installed simulated runtime") {
     CHECK(fs::exists(work.path / "seen" / "frames.jsonl"));
 }
 #endif
+
+TEST_CASE("packages of an untagged source say which, and those of a later commit are newer") {
+    const Workplace work;
+    fs::create_directories(work.path / "app");
+    fs::copy_file(BINOSPLAT_SOURCE_DIR "/app/package_version.cmake", work.path / "app" / "package_version.cmake");
+    std::ofstream(work.path / "print.cmake") << "set(CPACK_PACKAGE_VERSION 0.1.0)\ninclude(app/package_version.cmake)\n"
+                                                "execute_process(COMMAND ${CMAKE_COMMAND} -E echo_append ${CPACK_PACKAGE_VERSION})\n";
+    const auto version = [&] { return work.runCommand("GIT_CEILING_DIRECTORIES=\"$PWD/..\" '" BINOSPLAT_CMAKE "' -P print.cmake").output; };
+    const auto git = [&](const std::string& arguments) {
+        const Outcome done =
+            work.runCommand("git -c core.hooksPath= -c commit.gpgSign=false -c user.name=test -c user.email=test " + arguments);
+        INFO(done.errors);
+        REQUIRE(done.exit_code == 0);
+    };
+    const auto isOlder = [&](const std::string& first, const std::string& second) {
+        return work.runCommand("dpkg --validate-version '" + first + "' && dpkg --compare-versions '" + first + "' lt '" + second + "'")
+                   .exit_code == 0;
+    };
+    CHECK(version() == "0.1.0");  // no checkout
+    git("init -q");
+    git("add -A");
+    git("commit -q -m first");
+    const std::string first = version();
+    CHECK(first.starts_with("0.1.0~git1."));
+    CHECK(isOlder(first, "0.1.0"));
+    git("commit -q --allow-empty -m second");
+    const std::string second = version();
+    CHECK(isOlder(first, second));
+    git("tag v0.1.0");
+    CHECK(version() == "0.1.0");
+    git("commit -q --allow-empty -m third");
+    CHECK(version().starts_with("0.1.0+git3."));
+    CHECK(isOlder("0.1.0", version()));
+    std::ofstream(work.path / "print.cmake", std::ios::app) << "\n";
+    CHECK(version().ends_with(".dirty"));
+}
 
 TEST_CASE("BINOSPLAT_DATA names the folder that holds configs") {
     const Workplace work;

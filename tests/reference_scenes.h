@@ -65,7 +65,7 @@ struct PlainHit {
     double rho, depth, alpha;
 };
 
-// A pixel's hit by DESIGN's "what a pixel is", by solving u a + v b + c = z ray.
+// A pixel's hit as 2DGS, section 4, defines it, by solving u a + v b + c = z ray.
 inline std::optional<PlainHit> hitPlainly(const Scene& scene, std::size_t i, const Eye& eye, glm::dvec2 pixel, double near) {
     const glm::dmat3 camera_from_world = glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation));
     const glm::quat& q = scene.rotations[i];

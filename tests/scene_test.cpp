@@ -1,4 +1,4 @@
-// The built-in scenes, what is said of a scene, and the shared ones.
+// The built-in scenes, what `info` says of a scene, and the shared ones.
 #include "engine/scene/describe.h"
 #include "engine/scene/procedural.h"
 #include "tests/ply_files.h"

@@ -57,7 +57,7 @@ bool same(const Similarity& a, const Similarity& b) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Shown, "what is no scene is said in one line and keeps what is shown") {
+TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was shown stays") {
     ShownScene scenes(context(), options, log);
     REQUIRE(scenes.take(settings).empty());
     CHECK(scenes.name() == "builtin:step-edge");

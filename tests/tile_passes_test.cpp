@@ -168,7 +168,7 @@ TEST_CASE_FIXTURE(Gpu, "sorting by tile keeps the depth order within each") {
     const Buffer histograms(context(), "histograms", Sort::histogramBytes(count));
     KeyValues sorted;
     run([&](Commands& commands) {
-        // 256 tiles and the one that is none: 9 bits, two rounds.
+        // 256 tiles and one number more for no tile: 9 bits, two rounds.
         sorted =
             sort.record(commands, {keys.address<gpu::uint>(), values.address<gpu::uint>()},
                         {spare_keys.address<gpu::uint>(), spare_values.address<gpu::uint>()}, histograms.address<gpu::uint>(), list, 0, 9);

@@ -100,7 +100,7 @@ TEST_CASE("a load that is over gives the resolution back, little by little and a
     CHECK(run.widths.back() == kWhole);
 }
 
-TEST_CASE("where the least settings are too slow as well that is said, once, and they stay") {
+TEST_CASE("where the least settings are too slow as well one message says so, and they stay") {
     const Governed run("sharp", "at 1.5 gpu-load 5000 ms-per-megapixel\n", 110);
     CHECK(run.widths[80] == kWhole * 8 / 10);
     CHECK(run.isOver(80));

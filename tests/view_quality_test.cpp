@@ -30,7 +30,7 @@ int widthAt(const ViewRun& run, std::size_t frame) {
 
 }  // namespace
 
-TEST_CASE("where nothing fits, the least settings of the quality are reached within 60 frames, and that is said") {
+TEST_CASE("where nothing fits, the least settings of the quality are reached within 60 frames, and a message says so") {
     const Workplace work;
     for (const auto& [quality, least] : {std::pair("sharp", 160), std::pair("fast", 80)}) {
         const ViewRun run = runQuality(work, quality, kSlow, 70, fmt::format("quality = \"{}\"\n", quality));
@@ -62,7 +62,7 @@ TEST_CASE("the headset is asked for the rate that the settings name, and said to
     CHECK(periodAt(runQuality(work, "left", kQuick, 10, ""), 8) == 11'111'111);
 }
 
-TEST_CASE("a quality that is none is refused") {
+TEST_CASE("an unknown quality is refused") {
     const Workplace work;
     std::ofstream(work.path / "bad.toml") << "[view]\nquality = \"best\"\n";
     const Outcome outcome = work.run("view builtin:fence --simulate --frames 3 --config bad.toml");

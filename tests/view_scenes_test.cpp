@@ -33,7 +33,7 @@ std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s) 
 
 }  // namespace
 
-TEST_CASE("the next scene comes while this one stays, and one that cannot be read is said and keeps it") {
+TEST_CASE("the next scene comes while this one stays, and one that cannot be read gives a message and changes nothing") {
     const Workplace work;
     REQUIRE(work.run("scene fence --out a.ply").exit_code == 0);
     std::ofstream(work.path / "b.ply") << "ply\nnonsense\n";

@@ -51,7 +51,7 @@ TEST_CASE("sessions that are lost again and again before they show anything are 
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
 
-TEST_CASE("a lost runtime is said in one line, with three") {
+TEST_CASE("a lost runtime gives one line and exit code 3") {
     const Workplace work;
     for (const char* time : {"0", "0.02", "0.2"}) {
         const ViewRun run = runView(work, "gone", kSmall + fmt::format("at {} lose-instance\n", time),

@@ -10,6 +10,7 @@ packages=(
     libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev
     libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libglfw3-dev fonts-dejavu-core
     doctest-dev python3 xvfb xdotool
+    dpkg-dev file
 )
 
 if ! command -v dpkg-query >/dev/null; then

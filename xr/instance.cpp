@@ -12,7 +12,7 @@
 namespace binosplat::xr {
 namespace {
 
-// Of OpenXR 1.1; elder headers have not its name.
+// Of OpenXR 1.1; older headers lack its name.
 constexpr const char* kLocalFloorExtension = "XR_EXT_local_floor";
 constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
 

@@ -18,7 +18,7 @@ constexpr double kLongestStepSeconds = 0.1;
 constexpr double kShortestPeriodMs = 1.0, kLongestPeriodMs = 100.0;
 constexpr float kHalfIpdMetres = 0.0315f;  // while the headset does not say where its eyes are
 constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
-// XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR, which elder headers have not.
+// XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR, which older headers lack.
 constexpr auto kLocalFloor = static_cast<XrReferenceSpaceType>(1000426000);
 
 // The head without its tilt, in our axes; one that looks straight up or down keeps the heading of its right-hand side.
@@ -293,7 +293,7 @@ void Session::readHiddenMesh(int eye) {
     HiddenMesh& mesh = hidden_meshes_[static_cast<std::size_t>(eye)];
     mesh = {};
     ++hidden_mesh_version_;
-    // Some runtimes list the extension and have not its function.
+    // Some runtimes list the extension but lack its function.
     PFN_xrVoidFunction found = nullptr;
     if (XR_FAILED(xrGetInstanceProcAddr(instance_.handle(), "xrGetVisibilityMaskKHR", &found)) || found == nullptr) { return; }
     const auto get = reinterpret_cast<PFN_xrGetVisibilityMaskKHR>(found);

@@ -7,6 +7,8 @@
 #include "engine/error.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace binosplat {
 
@@ -107,6 +109,16 @@ std::string markdown() {
     return text;
 }
 
+// What docs/render.md says of these at greater length.
+constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
+    {"BINOSPLAT_DATA", "folder that holds configs/headsets"},
+    {"BINOSPLAT_PIPELINE_CACHE", "folder for what the driver compiles; 0: none"},
+    {"BINOSPLAT_FONT", "TrueType font of the viewer's panel"},
+    {"BINOSPLAT_SHADERS", "folder of the shaders' sources, which the viewer's panel then compiles anew"},
+    {"BINOSPLAT_VISIBILITY_MASK", "0: the viewer also draws what the headset's lenses hide"},
+    {"BINOSPLAT_VALIDATION", "1: with Vulkan's validation layers, whose messages fail the command"},
+}};
+
 // What begins a line with a dot or an apostrophe would be a request, and a bare dash a hyphen that searches do not find.
 std::string manText(const std::string& text) {
     std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
@@ -129,10 +141,8 @@ std::string man() {
     }
     text +=
         ".SH EXIT STATUS\n0 done; 1 bad input; 2 the command line was not understood; 3 no usable device, runtime or headset; 130 and 143 "
-        "interrupted.\n"
-        ".SH ENVIRONMENT\n.TP\n.B BINOSPLAT_DATA\nfolder that holds configs/headsets\n.TP\n.B BINOSPLAT_PIPELINE_CACHE\nfolder for what "
-        "the driver compiles; 0: "
-        "none\n.TP\n.B BINOSPLAT_VALIDATION\n1: with Vulkan's validation layers, whose messages fail the command\n";
+        "interrupted.\n.SH ENVIRONMENT\n";
+    for (const auto& [name, help] : kEnvironment) { text += fmt::format(".TP\n.B {}\n{}\n", name, manText(help)); }
     return text;
 }
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t kAny32 = std::numeric_limits<std::uint32_t>::max();
 // A gap is filled pixel by pixel from its two ends; beyond this it is no crack in a surface but something hidden.
 constexpr std::uint64_t kMaxGapPx = 64;
 constexpr std::uint64_t kMaxMoveCost = 1'000'000;
-// Values lie between 0 and a few; the passes hold a pixel's squared error under 64.
+// Colours lie between 0 and a few, and no pixel of a moved tile counts for more than a squared error of 4 (kMaxPixelError).
 constexpr double kMaxExpectedError = 8.0;
 constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;

@@ -10,7 +10,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
-// Of a controller that is none in particular: a handle in the fist, and a knob before it.
+// A controller of no particular make: a handle in the fist, and a knob before it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
 
 }  // namespace

@@ -20,7 +20,7 @@ enum class MemoryKind {
 class Buffer {
 public:
     Buffer() = default;
-    // Throws Error if the device has not that much memory; `name` says for what.
+    // Throws Error if the device lacks that much memory; `name` says for what.
     Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind = MemoryKind::kDevice);
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;

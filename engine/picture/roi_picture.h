@@ -23,7 +23,7 @@ enum class PixelOrigin : std::uint8_t {
 // One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap, or 0 for a tile that stays as
 // reprojected; tiles of kTileSize pixels, row-major, ceil(width / kTileSize) to a row. `pixel_classes` holds kCovered, kGap or kHole
 // for each pixel and counts where the tile's kind is 0. Either list may be empty: then it says 0 everywhere.
-// Throws Error if a list has another length than the picture needs, or a value that is none of these.
+// Throws Error if a list has another length than the picture needs, or an unknown value.
 std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::uint32_t> tile_kinds,
                                        std::span<const std::uint8_t> pixel_classes);
 

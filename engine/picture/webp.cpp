@@ -24,7 +24,7 @@ constexpr std::size_t kStreamHeaderBytes = 5;
 constexpr std::size_t kAlphaByte = 4;
 constexpr std::byte kAlphaBit{0x10};
 
-// The chunk VP8L of a file, be it alone or among others.
+// The chunk VP8L of a file, alone or among others.
 std::span<const std::byte> findStream(std::span<const std::byte> file, const std::string& name) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     check(file.size() >= 12 && text.starts_with("RIFF") && text.substr(8, 4) == "WEBP", "{}: not a WebP file, expected one", name);

@@ -1,5 +1,5 @@
 // The float64 twins of the GPU passes: same names, same order, no shared arithmetic. They are the truth tests compare with.
-// Each function is one pass of shaders/N_name.comp; `render` runs them all. Source of the equations: DESIGN "what a pixel is"
+// Each function is one pass of shaders/N_name.comp; `render` runs them all. The equations: docs/how-it-works.md
 // (2DGS, Huang et al. 2024, section 4; 3DGS, Kerbl et al. 2023, section 4).
 #pragma once
 

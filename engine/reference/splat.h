@@ -114,7 +114,7 @@ inline PixelRows pixelRows(const ProjectedSplat& splat, glm::uvec2 size_px) {
     return rows;
 }
 
-// (u/z, v/z, 1/z) as a linear function of the pixel: q / det of DESIGN's formula.
+// (u/z, v/z, 1/z) as a linear function of the pixel: q / det, where q = x (V x W) + y (W x U) + (U x V) and det = U . (V x W).
 struct RayPlane {
     glm::dvec2 origin_px;
     glm::dvec3 at_origin, along_x, along_y;

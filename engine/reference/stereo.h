@@ -1,5 +1,5 @@
 // The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
-// shaders/8*.comp or a part of one; `renderStereo` runs them all. Source: DESIGN "the stereo methods"; paper, sections 3.4 and 3.5.
+// shaders/8*.comp or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4 and 3.5.
 // Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A scene of Gaussian splats on the host, 2D (discs) or 3D, as float32 after the activations of DESIGN's "what a pixel is".
+// A scene of Gaussian splats on the host, 2D (discs) or 3D, as float32 after the activations of their training (docs/how-it-works.md).
 #pragma once
 
 #include <glm/glm.hpp>

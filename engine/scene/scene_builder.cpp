@@ -1,4 +1,4 @@
-// Blocks put together, and what is said about them.
+// Puts blocks together into a scene, and notes what was odd about them.
 #include "engine/scene/scene_builder.h"
 
 #include "engine/error.h"

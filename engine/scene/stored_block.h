@@ -1,4 +1,4 @@
-// Splats as files store them, in blocks, and the same splats after the activations of DESIGN's "what a pixel is".
+// Splats as files store them, in blocks, and the same splats after the activations of their training.
 #pragma once
 
 #include <glm/glm.hpp>

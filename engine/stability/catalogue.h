@@ -1,4 +1,4 @@
-// The stiff and extreme cases of DESIGN, section 7, as data: a scene, eyes, and what the device's pictures must keep to beside
+// The stiff and extreme cases of docs/results/stability.md as data: a scene, eyes, and what the device's pictures must keep to beside
 // those of the float64 twin.
 #pragma once
 

@@ -1,32 +1,125 @@
 #!/usr/bin/env bash
-# Makes both Debian packages, installs them in a bare Debian tree, and runs what they hold from a folder of its own there. As root, with
-# debootstrap and a network; about ten minutes. The tree in build/bare-debian is kept for the next run.
-# usage: tests/packages/run.sh [BUILD]
+# Tries what people install, in bare Debian trees. As root, with debootstrap and a network.
+#   tests/packages/run.sh [BUILD]
+#       Makes both Debian packages and the tarball of a finished build, and tries each: some ten minutes.
+#   tests/packages/run.sh --whole [options of ctest]
+#       Begins with a clean clone of the last commit in a fresh tree: `./run demo`, `./run test` and `cmake --install`, each tried, then the
+#       packages made there. Hours the first time; the compiler's cache is kept.
+# In build/ stay bare-debian, where packages are tried, bare-whole, the other tree, and bare-ccache.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-build=${1:-build/release}
-tree=$PWD/build/bare-debian
 
-[[ -e $tree/etc/debian_version ]] || debootstrap --variant=minbase bookworm "$tree"
-rm -rf build/packages
-cpack --config "$build/CPackConfig.cmake" -G DEB -B "$PWD/build/packages"
-cp build/packages/*.deb "$tree/tmp/"
-cp /etc/resolv.conf "$tree/etc/"
-mount -t proc proc "$tree/proc"
-trap 'umount "$tree/proc"' EXIT
+mounted=()
+unmountAll() {
+    local at
+    for ((at = ${#mounted[@]} - 1; at >= 0; --at)); do umount "${mounted[at]}"; done
+}
+trap unmountAll EXIT
 
-chroot "$tree" bash -euc '
-    export DEBIAN_FRONTEND=noninteractive
-    apt-get update -q
-    apt-get install -y -q --no-install-recommends --allow-downgrades /tmp/binosplat*.deb mesa-vulkan-drivers
+openTree() { # TREE
+    [[ -e $1/etc/debian_version ]] || debootstrap --variant=minbase bookworm "$1"
+    cp /etc/resolv.conf "$1/etc/"
+    mount -t proc proc "$1/proc"
+    mounted+=("$1/proc")
+}
+
+# In the tree, with what follows on standard input; a step's time after it.
+enter() { # TREE
+    {
+        cat <<'END'
+set -euo pipefail
+step() {
+    local begin=$SECONDS
+    "$@"
+    echo "packages: $1 ${2:-}: $((SECONDS - begin)) s"
+}
+# The program that is on the PATH, from a folder that is nobody's.
+tryProgram() {
+    local work
     work=$(mktemp -d)
-    cd "$work"
-    binosplat --version
-    binosplat info builtin:fence
-    binosplat render builtin:fence --headset index --size 64x64 --out pictures
-    binosplat view builtin:fence --simulate --frames 30 --load-first --out seen
-    test -s pictures/report.json
-    test -s seen/frame_000030.png
+    (
+        cd "$work"
+        binosplat --version
+        binosplat info builtin:fence
+        binosplat render builtin:fence --headset index --size 64x64 --out pictures
+        binosplat view builtin:fence --simulate --frames 30 --load-first --out seen
+        test -s pictures/report.json
+        test -s seen/frame_000030.png
+    )
     rm -r "$work"
-'
+}
+END
+        cat
+    } >"$1/tmp/steps.sh"
+    chroot "$1" env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive \
+        ${http_proxy:+http_proxy="$http_proxy"} bash /tmp/steps.sh </dev/null
+}
+
+# Leaves build/packages as cpack does.
+makePackagesFromClone() { # [options of ctest]
+    local tree=$PWD/build/bare-whole
+    if mountpoint -q "$tree/proc" || mountpoint -q "$tree/root/.cache/ccache"; then
+        echo "tests/packages/run.sh: something is mounted in $tree, must be unmounted first" >&2
+        exit 1
+    fi
+    rm -rf --one-file-system "$tree"
+    openTree "$tree"
+    mkdir -p build/bare-ccache "$tree/root/.cache/ccache"
+    mount --bind build/bare-ccache "$tree/root/.cache/ccache"
+    mounted+=("$tree/root/.cache/ccache")
+    git bundle create -q "$tree/tmp/binosplat.bundle" HEAD
+    {
+        echo "test_options=(${*@Q})"
+        cat <<'END'
+apt-get update -q
+apt-get install -y -q --no-install-recommends git
+cd
+git clone -q /tmp/binosplat.bundle binosplat
+cd binosplat
+step ./run demo
+test -s out/demo/report.json
+step ./run test "${test_options[@]}"
+step cmake --install build/release
+step tryProgram
+xargs rm <build/release/install_manifest.txt
+step cpack --config build/release/CPackConfig.cmake -B "$PWD/build/packages"
+END
+    } | enter "$tree"
+    rm -rf build/packages
+    mkdir -p build/packages
+    cp "$tree"/root/binosplat/build/packages/*.{deb,tar.gz} build/packages/
+}
+
+tryPackages() {
+    local tree=$PWD/build/bare-debian
+    openTree "$tree"
+    rm -rf "$tree/tmp/packages"
+    mkdir "$tree/tmp/packages"
+    cp build/packages/*.{deb,tar.gz} "$tree/tmp/packages/"
+    enter "$tree" <<'END'
+# Those of an earlier run may be newer, or of the same version.
+dpkg --remove binosplat binosplat-simulated-runtime
+apt-get update -q
+step apt-get install -y -q --no-install-recommends /tmp/packages/*.deb mesa-vulkan-drivers
+step tryProgram
+
+# The tarball, from a folder of its own; what it is linked with stays from the packages.
+dpkg --remove binosplat binosplat-simulated-runtime
+if command -v binosplat; then exit 1; fi
+rm -rf /opt/binosplat
+mkdir /opt/binosplat
+tar -xzf /tmp/packages/binosplat-*.tar.gz -C /opt/binosplat --strip-components=1
+PATH=/opt/binosplat/bin:$PATH
+step tryProgram
+END
+}
+
+if [[ ${1:-} == --whole ]]; then
+    makePackagesFromClone "${@:2}"
+else
+    build=${1:-build/release}
+    rm -rf build/packages
+    cpack --config "$build/CPackConfig.cmake" -B "$PWD/build/packages"
+fi
+tryPackages
 echo "packages: installed, and run from a folder of their own"
