@@ -234,7 +234,7 @@ TEST_CASE("the page says where things are installed") {
     REQUIRE(fs::exists(installedManifest()));
     for (const char* file :
          {"lib/libsimulated_openxr_runtime.so", "share/openxr/1/simulated_openxr_runtime.json", "bin/compare_frame_logs"}) {
-        CHECK_MESSAGE(pageText().find("`" + std::string(file) + "`") != std::string::npos, file);
+        CHECK_MESSAGE(pageText().find(std::string(1, '`') + file + '`') != std::string::npos, file);
         CHECK_MESSAGE(fs::exists(kWork / "installed" / file), file);
     }
 }
