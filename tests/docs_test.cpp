@@ -1,5 +1,7 @@
-// Facts about the documents: what they link to is there, and the options and files that they name exist.
+// Facts about the documents: what they link to is there, the options and files that they name exist, and their commands are understood.
 #include "app/options/commands_table.h"
+#include "app/options/option_documents.h"
+#include "tests/run_program.h"
 
 #include <doctest/doctest.h>
 
@@ -9,6 +11,7 @@
 #include <fstream>
 #include <regex>
 #include <set>
+#include <sstream>
 
 namespace fs = std::filesystem;
 using namespace binosplat;
@@ -64,7 +67,7 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
 const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
                                             "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
                                             "--help",      "--version", "--success", "--pictures",  "--share",
-                                            "--tolerance", "--ignore"};
+                                            "--tolerance", "--ignore",  "--whole"};
 
 bool isOption(const std::string& name) {
     const auto has = [&](const Command& command) {
@@ -72,6 +75,100 @@ bool isOption(const std::string& name) {
                                    [&](const OptionDescription& option) { return name == fmt::format("--{}", option.text.key); });
     };
     return kForeignOptions.contains(name) || std::ranges::any_of(commands(), has);
+}
+
+// Lines of fenced blocks and spans of inline code.
+std::vector<std::string> codeLines(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    bool fenced = false;
+    for (std::string line; std::getline(stream, line);) {
+        if (line.starts_with("```")) {
+            fenced = !fenced;
+        } else if (fenced || line.starts_with("    ")) {
+            lines.push_back(line);
+        } else {
+            for (const std::string& span : findAll(line, "`([^`]+)`")) { lines.push_back(span); }
+        }
+    }
+    return lines;
+}
+
+// The words of a command, up to what a shell would read as its end; brackets around what may be left out are taken off.
+std::vector<std::string> wordsOf(const std::string& line) {
+    std::vector<std::string> words;
+    std::istringstream stream(line);
+    for (std::string word; stream >> word;) {
+        if (word == "&&" || word == "|" || word == ">" || word.starts_with('#')) { break; }
+        const bool ends = word.ends_with(';') || word.ends_with(',');
+        const std::size_t begin = word.find_first_not_of("[\""), end = word.find_last_not_of("];,\"");
+        if (begin != std::string::npos && end != std::string::npos && begin <= end) {
+            words.push_back(word.substr(begin, end + 1 - begin));
+        }
+        if (ends) { break; }
+    }
+    return words;
+}
+
+// What follows "binosplat" where a line calls it, with or without its folder and variables in front; nothing otherwise.
+std::vector<std::string> callOfProgram(const std::string& line) {
+    const std::vector<std::string> words = wordsOf(line);
+    const auto is_variable = [](const std::string& word) { return std::regex_match(word, std::regex("[A-Z_]+=.*")); };
+    const auto program = std::ranges::find_if_not(words, is_variable);
+    if (program == words.end() || program + 1 == words.end() || fs::path(*program).filename() != "binosplat") { return {}; }
+    return {program + 1, words.end()};
+}
+
+bool isPlaceholder(const std::string& word) { return std::isupper(static_cast<unsigned char>(word[0])) != 0; }
+
+// "" or what is wrong with a value of an option that is one of those that its range lists: "a, b, c".
+std::string wrongChoice(const OptionDescription& option, const std::string& value) {
+    if (option.range.find(", ") == std::string::npos || isPlaceholder(value)) { return ""; }
+    for (const std::string& choice : findAll(value, "([^|]+)")) {
+        if (fmt::format(", {}, ", option.range).find(fmt::format(", {}, ", choice)) == std::string::npos) {
+            return fmt::format("--{} is {}, must be one of {}", option.text.key, choice, option.range);
+        }
+    }
+    return "";
+}
+
+// "" or what `binosplat CALL` would refuse.
+std::string wrongCall(const std::vector<std::string>& call) {
+    if (call[0] == "--help" || call[0] == "--version") { return ""; }
+    const auto command = std::ranges::find_if(commands(), [&](const Command& each) { return each.name == call[0]; });
+    if (command == commands().end()) { return fmt::format("there is no command {}", call[0]); }
+    const std::vector<OptionDescription> options = optionsOf(*command);
+    std::size_t words = 0, least_words = 0;
+    std::set<std::string> given;
+    for (std::size_t i = 1; i < call.size(); ++i) {
+        if (!call[i].starts_with("--")) {
+            words += call[i] == "OPTIONS" ? 0 : 1;
+            continue;
+        }
+        const auto option =
+            std::ranges::find_if(options, [&](const OptionDescription& each) { return call[i].substr(2) == each.text.key; });
+        if (option == options.end()) {
+            if (call[i] == "--help") { continue; }
+            return fmt::format("{} has no {}", call[0], call[i]);
+        }
+        given.insert(option->text.key);
+        const std::string_view value = option->text.value;
+        const bool follows = i + 1 < call.size() && !call[i + 1].starts_with("--");
+        if (value.empty() || (value.starts_with('[') && !follows)) { continue; }
+        if (!follows) { return fmt::format("{} {}: no value", call[0], call[i]); }
+        ++i;
+        if (const std::string wrong = wrongChoice(*option, call[i]); !wrong.empty()) { return wrong; }
+    }
+    if (call.size() == 1) { return ""; }  // named, not shown
+    for (const Word& word : command->words) { least_words += word.required ? 1 : 0; }
+    const bool many = std::ranges::any_of(command->words, [](const Word& word) { return word.many; });
+    if (words < least_words || (words > command->words.size() && !many)) {
+        return fmt::format("{} takes {} words, not {}", call[0], command->words.size(), words);
+    }
+    for (const OptionDescription& option : options) {
+        if (option.text.required && !given.contains(option.text.key)) { return fmt::format("{} needs --{}", call[0], option.text.key); }
+    }
+    return "";
 }
 
 }  // namespace
@@ -135,4 +232,99 @@ TEST_CASE("every library that is built with has its row in the notices, and its 
         findAll(textOf(kSource / "third_party" / "CMakeLists.txt"), R"(add_library\(third_party_([a-z0-9]+) )");
     CHECK(libraries.size() > 10);
     for (const std::string& library : libraries) { CHECK_MESSAGE(rows.find(library) != std::string::npos, "no row of " << library); }
+}
+
+TEST_CASE("calls of the program that are wrong are found") {
+    for (const std::string line :
+         {"binosplat rendr builtin:fence", "binosplat info builtin:fence --mode paper", "binosplat render a.ply --mode papr --out OUT",
+          "out/bin/binosplat render a.ply --out", "A=b binosplat convert a.ply", "binosplat info a.ply b.ply",
+          "binosplat render SCENE --motion-axes unity --out OUT", "binosplat render SCENE"}) {
+        REQUIRE_FALSE(callOfProgram(line).empty());
+        CHECK_MESSAGE(!wrongCall(callOfProgram(line)).empty(), line);
+    }
+    for (const std::string line : {"binosplat bench", "binosplat bench SCENE... [--mode MODE] --every 5 --out DIR && echo",
+                                   "binosplat --version", "binosplat view a.ply --simulate --mode paper"}) {
+        CHECK_MESSAGE(wrongCall(callOfProgram(line)).empty(), line << ": " << wrongCall(callOfProgram(line)));
+    }
+    CHECK(callOfProgram("cmake --build build --target binosplat").empty());
+}
+
+TEST_CASE("commands that the documents show are understood") {
+    int calls = 0, runs = 0;
+    const std::vector<std::string> run_commands = findAll(textOf(kSource / "run"), R"(\n    ([a-z]+)\)\n)");
+    REQUIRE(run_commands.size() == 3);
+    const std::string presets = textOf(kSource / "CMakePresets.json");
+    for (const fs::path& document : documents()) {
+        for (const std::string& line : codeLines(textOf(document))) {
+            if (const std::vector<std::string> call = callOfProgram(line); !call.empty()) {
+                CHECK_MESSAGE(wrongCall(call).empty(), document.string() << ": " << line << ": " << wrongCall(call));
+                ++calls;
+            }
+            const std::vector<std::string> words = wordsOf(line);
+            if (words.size() > 1 && words[0] == "./run") {
+                CHECK_MESSAGE(std::ranges::find(run_commands, words[1]) != run_commands.end(), document.string() << ": " << line);
+                ++runs;
+            }
+            for (const std::string& preset : findAll(line, "--preset ([a-z]+)")) {
+                CHECK_MESSAGE(presets.find(fmt::format("\"name\": \"{}\"", preset)) != std::string::npos, document.string()
+                                                                                                              << ": " << line);
+            }
+            for (const std::string& word : words) {
+                if (!std::regex_match(word, std::regex("(configs|tests|third_party|xr|docs)/[a-zA-Z0-9_./-]+"))) { continue; }
+                CHECK_MESSAGE(fs::exists(kSource / word), document.string() << ": " << line);
+            }
+        }
+    }
+    CHECK(calls > 25);
+    CHECK(runs > 4);
+}
+
+TEST_CASE("the README's commands about files do what they say") {
+    const test::Workplace work;
+    int done = 0;
+    for (const std::string& line : codeLines(textOf(kSource / "README.md"))) {
+        const std::vector<std::string> call = callOfProgram(line);
+        if (call.empty() || (call[0] != "info" && call[0] != "scene" && call[0] != "convert")) { continue; }
+        std::string arguments;
+        for (const std::string& word : call) {
+            arguments += fmt::format(" {}", word == "SCENE" ? "builtin:fence" : word == "N" ? "1000" : word);
+        }
+        const test::Outcome outcome = work.run(arguments);
+        CHECK_MESSAGE(outcome.exit_code == 0, arguments << ": " << outcome.errors);
+        ++done;
+    }
+    CHECK(done == 3);
+    CHECK(fs::exists(work.path / "OUT.ply"));
+    CHECK(fs::exists(work.path / "FILE.ply"));
+}
+
+TEST_CASE("measured results name scenes by their files, not by where they lay") {
+    int files = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "docs" / "results")) {
+        const fs::path extension = entry.path().extension();
+        if (extension != ".csv" && extension != ".txt" && extension != ".svg") { continue; }
+        for (const char* folder : {"../", "/tmp/", "/home/"}) {
+            CHECK_MESSAGE(textOf(entry.path()).find(folder) == std::string::npos, entry.path().string());
+        }
+        ++files;
+    }
+    CHECK(files > 10);
+}
+
+TEST_CASE("variables of the environment that the program reads are documented") {
+    const std::string page = textOf(kSource / "docs" / "render.md"), man = documentOf("man");
+    std::set<std::string> names;
+    for (const char* room : {"engine", "app", "xr"}) {
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kSource / room)) {
+            if (!entry.is_regular_file()) { continue; }
+            for (const std::string& name : findAll(textOf(entry.path()), R"re(environment\("(BINOSPLAT_[A-Z_]+)"\))re")) {
+                if (!name.starts_with("BINOSPLAT_SIMULATED_")) { names.insert(name); }  // the runtime's, told on its own page
+            }
+        }
+    }
+    CHECK(names.size() >= 6);
+    for (const std::string& name : names) {
+        CHECK_MESSAGE(page.find(fmt::format("\n| `{}` |", name)) != std::string::npos, name);
+        CHECK_MESSAGE(man.find(fmt::format("\n.B {}\n", name)) != std::string::npos, name);
+    }
 }
