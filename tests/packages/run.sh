@@ -21,6 +21,8 @@ openTree() { # TREE
     cp /etc/resolv.conf "$1/etc/"
     mount -t proc proc "$1/proc"
     mounted+=("$1/proc")
+    mount -t devpts -o ptmxmode=0666 devpts "$1/dev/pts"  # for the tests of windows, which open a terminal
+    mounted+=("$1/dev/pts")
 }
 
 # In the tree, with what follows on standard input; a step's time after it.
