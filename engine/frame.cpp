@@ -55,6 +55,23 @@ void StereoFrame::takeKernels(StereoFrame& from) {
     stereo_passes_.takeKernels(from.stereo_passes_);
 }
 
+void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
+    finish();
+    prepare(eyes, settings);
+    Commands& commands = flights_[turn_].commands;
+    // `predicted` may find that moving does not pay.
+    if (settings.mode == Mode::kPredicted) {
+        may_move_ = false;
+        recordFrame(commands, eyes, settings);
+        commands.drop();
+    }
+    may_move_ = true;
+    recordFrame(commands, eyes, settings);
+    commands.drop();
+    // Nothing is known of any frame.
+    first_frame_ = true;
+}
+
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
     finish();
     prepare(eyes, settings);

@@ -93,10 +93,12 @@ public:
     std::optional<FrameResult> finish();
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
     void rebuildKernels();
-    // Goes on with the kernels of a frame of the same device and options, which is left with those of this one: what was made for one scene
-    // need not be made again for the next.
+    // Goes on with the kernels of a frame of the same device and options, and with its own that the other lacks: what was made for one
+    // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
 
+    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
+    void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);
     // D = sum w z of the dominant eye, one channel.

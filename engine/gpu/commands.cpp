@@ -172,6 +172,11 @@ void Commands::wait() {
     for (std::size_t i = 0; i < pass_names_.size(); ++i) {
         times_.emplace_back(pass_names_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick);
     }
+void Commands::drop() {
+    endPass();
+    command_buffer_.end();
+}
+
     total_ms_ = static_cast<double>((ticks.back() - ticks.front()) & mask) * ms_per_tick;
 }
 

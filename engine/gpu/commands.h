@@ -63,6 +63,9 @@ public:
     void submit(vk::Semaphore signals = {});
     // Until the device is done, if anything is under way.
     void wait();
+    // Instead of submit: nothing of what was recorded is done.
+    void drop();
+
     void submitAndWait() {
         submit();
         wait();

@@ -71,8 +71,8 @@ void Passes::rebuildKernels() {
 
 void Passes::takeKernels(Passes& from) {
     assert(threads_per_cell_ == from.threads_per_cell_);
-    kernels_.swap(from.kernels_);
-    sort_.swap(from.sort_);
+    kernels_.take(from.kernels_);
+    if (from.sort_) { sort_.swap(from.sort_); }
 }
 
 const Sort& Passes::sort() {
