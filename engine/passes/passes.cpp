@@ -80,8 +80,8 @@ const Sort& Passes::sort() {
     return *sort_;
 }
 
-void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                           const std::string& role) {
+void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                        const std::string& role) {
     commands.beginPass(role + "1_cull");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
     commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass), {scene.splatShape()}),
@@ -89,6 +89,11 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
                                         scene.splatCount(), scene.chunkBits(), static_cast<gpu::uint>(eyes.first),
                                         static_cast<gpu::uint>(eyes.count), buffers.visible.capacity()},
                           scene.splatCount(), gpu::kCullBlock);
+}
+
+void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                           const std::string& role) {
+    recordCull(commands, scene, buffers, eyes, role);
     recordOrder(commands, scene, buffers, eyes, role);
 }
 

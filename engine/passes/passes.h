@@ -76,6 +76,9 @@ public:
     // those lack.
     void takeKernels(Passes& from);
 
+    // Pass 1 alone: how many splats are visible.
+    void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                    const std::string& role);
     // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
     void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                        const std::string& role);
