@@ -286,7 +286,10 @@ void Viewer::recordPanel(Commands& commands) {
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
-    if (panel_now_) { commands.copyImage(canvas_.image(), panel_now_, kPanelPx); }
+    if (panel_now_) {
+        commands.copyImage(canvas_.image(), panel_now_, kPanelPx);
+        commands.makeMips(panel_now_, kPanelPx, stay_->panel_images.levels());
+    }
     if (window_) { window_->record(commands); }
 }
 
