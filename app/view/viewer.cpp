@@ -38,7 +38,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       canvas_(context_, kPanelPx, format_),
       panel_(kPanelPx, kPanelWidthMetres),
       commands_(context_),
-      scenes_(context_, options_, log_) {
+      scenes_(context_, options_, log_, FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), {}}) {
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
     if (mirrored) { openWindow(); }
@@ -337,6 +337,11 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
 void Viewer::reloadShaders() {
     LoadedScene* scene = scenes_.get();
     if (scene == nullptr || !status_.can_reload_shaders) { return; }
+    // Its thread may be making kernels.
+    if (scenes_.isLoading()) {
+        say("shaders stay as they are until the next scene is there");
+        return;
+    }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scene->frame.rebuildKernels();
         renderer_.presenter().rebuildKernels();
