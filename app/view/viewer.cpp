@@ -96,7 +96,7 @@ void Viewer::renewStay(const std::string& why) {
     if (++losses_ > kMostLosses) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
     }
-    log_.say(why + "; another one begins");
+    say(why + "; another one begins");
     waitForQueue();
     panel_now_ = nullptr;
     stay_.reset();
