@@ -55,6 +55,23 @@ void StereoFrame::takeKernels(StereoFrame& from) {
     stereo_passes_.takeKernels(from.stereo_passes_);
 }
 
+void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
+    finish();
+    prepare(eyes, settings);
+    Commands& commands = flights_[turn_].commands;
+    // `predicted` may find that moving does not pay.
+    if (settings.mode == Mode::kPredicted) {
+        may_move_ = false;
+        recordFrame(commands, eyes, settings);
+        commands.drop();
+    }
+    may_move_ = true;
+    recordFrame(commands, eyes, settings);
+    commands.drop();
+    // Nothing is known of any frame.
+    first_frame_ = true;
+}
+
 FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
     finish();
     prepare(eyes, settings);
@@ -68,12 +85,12 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                     const std::function<void(Commands&)>& append, vk::Semaphore signals) {
     Flight &before_last = flights_[turn_], &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
-    bool waits = first_frame_ || jumps(eyes, settings) || (result && isCutShort());
+    bool waits = first_frame_ || jumps(eyes, settings) || isCutShort();
     // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
     const bool is_short = result && room_ahead_fits_ && !hasRoom(kRoomAhead);
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
-        waits = waits || (result && isCutShort());
+        waits = waits || isCutShort();
         if (is_short) { makeRoomAhead(); }
     }
     prepare(eyes, settings);
@@ -83,7 +100,9 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
         turn_ = 1 - turn_;
         return result;
     }
-    done_again_ += renderUntilComplete(eyes, settings, append);
+    makeRoomForVisible(eyes, settings);
+    done_again_ += renderAtMostTwice(eyes, settings, append);
+    if (isCutShort()) { ++cut_short_; }
     result = collect(flights_[turn_]);
     result->counters["frames_cut_short"] = cut_short_;
     result->counters["frames_done_again"] = done_again_;
@@ -115,14 +134,51 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
 
 std::uint64_t StereoFrame::renderUntilComplete(std::span<const Eye> eyes, const FrameSettings& settings,
                                                const std::function<void(Commands&)>& append) {
-    Flight& flight = flights_[turn_];
     for (std::uint64_t times = 0;; ++times) {
-        record(eyes, settings, append);
-        flight.commands.submitAndWait();
-        for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
-        state_ = flight.readback.mapped<FrameState>()[0];
+        renderOnce(eyes, settings, append);
         if (growIfNeeded()) { return times; }
     }
+}
+
+std::uint64_t StereoFrame::renderAtMostTwice(std::span<const Eye> eyes, const FrameSettings& settings,
+                                             const std::function<void(Commands&)>& append) {
+    renderOnce(eyes, settings, append);
+    const bool guesses_affiliated = stereoSettingsOf(settings).patching != Patching::kNone && reprojects(settings.mode) && dominantIsVoid();
+    if (growIfNeeded()) { return 0; }
+    if (guesses_affiliated) { makeRoomForPatches(); }
+    renderOnce(eyes, settings, append);
+    // What is still short has room the next time.
+    growIfNeeded();
+    return 1;
+}
+
+void StereoFrame::renderOnce(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append) {
+    Flight& flight = flights_[turn_];
+    record(eyes, settings, append);
+    flight.commands.submitAndWait();
+    for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
+    state_ = flight.readback.mapped<FrameState>()[0];
+}
+
+void StereoFrame::makeRoomForVisible(std::span<const Eye> eyes, const FrameSettings& settings) {
+    Flight& flight = flights_[turn_];
+    const FrameState state = firstStateOf(eyes, settings, stereoSettingsOf(settings));
+    flight.commands.begin();
+    flight.commands.update(buffers_.state, &state, sizeof(state));
+    if (per_eye_) {
+        for (const int e : {kLeft, kRight}) {
+            passes_.recordCull(flight.commands, *scene_, buffers_, {.first = e, .count = 1, .order_eye = e, .list = e}, "");
+        }
+    } else {
+        const int count = static_cast<int>(eyes.size());
+        passes_.recordCull(flight.commands, *scene_, buffers_, {.first = 0, .count = count, .order_eye = dominant_, .list = 0}, "");
+    }
+    flight.commands.copy(buffers_.state, flight.readback, sizeof(FrameState));
+    flight.commands.submitAndWait();
+    state_ = flight.readback.mapped<FrameState>()[0];
+    // Of pairs nothing is known yet.
+    const FrameCapacity wanted = roomFor(1.0);
+    if (wanted != buffers_.capacity()) { growFrameBuffers(context_, buffers_, wanted); }
 }
 
 StereoFrame::Shape StereoFrame::shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) const {

@@ -85,7 +85,8 @@ public:
     // whose result this is; empty where there is none. So the device draws a frame while the next is prepared. Lists have room ahead of
     // what frames need. One that found no room all the same shows background, once, is counted ("frames_cut_short"), and the frame after
     // it is waited for. So is a frame that has little to do with the one before: the first one, one of other sizes or another mode, and
-    // after a jump of the eyes. It is done again where a list had no room, before anybody sees it ("frames_done_again").
+    // after a jump of the eyes. It is done again where a list had no room, before anybody sees it, once ("frames_done_again"): what it
+    // needs is counted, or where that is not possible guessed, so that it seldom is cut short all the same.
     // `signals`, where given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
@@ -93,9 +94,11 @@ public:
     std::optional<FrameResult> finish();
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
     void rebuildKernels();
-    // Goes on with the kernels of a frame of the same device and options, which is left with those of this one: what was made for one scene
-    // need not be made again for the next.
+    // Goes on with the kernels of a frame of the same device and options, and with its own that the other lacks: what was made for one
+    // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
+    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
+    void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);
@@ -157,6 +160,13 @@ private:
     // Until the lists had room; how often it was done again.
     std::uint64_t renderUntilComplete(std::span<const Eye> eyes, const FrameSettings& settings,
                                       const std::function<void(Commands&)>& append);
+    // The same for who shows frames: once more at most. What has no room even then shows background, and has room the next time.
+    std::uint64_t renderAtMostTwice(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);
+    void renderOnce(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);
+    // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
+    void makeRoomForVisible(std::span<const Eye> eyes, const FrameSettings& settings);
+    // Where the dominant eye's pairs had no room, which the other eye's depend on: a guess.
+    void makeRoomForPatches();
     void makeRoomAhead();
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings);

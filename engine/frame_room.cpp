@@ -116,6 +116,14 @@ bool StereoFrame::growIfNeeded() {
     return false;
 }
 
+void StereoFrame::makeRoomForPatches() {
+    // Of the other eye's work: all, or the share that is cheap to render and the budget.
+    const double share = may_move_ ? 0.5 : 1.0;
+    FrameCapacity wanted = buffers_.capacity();
+    wanted.pairs = std::max(wanted.pairs, static_cast<std::uint32_t>(share * std::min(state_.pairs[dominant_].needed, gpu::kMaxItems)));
+    if (wanted != buffers_.capacity()) { growFrameBuffers(context_, buffers_, lendWhatFits(wanted)); }
+}
+
 bool StereoFrame::isCutShort() const {
     const auto isEmptied = [](const gpu::ListState& list) { return list.needed != list.count; };
     return std::ranges::any_of(state_.visible, isEmptied) || std::ranges::any_of(state_.pairs, isEmptied);

@@ -26,6 +26,17 @@ Presenter::Presenter(const Context& context, vk::Format format)
     check(takes(format), "pictures leave as 8-bit RGBA or BGRA, not as {}", vk::to_string(format));
 }
 
+const Kernel& Presenter::kernel(bool tinted, bool with_depth, bool half_floats, bool see_through) {
+    return kernels_.get("10_present", sizeof(gpu::PresentPass), {blue_first_, linear_, tinted, with_depth, half_floats, see_through});
+}
+
+void Presenter::makeKernels(bool with_depth, bool can_see_through) {
+    for (const bool tinted : {false, true}) {
+        kernel(tinted, with_depth, true, false);
+        if (can_see_through) { kernel(tinted, with_depth, true, true); }
+    }
+}
+
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
     const std::uint64_t pixel_count = std::uint64_t{eye.size_px.x} * eye.size_px.y;
     const bool with_depth = eye.depth && eye.image->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
@@ -48,9 +59,8 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
     commands.beginPass("10_present");
-    commands.dispatch(
-        kernels_.get("10_present", sizeof(pass), {blue_first_, linear_, tinted, with_depth, eye.image->half_floats, eye.see_through}), pass,
-        (eye.size_px.x + 15) / 16, (eye.size_px.y + 7) / 8);
+    commands.dispatch(kernel(tinted, with_depth, eye.image->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16,
+                      (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }
 }

@@ -25,6 +25,8 @@ public:
 
     [[nodiscard]] static bool takes(vk::Format colour_format);
 
+    // Those that half floats want, before they are asked for: with and without a tint.
+    void makeKernels(bool with_depth, bool can_see_through);
     // Records pass 10. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
     // Makes its kernels anew, see Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
@@ -33,6 +35,8 @@ public:
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 
 private:
+    const Kernel& kernel(bool tinted, bool with_depth, bool half_floats, bool see_through);
+
     const Context& context_;
     KernelCache kernels_;
     bool blue_first_, linear_;

@@ -49,6 +49,21 @@ TEST_CASE("OpenXR's axes become ours: up is -y, ahead is z, and back again witho
     CHECK(there.orientation.w == doctest::Approx(half));
 }
 
+TEST_CASE("the mouse makes the scene grow, and tilts it, about the wearer") {
+    const glm::dvec3 head(0.3, -1.5, 0.2), ahead = head + glm::dvec3(0.0, 0.0, 2.0);
+    const Similarity grown = grownBy(kSome, 2.0, head);
+    CHECK(grown.scale == doctest::Approx(0.5 * kSome.scale));
+    checkNear(transform(grown, head), transform(kSome, head));
+    // What lay two metres ahead lies four metres ahead.
+    checkNear(transform(grown, head + 2.0 * (ahead - head)), transform(kSome, ahead));
+    CHECK(grownBy(kSome, 1e300, head).scale > 0.0);
+    // A quarter turn upwards about the right: what lay ahead lies above.
+    const Similarity tilted = tiltedBy(kSome, glm::angleAxis(0.5 * kPi, glm::dvec3(1, 0, 0)), head);
+    checkNear(transform(tilted, head), transform(kSome, head));
+    checkNear(transform(tilted, head + glm::dvec3(0.0, -2.0, 0.0)), transform(kSome, ahead));
+    CHECK(tilted.scale == kSome.scale);
+}
+
 TEST_CASE("hands that may tilt the scene turn it any way, with what they hold") {
     const std::array<glm::dvec3, 2> from{glm::dvec3(-0.2, 0.4, 0.3), glm::dvec3(0.2, 0.4, 0.3)};
     const std::array<glm::dvec3, 2> to{glm::dvec3(0.1, 0.1, 0.3), glm::dvec3(0.15, 0.5, 0.4)};

@@ -176,3 +176,48 @@ TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom") {
 TEST_CASE_FIXTURE(Gpu, "images of other formats are refused") {
     CHECK_THROWS_WITH(Presenter(context(), vk::Format::eR16G16B16A16Sfloat), doctest::Contains("8-bit RGBA or BGRA"));
 }
+
+TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, down to a single one, in the light that they stand for") {
+    constexpr glm::uvec2 kSize(8, 4);
+    constexpr std::uint32_t kLevels = 4;
+    const vk::Format format = vk::Format::eR8G8B8A8Srgb;
+    REQUIRE(Commands::canMakeMips(context(), format));
+    using Usage = vk::ImageUsageFlagBits;
+    const vk::raii::Image image(
+        context().device(),
+        vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {kSize.x, kSize.y, 1}, kLevels, 1, vk::SampleCountFlagBits::e1,
+                            vk::ImageTiling::eOptimal, Usage::eTransferSrc | Usage::eTransferDst | Usage::eColorAttachment));
+    const auto needs = image.getMemoryRequirements();
+    const vk::raii::DeviceMemory memory(
+        context().device(),
+        vk::MemoryAllocateInfo(needs.size, context().memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal)));
+    image.bindMemory(*memory, 0);
+    // Black and white in turn on the left, white on the right.
+    std::vector<std::uint32_t> texels;
+    for (std::uint32_t i = 0; i < kSize.x * kSize.y; ++i) {
+        const std::uint32_t x = i % kSize.x, y = i / kSize.x;
+        texels.push_back(x < 4 && (x + y) % 2 == 0 ? 0xff000000u : 0xffffffffu);
+    }
+    const Buffer in = upload("picture", texels), out = allocate<std::uint32_t>("smallest", 1 + 2);
+    run([&](Commands& commands) {
+        commands.copyToImage(in, *image, kSize, vk::ImageAspectFlagBits::eColor);
+        commands.makeMips(*image, kSize, kLevels);
+        for (const std::uint32_t level : {2u, 3u}) {
+            const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
+                                                 vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
+                                                 VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
+                                                 {vk::ImageAspectFlagBits::eColor, level, 1, 0, 1});
+            commands.buffer().pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {},
+                                              barrier);
+            const vk::BufferImageCopy region(level == 2 ? 0 : 2 * sizeof(std::uint32_t), 0, 0,
+                                             {vk::ImageAspectFlagBits::eColor, level, 0, 1}, {}, {level == 2 ? 2u : 1u, 1, 1});
+            commands.buffer().copyImageToBuffer(*image, vk::ImageLayout::eTransferSrcOptimal, out.handle(), region);
+        }
+    });
+    const std::vector<std::uint32_t> small = readBack<std::uint32_t>(out, 3);
+    const auto isNear = [](std::uint32_t texel, int grey) { return std::abs(static_cast<int>(texel & 255) - grey) <= 2; };
+    // Half and three quarters of white's light, as sRGB writes them.
+    CHECK(isNear(small[0], 188));
+    CHECK(small[1] == 0xffffffffu);
+    CHECK(isNear(small[2], 225));
+}

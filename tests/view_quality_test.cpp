@@ -39,6 +39,27 @@ TEST_CASE("where nothing fits, the least settings of the quality are reached wit
     }
 }
 
+TEST_CASE("no frame makes a kernel, also where the eyes come to look another way: all are made before the first one") {
+    const Workplace work;
+    for (const char* lines : {"", "eye left cant 5\n", "visibility-mask on\n"}) {
+        CAPTURE(lines);
+        const std::string alive = (work.path / "alive.txt").string();
+        // From side by side to angles of their own.
+        const ViewRun run =
+            runView(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
+                    "builtin:fence --load-first --hide-panel --mode predicted --frames 60",
+                    fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' "
+                                "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}'",
+                                kValidated, alive));
+        checkClean(run);
+        std::vector<std::string> made;
+        std::ifstream counts(alive);
+        for (std::string line; std::getline(counts, line);) { made.push_back(line.substr(line.rfind(' ') + 1)); }
+        REQUIRE(made.size() > 4);
+        CHECK(made.front() == made.back());
+    }
+}
+
 TEST_CASE("what the wearer set is the most there is, and it is kept where everything fits or quality is off") {
     const Workplace work;
     const ViewRun smaller = runQuality(work, "smaller", kSlow, 70, "quality = \"fast\"\nresolution-scale = 0.8\n");

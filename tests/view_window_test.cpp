@@ -4,7 +4,9 @@
 #include "tests/panel_sketch.h"
 #include "tests/view_runs.h"
 
+#include <dlfcn.h>
 #include <doctest/doctest.h>
+#include <imgui.h>
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -110,6 +113,7 @@ public:
         name = ":" + line;
     }
 
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
     // An X window dump of 32 bits a pixel: header, colour table, rows; the header's numbers have their highest byte first.
     [[nodiscard]] Image picture() const {
         std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
@@ -140,22 +144,135 @@ private:
     Program server_;
 };
 
+// On a screen, with a mouse and keys.
+void handsOn(const Screen& screen, const std::string& does) {
+    const std::string command = "DISPLAY=" + screen.name + " timeout 60 xdotool " + does + " >/dev/null";
+    INFO(command);
+    REQUIRE(std::system(command.c_str()) == 0);
+}
+
+// Of a window by its name, as xdotool says it: "WINDOW=2097154", "WIDTH=648" and so on, one of them.
+unsigned long numberOfWindow(const Screen& screen, const std::string& name, const std::string& what) {
+    const std::string file = (screen.folder() / "number").string();
+    handsOn(screen, fmt::format("search --sync --onlyvisible --name '{}' getwindowgeometry --shell %1 | sed -n 's/^{}=//p' | tee '{}'",
+                                name, what, file));
+    unsigned long number = 0;
+    std::ifstream(file) >> number;
+    REQUIRE(number != 0);
+    return number;
+}
+
+// What xdotool of Debian 12 cannot do, by Xlib, which GLFW takes along itself.
+class XConnection {
+public:
+    explicit XConnection(const Screen& screen) {
+        REQUIRE(library_ != nullptr);
+        display_ = find<void* (*)(const char*)>("XOpenDisplay")(screen.name.c_str());
+        REQUIRE(display_ != nullptr);
+    }
+    XConnection(const XConnection&) = delete;
+    XConnection& operator=(const XConnection&) = delete;
+    ~XConnection() {
+        find<int (*)(void*)>("XCloseDisplay")(display_);
+        dlclose(library_);
+    }
+
+    // As desktops tell programs how large people want things; for as long as somebody is connected.
+    void setDpi(int dpi) const {
+        const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
+        constexpr unsigned long kResourceManager = 23, kString = 31;
+        const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
+            display_, root, kResourceManager, kString, 8, 0, resources.c_str(), static_cast<int>(resources.size()));
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // What a window manager does when somebody clicks on the cross: a message that the window may obey.
+    void clickCross(unsigned long window) const {
+        // Xlib's XClientMessageEvent, within its XEvent of 24 longs.
+        struct {
+            int type = 33;
+            unsigned long serial = 0;
+            int is_sent = 1;
+            void* display = nullptr;
+            unsigned long window = 0, kind = 0;
+            int format = 32;
+            std::array<long, 17> data{};
+        } message;
+        const auto atomOf = find<unsigned long (*)(void*, const char*, int)>("XInternAtom");
+        message.display = display_;
+        message.window = window;
+        message.kind = atomOf(display_, "WM_PROTOCOLS", 0);
+        message.data[0] = static_cast<long>(atomOf(display_, "WM_DELETE_WINDOW", 0));
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, &message) != 0);
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // What the window tells a window manager: whether its size may change, and whether its shape stays.
+    [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
+        // Xlib's XSizeHints.
+        struct {
+            long flags = 0;
+            std::array<int, 17> rest{};
+        } hints;
+        long supplied = 0;
+        REQUIRE(find<int (*)(void*, unsigned long, void*, long*)>("XGetWMNormalHints")(display_, window, &hints, &supplied) != 0);
+        constexpr long kMostSize = 1 << 5, kShape = 1 << 7;
+        return {(hints.flags & kMostSize) == 0, (hints.flags & kShape) != 0};
+    }
+
+private:
+    template <typename Function>
+    Function find(const char* name) const {
+        const auto function = reinterpret_cast<Function>(dlsym(library_, name));
+        const bool is_there = function != nullptr;
+        REQUIRE(is_there);
+        return function;
+    }
+
+    void* library_ = dlopen("libX11.so.6", RTLD_NOW);
+    void* display_ = nullptr;
+};
+
+void clickCross(const Screen& screen, const std::string& window_name) {
+    XConnection(screen).clickCross(numberOfWindow(screen, window_name, "WINDOW"));
+}
+
+// Where the panel's line about the last button begins where all widgets are there, in shares of its width and height: there two panels
+// differ that differ in it.
+glm::dvec2 placeOfMessage() {
+    PanelSketch sketch;
+    sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
+    sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};
+    const auto draw = [&](const char* message) {
+        sketch.status.message = message;
+        sketch.draw();
+        std::vector<ImVec2> places;
+        const ImDrawData& data = *ImGui::GetDrawData();
+        for (int list = 0; list < data.CmdListsCount; ++list) {
+            for (const ImDrawVert& vertex : data.CmdLists[list]->VtxBuffer) { places.push_back(vertex.pos); }
+        }
+        return places;
+    };
+    const std::vector<ImVec2> one = draw("MMMMMMMM"), other = draw("IIIIIIII");
+    const auto differs = [](const ImVec2& a, const ImVec2& b) { return a.x != b.x || a.y != b.y; };
+    const auto [first, its] = std::ranges::mismatch(one, other, std::not_fn(differs));
+    REQUIRE(first != one.end());
+    return glm::dvec2(first->x, first->y) / glm::dvec2(kPanelPx);
+}
+
 // The viewer beside its window, with a mouse and keys.
 class Viewer {
 public:
-    Viewer(const Workplace& work, const std::string& options)
+    Viewer(const Workplace& work, const std::string& options, int dpi = 96)
         : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
-          program_(work.path, {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:fence --load-first " + options}, screen_.name) {
+          connection_(screen_),
+          program_((connection_.setDpi(dpi), work.path),
+                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:fence --load-first " + options}, screen_.name) {
         REQUIRE(program_.waitFor("per eye, on ") != "");
         // The keys go to the window that the mouse is in.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
 
-    void hands(const std::string& does) const {
-        const std::string command = "DISPLAY=" + screen_.name + " timeout 60 xdotool " + does + " >/dev/null";
-        INFO(command);
-        REQUIRE(std::system(command.c_str()) == 0);
-    }
+    void hands(const std::string& does) const { handsOn(screen_, does); }
     static std::string moveTo(const glm::dvec2& place) { return fmt::format("mousemove {:.0f} {:.0f} ", place.x, place.y); }
     static std::string panel(const glm::dvec2& share) { return moveTo(glm::dvec2(kEyePx, 0.0) + share * kPanelInWindowPx); }
 
@@ -174,7 +291,7 @@ public:
         hands("mouseup 1");
     }
     // Where the wearer's room lies now, as the viewer saves it.
-    Pose placement(const Workplace& work) {
+    Pose placement(const Workplace& work, double* units_per_metre = nullptr) {
         click(placeOf("Save", true));
         REQUIRE(program_.waitFor("fence.view.toml") != "");
         std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
@@ -188,15 +305,23 @@ public:
             std::istringstream words(list);
             return std::vector<double>(std::istream_iterator<double>(words), {});
         };
+        if (units_per_metre != nullptr) {
+            const std::string key = "units-per-metre = ";
+            const std::size_t at = text.find(key);
+            REQUIRE(at != std::string::npos);
+            *units_per_metre = std::stod(text.substr(at + key.size()));
+        }
         const std::vector<double> p = numbers("scene-position"), q = numbers("scene-orientation");
         return {{q.at(0), q.at(1), q.at(2), q.at(3)}, {p.at(0), p.at(1), p.at(2)}};
     }
 
     [[nodiscard]] Program& program() { return program_; }
     [[nodiscard]] const Screen& screen() const { return screen_; }
+    [[nodiscard]] const XConnection& connection() const { return connection_; }
 
 private:
     Screen screen_;
+    XConnection connection_;
     Program program_;
 };
 
@@ -292,6 +417,33 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     CHECK(stepBetween(right, back).z < -0.01);
     CHECK(turnBetween(back, left) < -0.01);
 
+    // The wheel makes the scene grow about the wearer, the right button tilts it about the line of sight.
+    double before = 0.0, grown = 0.0;
+    const Pose wheel_from = viewer.placement(work, &before);
+    viewer.hands(Viewer::moveTo({300.0, 300.0}));
+    viewer.tab();
+    viewer.hands("click 4 click 4");
+    viewer.tab();
+    const Pose wheel_to = viewer.placement(work, &grown);
+    CHECK(grown == doctest::Approx(before / (1.1 * 1.1)).epsilon(1e-4));
+    CHECK(turnBetween(wheel_from, wheel_to) == doctest::Approx(0.0));
+    viewer.hands(Viewer::moveTo({300.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mousedown 3");
+    viewer.tab();
+    viewer.hands(Viewer::moveTo({400.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mouseup 3");
+    const Pose tilted = viewer.placement(work);
+    CHECK(glm::angle(glm::conjugate(wheel_to.orientation) * tilted.orientation) == doctest::Approx(0.4).epsilon(1e-4));
+    viewer.hands(Viewer::moveTo({400.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mousedown 3");
+    viewer.tab();
+    viewer.hands(Viewer::moveTo({300.0, 300.0}));
+    viewer.tab();
+    viewer.hands("mouseup 3");
+
     // What stands in the window is what the dominant eye sees. Two reloads take long enough for it to get there.
     if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
     for (int i = 0; i < 2; ++i) {
@@ -317,17 +469,96 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
 TEST_CASE("Escape, and the window's cross, end it while the headset is off or not looked at") {
     if (!haveScreen()) { return; }
     for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n"}) {
-        CAPTURE(lines);
+        for (const bool by_cross : {false, true}) {
+            CAPTURE(lines);
+            CAPTURE(by_cross);
+            const Workplace work;
+            std::ofstream(work.path / "off.script") << "rate 90\nsize 96 96\nframes none\n" << lines;
+            Viewer viewer(work, "--simulate off.script --out seen");
+            // Keys are obeyed, and the panel with them.
+            viewer.tab();
+            viewer.tab();
+            if (by_cross) {
+                clickCross(viewer.screen(), "^binosplat$");
+            } else {
+                viewer.hands("key Escape");
+            }
+            CHECK(viewer.program().exitCode() == 0);
+            INFO(viewer.program().said());
+            CHECK(viewer.program().said().find("frames; ") != std::string::npos);
+            CHECK(viewer.program().said().find("VUID") == std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
+    if (!haveScreen()) { return; }
+    for (const bool by_cross : {false, true}) {
+        CAPTURE(by_cross);
         const Workplace work;
-        std::ofstream(work.path / "off.script") << "rate 90\nsize 96 96\nframes none\n" << lines;
-        Viewer viewer(work, "--simulate off.script --out seen");
-        // Keys are obeyed, and the panel with them.
-        viewer.tab();
-        viewer.tab();
+        std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
+        std::filesystem::create_directory(work.base / "screen");
+        const Screen screen(work.base / "screen");
+        Program program(work.path, {BINOSPLAT_PROGRAM, "view", "builtin:fence", "--simulate", "never.script"}, screen.name);
+        REQUIRE(program.waitFor("has no headset yet") != "");
+        if (by_cross) {
+            clickCross(screen, "^binosplat waits for a headset");
+        } else {
+            handsOn(screen, "search --sync --onlyvisible --name '^binosplat waits' mousemove --window %1 20 20");
+            handsOn(screen, "key Escape");
+        }
+        CHECK(program.exitCode() == 0);
+        INFO(program.said());
+        CHECK(program.said().find("stopped before there was a headset") != std::string::npos);
+    }
+}
+
+TEST_CASE("a session in place of a lost one is said on the panel") {
+    if (!haveScreen()) { return; }
+    const glm::dvec2 place = glm::dvec2(kEyePx, 0.0) + placeOfMessage() * kPanelInWindowPx;
+    const auto lineIn = [&](const Image& screen) {
+        std::vector<std::array<float, 3>> line;
+        for (unsigned y = 0; y < 14; ++y) {
+            for (unsigned x = 0; x < 200; ++x) { line.push_back(colourAt(screen, glm::uvec2(place) + glm::uvec2(x, y))); }
+        }
+        return line;
+    };
+    std::array<std::vector<std::array<float, 3>>, 2> lines;
+    for (const bool is_lost : {false, true}) {
+        const Workplace work;
+        std::ofstream(work.path / "lost.script") << "rate 90\nsize 96 96\nframes none\n" << (is_lost ? "at 0.5 lose-session\n" : "");
+        Viewer viewer(work, "--simulate lost.script --out seen --shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
+        if (is_lost) { REQUIRE(viewer.program().waitFor("another one begins") != ""); }
+        // Until the picture is there, or for so many frames.
+        for (int i = 0; i < 20; ++i) {
+            viewer.tab();
+            lines[is_lost ? 1 : 0] = lineIn(viewer.screen().picture());
+            if (is_lost && lines[1] != lines[0]) { break; }
+        }
         viewer.hands("key Escape");
         CHECK(viewer.program().exitCode() == 0);
-        INFO(viewer.program().said());
-        CHECK(viewer.program().said().find("frames; ") != std::string::npos);
-        CHECK(viewer.program().said().find("VUID") == std::string::npos);
     }
+    CHECK(lines[0] != lines[1]);
+}
+
+TEST_CASE("the window is as large as the desktop wants things to be, and may be made another size in its shape") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::ofstream(work.path / "rest.script") << "rate 90\nsize 96 96\nframes none\n";
+    Viewer viewer(work, "--simulate rest.script --out seen", 48);
+    const glm::dvec2 size(numberOfWindow(viewer.screen(), "^binosplat$", "WIDTH"),
+                          numberOfWindow(viewer.screen(), "^binosplat$", "HEIGHT"));
+    CHECK(size == 0.5 * glm::dvec2(kEyePx + kPanelInWindowPx.x, kEyePx));
+    const auto [resizes, keeps_shape] = viewer.connection().resizesInShape(numberOfWindow(viewer.screen(), "^binosplat$", "WINDOW"));
+    CHECK(resizes);
+    CHECK(keeps_shape);
+    // Its widgets are where they are shown.
+    viewer.hands(Viewer::moveTo(0.5 * (glm::dvec2(kEyePx, 0.0) + placeOf("Centre ROI (paper)", true) * kPanelInWindowPx)));
+    viewer.tab();
+    viewer.hands("mousedown 1");
+    viewer.tab();
+    viewer.hands("mouseup 1");
+    CHECK(viewer.program().waitFor("center-roi = true") != "");
+    viewer.hands("key Escape");
+    CHECK(viewer.program().exitCode() == 0);
 }

@@ -1,9 +1,11 @@
 // Making, lending and giving back swapchain images.
 #include "xr/swapchain.h"
 
+#include "engine/gpu/commands.h"
 #include "xr/platform.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace binosplat::xr {
 namespace {
@@ -17,6 +19,8 @@ XrSwapchainUsageFlags flagsOf(ImageUse use) {
             return XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
         case ImageUse::kDraw:
             return XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT;
+        case ImageUse::kFar:
+            return flagsOf(ImageUse::kDraw) | XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
         case ImageUse::kDepth:
             break;
     }
@@ -45,7 +49,12 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
     info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
     info.width = size_px.x;
     info.height = size_px.y;
-    BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &swapchain_));
+    if (use == ImageUse::kFar && Commands::canMakeMips(session.context(), format)) {
+        info.mipCount = levels_ = static_cast<std::uint32_t>(std::bit_width(std::max(size_px.x, size_px.y)));
+        // Not every runtime has such images.
+        if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &swapchain_))) { info.mipCount = levels_ = 1; }
+    }
+    if (levels_ == 1) { BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &swapchain_)); }
     std::uint32_t count = 0;
     BINOSPLAT_XR(xrEnumerateSwapchainImages(swapchain_, 0, &count, nullptr));
     std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR, nullptr, VK_NULL_HANDLE});
@@ -61,6 +70,7 @@ Swapchain& Swapchain::operator=(Swapchain&& other) noexcept {
     images_ = std::exchange(other.images_, {});
     size_px_ = other.size_px_;
     format_ = other.format_;
+    levels_ = other.levels_;
     acquired_ = other.acquired_;
     return *this;
 }

@@ -13,6 +13,7 @@ namespace binosplat::xr {
 enum class ImageUse {
     kCopy,   // pictures and depths, copied in
     kDraw,   // the overlay, drawn and copied in
+    kFar,    // like kDraw, also seen from afar: with smaller copies, which Commands::makeMips makes, where device and runtime have them
     kDepth,  // like kCopy, of a depth format
 };
 
@@ -39,6 +40,8 @@ public:
     [[nodiscard]] XrSwapchain handle() const { return swapchain_; }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] vk::Format format() const { return format_; }
+    // Of each image: 1, or down to a single pixel.
+    [[nodiscard]] std::uint32_t levels() const { return levels_; }
     // The image from its top left corner on, for a layer.
     [[nodiscard]] XrSwapchainSubImage subImage(glm::uvec2 part_px) const;
 
@@ -51,6 +54,7 @@ private:
     glm::uvec2 size_px_{0, 0};
     vk::Format format_ = vk::Format::eUndefined;
     std::size_t acquired_ = 0;
+    std::uint32_t levels_ = 1;
 };
 
 }  // namespace binosplat::xr

@@ -8,7 +8,7 @@ HeadsetStay::HeadsetStay(const xr::Instance& instance, const Context& context, g
       format(chooseEyeFormat(session)),
       refresh_rates(session.refreshRates()),
       input(session),
-      panel_images(session, "the panel", panel_px, format, xr::ImageUse::kDraw),
+      panel_images(session, "the panel", panel_px, format, xr::ImageUse::kFar),
       things(session, context, format) {}
 
 }  // namespace binosplat

@@ -65,15 +65,19 @@ std::vector<const char*> WindowSystem::instanceExtensions() {
 MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : context_(context), canvas_(canvas) {
     check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     window_ = glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr);
     check(window_ != nullptr, "the window does not open");
+    glfwSetWindowAspectRatio(window_, widthOf(canvas), kHeightPx);
     // What was let go before the next frame still counts once.
     glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
     glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
         if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double steps) {
+        static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->wheel_ += steps;
     });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
@@ -119,10 +123,16 @@ WindowInput MirrorWindow::poll() {
     const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
     const glm::dvec2 size(canvas_.sizePx());
+    const double wheel = std::exchange(wheel_, 0.0);
     if (glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size))) {
-        input.pointer = {place, down, 0.0};
-    } else if (down) {
-        input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x);  // the picture follows the mouse
+        input.pointer = {place, down, wheel};
+    } else {
+        input.wheel = wheel;
+        // The picture follows the mouse.
+        if (down) { input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x); }
+        if (glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+            input.tilt_rad = kRadiansPerPixel * glm::dvec2(cursor.x - cursor_.x, cursor_.y - cursor.y);
+        }
     }
     cursor_ = cursor;
     return input;

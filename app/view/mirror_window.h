@@ -63,6 +63,7 @@ private:
     glm::dvec2 cursor_{0.0};
     std::vector<int> pressed_;  // GLFW's keys, since the last poll
     std::string dropped_;       // likewise
+    double wheel_ = 0.0;        // likewise
 };
 
 }  // namespace binosplat

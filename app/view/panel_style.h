@@ -11,8 +11,8 @@
 
 namespace binosplat {
 
-// Of the panel's picture. At the distance it hangs it is 26 degrees wide, so that a degree has 29 of these pixels,
-// little more than the 18 to 25 of a headset: two neighbours blended are enough, and smaller copies (mips) would only blur it.
+// Of the panel's picture. At the distance it hangs it is 26 degrees wide, so that a degree has 29 of these pixels: more than the 10 to 25
+// of a headset, which therefore takes smaller copies of it (mips) where it can, as it does where the panel is carried away.
 inline constexpr glm::uvec2 kPanelPx(768, 960);
 inline constexpr double kPanelWidthMetres = 0.468;
 // Of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, which is read at arm's length in any headset.

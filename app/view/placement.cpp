@@ -65,6 +65,16 @@ Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const g
     return compose(scene_from_room, {turn, about - turn * about, 1.0});
 }
 
+Similarity grownBy(const Similarity& scene_from_room, double growth, const glm::dvec3& about) {
+    const double old_from_new = std::clamp(scene_from_room.scale / growth, kLeastScale, kMostScale) / scene_from_room.scale;
+    return compose(scene_from_room, {glm::dquat(1.0, 0.0, 0.0, 0.0), about - old_from_new * about, old_from_new});
+}
+
+Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, const glm::dvec3& about) {
+    const glm::dquat old_from_new = glm::conjugate(turn);
+    return compose(scene_from_room, {old_from_new, about - old_from_new * about, 1.0});
+}
+
 Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
                   bool tilted) {
     const glm::dvec3 span_from = from[1] - from[0], span_to = to[1] - to[0];

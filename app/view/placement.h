@@ -30,6 +30,10 @@ Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m);
 // About the vertical through `about`, to the right where `angle_rad` is positive.
 Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about);
 
+// The scene grows by `growth` about `about` in the room, within the bounds of heldBy; or turns there as `turn` does.
+Similarity grownBy(const Similarity& scene_from_room, double growth, const glm::dvec3& about);
+Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, const glm::dvec3& about);
+
 // Two points of the scene that are held, at `from` before and at `to` now: the scene moves, turns about the vertical and grows with
 // them, or turns as they do where it may be `tilted`. Points that lie above one another do not turn it about the vertical, and scale
 // changes stay within 1000 in all from `scene_from_room`.

@@ -16,15 +16,18 @@ struct Cancelled {};
 
 }  // namespace
 
-SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options)
-    : scene_(std::move(scene)), thread_([this, &context, run = std::move(options)] { load(context, run); }) {}
+std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
+
+SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead)
+    : scene_(std::move(scene)),
+      thread_([this, &context, run = std::move(options), frames = std::move(ahead)] { load(context, run, frames); }) {}
 
 SceneLoader::~SceneLoader() {
     cancelled_ = true;
     if (thread_.joinable()) { thread_.join(); }
 }
 
-void SceneLoader::load(const Context& context, const RunOptions& options) {
+void SceneLoader::load(const Context& context, const RunOptions& options, const std::optional<FramesAhead>& ahead) {
     try {
         LoadNotes notes;
         // Readers may report from threads of their own, which must not throw.
@@ -41,11 +44,17 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         });
+        if (ahead && !ahead->known.contains(kindOf(*loaded_))) {
+            makeKernelsAhead(context, loaded_->gpu_scene, loaded_->frame, options.camera, *ahead, [this] {
+                if (cancelled_) { throw Cancelled(); }
+            });
+        }
         loaded_->name = scene_;
         loaded_->start = start;
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
-    } catch (const Cancelled&) {  // nobody waits
+    } catch (const Cancelled&) {
+        loaded_.reset();  // nobody waits
     } catch (...) { error_ = std::current_exception(); }
     done_ = true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/options/options.h"
+#include "app/view/kernels_ahead.h"
 #include "app/view/placement.h"
 #include "app/view/scene_facts.h"
 #include "engine/frame.h"
@@ -9,6 +10,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -26,10 +28,14 @@ struct LoadedScene {
     SceneFacts facts;
 };
 
+// As FramesAhead::known has it.
+std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);
+
 // Loads on a thread of its own.
 class SceneLoader {
 public:
-    SceneLoader(const Context& context, std::string scene, RunOptions options);
+    // With `ahead` it also makes the kernels of its frames, unless others of its kind were shown before.
+    SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {});
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
     // Gives up where it can, and waits for the rest.
@@ -46,7 +52,7 @@ public:
     [[nodiscard]] std::unique_ptr<LoadedScene> take();
 
 private:
-    void load(const Context& context, const RunOptions& options);
+    void load(const Context& context, const RunOptions& options, const std::optional<FramesAhead>& ahead);
 
     std::string scene_;
     std::atomic<double> progress_ = 0.0;

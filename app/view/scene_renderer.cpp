@@ -19,10 +19,14 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
                              vk::Format format)
-    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format) {}
+    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format) {
+    presenter_.makeKernels(instance.takesDepth(), instance.canSeeThrough());
+}
+
+glm::uvec2 SceneRenderer::sizePx(const ViewSettings& settings) const { return scaledSize(instance_, settings.resolution_scale); }
 
 void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
-    const glm::uvec2 size_px = scaledSize(instance_, settings.resolution_scale);
+    const glm::uvec2 size_px = sizePx(settings);
     std::unique_ptr<EyeImages>& images = stay.images;
     if (images && images->sizePx() == size_px) { return; }
     images.reset();

@@ -26,6 +26,8 @@ public:
     // `format` is that of every session's images; the rest outlives this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
 
+    // Of an eye's images, as large as the wearer wants them.
+    [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const;
     // Images of the stay as large as the wearer wants them.
     void fitImages(HeadsetStay& stay, const ViewSettings& settings);
     // What the governor makes of the wearer's settings, in images as large as that.

@@ -5,16 +5,21 @@
 #include "app/view/view_scenes.h"
 #include "engine/error.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace binosplat {
 
-ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log)
-    : context_(context), options_(options), log_(log) {
+ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead)
+    : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
     begin(options.scene);
 }
 
 std::optional<double> ShownScene::loading() const { return loader_ ? std::optional(loader_->progress()) : std::nullopt; }
+
+bool ShownScene::isLoading() const {
+    return loader_ || std::ranges::any_of(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
+}
 
 void ShownScene::begin(const std::string& scene) {
     // Nobody waits for one that gives up.
@@ -24,7 +29,7 @@ void ShownScene::begin(const std::string& scene) {
         given_up_.push_back(std::move(loader_));
     }
     asked_ = scene;
-    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run);
+    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run, ahead_);
 }
 
 void ShownScene::beginBeside(int step) { begin(sceneBeside(asked_, step)); }
@@ -39,6 +44,7 @@ std::string ShownScene::take(ViewSettings& settings) {
         }
         // Drivers need many times a frame's time to make them.
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
+        if (ahead_) { ahead_->known.insert(kindOf(*taken)); }
         scene_ = std::move(taken);
     } catch (const Error& error) {
         if (scene_) { return error.what(); }

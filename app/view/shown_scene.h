@@ -14,8 +14,8 @@ namespace binosplat {
 
 class ShownScene {
 public:
-    // Begins to load the scene of the options. `context`, `options` and `log` outlive this.
-    ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log);
+    // Begins to load the scene of the options. `context`, `options` and `log` outlive this. With `ahead` a scene comes with its kernels.
+    ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead = {});
 
     // Null until the first one is there.
     [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
@@ -23,6 +23,8 @@ public:
     [[nodiscard]] const std::string& name() const { return scene_ ? scene_->name : asked_; }
     // Share done of the next one; empty if none is on its way.
     [[nodiscard]] std::optional<double> loading() const;
+    // Whether a thread still loads anything, wanted or given up.
+    [[nodiscard]] bool isLoading() const;
     [[nodiscard]] bool isNextReady() const { return loader_ && loader_->isDone(); }
 
     // Another one, beside the one that is shown, which stays until the other is there.
@@ -42,6 +44,7 @@ private:
     const Context& context_;
     const ViewOptions& options_;
     const FrameLog& log_;
+    std::optional<FramesAhead> ahead_;
     std::string asked_;  // the last one, whether it could be loaded or not
     std::unique_ptr<LoadedScene> scene_;
     std::vector<std::unique_ptr<SceneLoader>> given_up_;

@@ -5,13 +5,15 @@
 #include "app/view/mirror_window.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
+#include "app/view/waiting_window.h"
 #include "engine/error.h"
 #include "engine/platform.h"
 
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <thread>
+#include <memory>
 
 namespace binosplat {
 
@@ -29,14 +31,15 @@ ViewSettings startSettings(const ViewOptions& options) {
     return settings;
 }
 
-// Until the headset is there, or until Ctrl-C.
-void waitForHeadset(const std::string& runtime, bool& said) {
-    if (!std::exchange(said, true)) {
+// Until the headset is there, or until Ctrl-C, Escape or the window's cross. The first look opens the window.
+void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
+    if (!window) {
         fmt::print("{} has no headset yet: waiting for it (Ctrl-C ends)\n", runtime);
         std::fflush(stdout);
+        window = std::make_unique<WaitingWindow>();
     }
     stopIfInterrupted();
-    std::this_thread::sleep_for(kBetweenLooks);
+    if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT}; }
 }
 
 void showScene(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance) {
@@ -64,7 +67,8 @@ void runView(const ViewOptions& given) {
     xr::InstanceOptions instance_options;
     instance_options.visibility_mask = settings.visibility_mask;
     instance_options.eye_tracking = settings.eye_tracking;
-    instance_options.wait_for_headset = [said = false](const std::string& runtime) mutable { waitForHeadset(runtime, said); };
+    std::unique_ptr<WaitingWindow> waiting;
+    instance_options.wait_for_headset = [&waiting](const std::string& runtime) { waitForHeadset(runtime, waiting); };
     std::unique_ptr<xr::Instance> instance;
     try {
         instance = std::make_unique<xr::Instance>(instance_options);
@@ -78,6 +82,7 @@ void runView(const ViewOptions& given) {
         check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());
         throw;
     }
+    waiting.reset();
     showScene(options, settings, *instance);
 }
 

@@ -38,7 +38,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       canvas_(context_, kPanelPx, format_),
       panel_(kPanelPx, kPanelWidthMetres),
       commands_(context_),
-      scenes_(context_, options_, log_) {
+      scenes_(context_, options_, log_, FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), {}}) {
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
     if (mirrored) { openWindow(); }
@@ -96,7 +96,7 @@ void Viewer::renewStay(const std::string& why) {
     if (++losses_ > kMostLosses) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
     }
-    log_.say(why + "; another one begins");
+    say(why + "; another one begins");
     waitForQueue();
     panel_now_ = nullptr;
     stay_.reset();
@@ -286,7 +286,10 @@ void Viewer::recordPanel(Commands& commands) {
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
-    if (panel_now_) { commands.copyImage(canvas_.image(), panel_now_, kPanelPx); }
+    if (panel_now_) {
+        commands.copyImage(canvas_.image(), panel_now_, kPanelPx);
+        commands.makeMips(panel_now_, kPanelPx, stay_->panel_images.levels());
+    }
     if (window_) { window_->record(commands); }
 }
 
@@ -334,6 +337,11 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
 void Viewer::reloadShaders() {
     LoadedScene* scene = scenes_.get();
     if (scene == nullptr || !status_.can_reload_shaders) { return; }
+    // Its thread may be making kernels.
+    if (scenes_.isLoading()) {
+        say("shaders stay as they are until the next scene is there");
+        return;
+    }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
         scene->frame.rebuildKernels();
         renderer_.presenter().rebuildKernels();

@@ -10,10 +10,12 @@ namespace binosplat {
 
 // What came from mouse and keyboard since the last time.
 struct WindowInput {
-    CanvasPointer pointer;   // on the panel
-    glm::dvec3 walk{0.0};    // right, down, forward; -1 to 1
-    double turn_rad = 0.0;   // to the right
-    double turn_rate = 0.0;  // by keys, -1 to 1
+    CanvasPointer pointer;     // on the panel
+    glm::dvec3 walk{0.0};      // right, down, forward; -1 to 1
+    double turn_rad = 0.0;     // to the right
+    double turn_rate = 0.0;    // by keys, -1 to 1
+    double wheel = 0.0;        // steps, upwards, beside the panel: the scene grows
+    glm::dvec2 tilt_rad{0.0};  // of the scene: to the right about the line of sight, and upwards about the wearer's right
     bool toggle_panel = false;
     bool reload_shaders = false;
     bool recentre = false;

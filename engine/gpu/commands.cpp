@@ -3,6 +3,8 @@
 
 #include "engine/gpu/device_error.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 
 namespace binosplat {
@@ -129,6 +131,38 @@ void Commands::copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px) {
     changeLayout(to, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
 }
 
+void Commands::makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels) {
+    using Layout = vk::ImageLayout;
+    const auto aspect = vk::ImageAspectFlagBits::eColor;
+    const auto become = [&](std::uint32_t level, Layout from, Layout to) {
+        const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+        const vk::ImageMemoryBarrier barrier(all, all, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+                                             {aspect, level, 1, 0, 1});
+        const auto stage = vk::PipelineStageFlagBits::eAllCommands;
+        command_buffer_.pipelineBarrier(stage, stage, {}, {}, {}, barrier);
+    };
+    const auto cornerOf = [&](std::uint32_t level) {
+        return vk::Offset3D(std::max(static_cast<int>(size_px.x >> level), 1), std::max(static_cast<int>(size_px.y >> level), 1), 1);
+    };
+    for (std::uint32_t level = 1; level < levels; ++level) {
+        become(level - 1, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
+        become(level, Layout::eUndefined, Layout::eTransferDstOptimal);
+        const std::array from{vk::Offset3D(0, 0, 0), cornerOf(level - 1)}, to{vk::Offset3D(0, 0, 0), cornerOf(level)};
+        command_buffer_.blitImage(
+            image, Layout::eTransferSrcOptimal, image, Layout::eTransferDstOptimal,
+            vk::ImageBlit(vk::ImageSubresourceLayers(aspect, level - 1, 0, 1), from, vk::ImageSubresourceLayers(aspect, level, 0, 1), to),
+            vk::Filter::eLinear);
+        become(level - 1, Layout::eTransferSrcOptimal, Layout::eColorAttachmentOptimal);
+        become(level, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
+    }
+}
+
+bool Commands::canMakeMips(const Context& context, vk::Format format) {
+    using Feature = vk::FormatFeatureFlagBits;
+    const auto needs = Feature::eBlitSrc | Feature::eBlitDst | Feature::eSampledImageFilterLinear;
+    return (context.physicalDevice().getFormatProperties(format).optimalTilingFeatures & needs) == needs;
+}
+
 void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
     using Layout = vk::ImageLayout;
     const auto aspect = vk::ImageAspectFlagBits::eColor;
@@ -136,6 +170,11 @@ void Commands::clearImage(vk::Image image, const glm::vec4& colour) {
     const vk::ClearColorValue value(std::array<float, 4>{colour.r, colour.g, colour.b, colour.a});
     command_buffer_.clearColorImage(image, Layout::eTransferDstOptimal, value, vk::ImageSubresourceRange(aspect, 0, 1, 0, 1));
     changeLayout(image, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
+}
+
+void Commands::drop() {
+    endPass();
+    command_buffer_.end();
 }
 
 void Commands::submit(vk::Semaphore signals) {

@@ -57,7 +57,14 @@ public:
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
     // From an image that a copy may read (eTransferSrcOptimal).
     void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
+    // Smaller copies of what is in level 0 into the others of `levels`, each of the one before. All are attachments before and after.
+    void makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels);
+    // Whether the device can do that with images of this format.
+    [[nodiscard]] static bool canMakeMips(const Context& context, vk::Format format);
     void clearImage(vk::Image image, const glm::vec4& colour);
+
+    // Instead of submit: nothing of what was recorded is done.
+    void drop();
 
     // The device begins; `signals`, where given, is signalled once it is done.
     void submit(vk::Semaphore signals = {});

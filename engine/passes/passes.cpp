@@ -71,8 +71,8 @@ void Passes::rebuildKernels() {
 
 void Passes::takeKernels(Passes& from) {
     assert(threads_per_cell_ == from.threads_per_cell_);
-    kernels_.swap(from.kernels_);
-    sort_.swap(from.sort_);
+    kernels_.take(from.kernels_);
+    if (from.sort_) { sort_.swap(from.sort_); }
 }
 
 const Sort& Passes::sort() {
@@ -80,8 +80,8 @@ const Sort& Passes::sort() {
     return *sort_;
 }
 
-void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                           const std::string& role) {
+void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                        const std::string& role) {
     commands.beginPass(role + "1_cull");
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
     commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass), {scene.splatShape()}),
@@ -96,6 +96,11 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
                                         .eye_count = static_cast<gpu::uint>(eyes.count),
                                         .capacity = buffers.visible.capacity()},
                           scene.splatCount(), gpu::kCullBlock);
+}
+
+void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                           const std::string& role) {
+    recordCull(commands, scene, buffers, eyes, role);
     recordOrder(commands, scene, buffers, eyes, role);
 }
 

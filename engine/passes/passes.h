@@ -72,9 +72,13 @@ public:
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels();
-    // Goes on with the kernels of others on the same device, with as many threads per cell, whose work is over.
+    // Goes on with the kernels of others on the same device, with as many threads per cell, whose work is over, and with its own that
+    // those lack.
     void takeKernels(Passes& from);
 
+    // Pass 1 alone: how many splats are visible.
+    void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
+                    const std::string& role);
     // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
     void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
                        const std::string& role);

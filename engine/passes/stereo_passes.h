@@ -87,8 +87,8 @@ public:
     explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels()) {}
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }
-    // Goes on with the kernels of others on the same device, whose work is over.
-    void takeKernels(StereoPasses& from) { kernels_.swap(from.kernels_); }
+    // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
+    void takeKernels(StereoPasses& from) { kernels_.take(from.kernels_); }
 
     // All of passes 8: the affiliated eye's colours but in the tiles that are listed in the end; its depths, too, where it has room for
     // them. Tiles that are hidden become background.
