@@ -1,6 +1,7 @@
 // A picture of the controls for each family of controllers, drawn out of the bindings that the program suggests, and the fact that those of
 // docs/controls are these. With BINOSPLAT_WRITE_GOLDENS in the environment they are written there first.
 #include "xr/bindings.h"
+#include "xr/simulated/api/profiles.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <string>
@@ -168,5 +170,23 @@ TEST_CASE("each family of controllers has a picture, as its bindings are now") {
         CAPTURE(entry.path().filename().string());
         CHECK(std::ranges::find(names, entry.path().filename().string()) != names.end());
         CHECK(page.find("controls/" + entry.path().filename().string()) != std::string::npos);
+    }
+}
+
+TEST_CASE("every input and output that is bound is one of its controller") {
+    for (const ProfileBindings& bindings : allProfileBindings()) {
+        CAPTURE(bindings.path);
+        const simulated::Profile* const profile = simulated::findHandProfile(bindings.path);
+        REQUIRE(profile != nullptr);
+        CHECK((bindings.extension == nullptr) == (profile->since == simulated::Since::k1_0));
+        if (bindings.extension != nullptr) { CHECK(profile->extension == bindings.extension); }
+        for (const std::size_t side : {0, 1}) {
+            for (const char* what : {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,
+                                     bindings.stick_click, bindings.menu[side], bindings.haptic}) {
+                if (what == nullptr) { continue; }
+                const std::string path = fmt::format("/user/hand/{}/{}", side == 0 ? "left" : "right", what);
+                CHECK_MESSAGE(simulated::allowsBinding(*profile, path, {}), path);
+            }
+        }
     }
 }

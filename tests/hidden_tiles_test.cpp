@@ -1,9 +1,11 @@
 // Facts about the tiles that a headset's lens never shows.
 #include "xr/hidden_tiles.h"
+#include "app/view/lens_mask.h"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 using namespace binosplat;
@@ -21,6 +23,39 @@ HiddenMesh rectangle(float left, float right, float bottom, float top) {
 }
 
 using Tiles = std::vector<std::uint8_t>;
+
+// A view of both eyes in which a rectangle of the plane hides what lies to its left, and what a mask makes of it for the left one.
+struct MaskedView {
+    std::array<HiddenMesh, 2> meshes;
+    std::array<xr::EyeView, 2> views{};
+
+    MaskedView(float hidden_to, float left_rad) {
+        for (std::size_t e = 0; e < 2; ++e) {
+            meshes[e] = rectangle(-9.0f, hidden_to, -9.0f, 9.0f);
+            views[e].fov = {left_rad, 0.7f, 0.7f, -0.7f};
+        }
+    }
+    Tiles hidden(LensMask& mask, int version) const {
+        const std::span<const std::uint8_t> tiles = mask.update(meshes, version, views, {64, 64})[0];
+        return {tiles.begin(), tiles.end()};
+    }
+    // Made anew.
+    [[nodiscard]] Tiles hidden() const {
+        LensMask mask;
+        return hidden(mask, 0);
+    }
+};
+
+// The value from which on, less than 1e-5 further, another mask would be made.
+template <typename Make>
+float lastBeforeChange(float from, const Make& make) {
+    constexpr float kStep = 1e-5f;
+    const Tiles first = make(from);
+    float value = from;
+    while (make(value + kStep) == first && value < from + 0.2f) { value += kStep; }
+    REQUIRE(value < from + 0.2f);
+    return value;
+}
 
 }  // namespace
 
@@ -79,4 +114,23 @@ TEST_CASE("broken meshes hide nothing") {
     CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
     mesh = {{{-9.0f, -9.0f}, {0.0f, 0.0f}, {9.0f, 9.0f}}, {0, 1, 2}};  // no area
     CHECK(findHiddenTiles(mesh, kIntrinsics, kSizePx) == Tiles(9, 0));
+}
+
+TEST_CASE("angles and meshes that shiver make no mask anew, others do") {
+    // Where a shiver would tell: the least further and another column of tiles is hidden, or shown.
+    const auto byMesh = [](float edge) { return MaskedView(edge, -0.7f).hidden(); };
+    const float edge = lastBeforeChange(-0.6f, byMesh);
+    CHECK(byMesh(edge + 5e-5f) != byMesh(edge));
+    LensMask of_mesh;
+    const Tiles first = MaskedView(edge, -0.7f).hidden(of_mesh, 1);
+    CHECK(MaskedView(edge + 5e-5f, -0.7f).hidden(of_mesh, 2) == first);  // announced, but the same
+    CHECK(MaskedView(edge + 5e-4f, -0.7f).hidden(of_mesh, 3) == byMesh(edge + 5e-4f));
+
+    const auto byAngle = [](float left_rad) { return MaskedView(-0.4f, left_rad).hidden(); };
+    const float left_rad = lastBeforeChange(-0.8f, byAngle);
+    CHECK(byAngle(left_rad + 5e-5f) != byAngle(left_rad));
+    LensMask of_angle;
+    const Tiles before = MaskedView(-0.4f, left_rad).hidden(of_angle, 1);
+    CHECK(MaskedView(-0.4f, left_rad + 5e-5f).hidden(of_angle, 1) == before);
+    CHECK(MaskedView(-0.4f, left_rad + 5e-4f).hidden(of_angle, 1) == byAngle(left_rad + 5e-4f));
 }

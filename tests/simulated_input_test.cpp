@@ -284,6 +284,47 @@ TEST_CASE("a script that moves what the program's controllers lack is refused wh
     CHECK(fixture.sync(set) == XR_ERROR_RUNTIME_FAILURE);
 }
 
+TEST_CASE("other controllers taken up are announced and read, those that the program does not know are the first that it does") {
+    struct Fixture : SessionFixture {
+        Fixture()
+            : SessionFixture(
+                  "size 64 64\nframes none\nrate 10\npress left trigger 0 2\npress left select 0 2\n"
+                  "at 0.5 profile khr/simple_controller\nat 0.7 profile valve/index_controller\n") {}
+    } fixture;
+    const XrPath left = fixture.path("/user/hand/left");
+    const XrActionSet set = fixture.makeActionSet("walking");
+    const XrAction by_trigger = fixture.makeAction(set, "pull", XR_ACTION_TYPE_FLOAT_INPUT);
+    const XrAction by_select = fixture.makeAction(set, "select", XR_ACTION_TYPE_BOOLEAN_INPUT);
+    REQUIRE(fixture.suggest(kTouch, {{by_trigger, fixture.path("/user/hand/left/input/trigger/value")}}) == XR_SUCCESS);
+    REQUIRE(fixture.suggest(kSimple, {{by_select, fixture.path("/user/hand/left/input/select/click")}}) == XR_SUCCESS);
+    fixture.attach({set});
+    fixture.focus();
+    XrEventDataBuffer event;
+    while (fixture.poll(event) != XR_TYPE_UNKNOWN) {}
+    const auto isPressed = [&](XrAction action, bool is_boolean) {
+        const XrActionStateGetInfo get{XR_TYPE_ACTION_STATE_GET_INFO, nullptr, action, XR_NULL_PATH};
+        XrActionStateBoolean boolean{XR_TYPE_ACTION_STATE_BOOLEAN};
+        XrActionStateFloat number{XR_TYPE_ACTION_STATE_FLOAT};
+        REQUIRE((is_boolean ? xrGetActionStateBoolean(fixture.session, &get, &boolean)
+                            : xrGetActionStateFloat(fixture.session, &get, &number)) == XR_SUCCESS);
+        return is_boolean ? boolean.currentState == XR_TRUE : number.currentState > 0.5f;
+    };
+    const char* in_use = nullptr;
+    for (int shown = 2; shown < 9; ++shown) {
+        CAPTURE(shown);
+        const char* const expected = shown == 5 || shown == 6 ? kSimple : kTouch;
+        REQUIRE(fixture.sync(set) == XR_SUCCESS);
+        XrInteractionProfileState state{XR_TYPE_INTERACTION_PROFILE_STATE};
+        REQUIRE(xrGetCurrentInteractionProfile(fixture.session, left, &state) == XR_SUCCESS);
+        CHECK(state.interactionProfile == fixture.path(expected));
+        CHECK((fixture.poll(event) == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED) == (expected != in_use));
+        CHECK(isPressed(by_trigger, false) == (expected == kTouch));
+        CHECK(isPressed(by_select, true) == (expected == kSimple));
+        in_use = expected;
+        fixture.frame();
+    }
+}
+
 TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's type") {
     const XrActionSet set = makeActionSet("walking");
     const XrAction as_boolean = makeAction(set, "boolean", XR_ACTION_TYPE_BOOLEAN_INPUT);

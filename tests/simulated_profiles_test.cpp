@@ -19,7 +19,7 @@ struct Bound {
 };
 
 XrActionType typeOf(std::string_view component) {
-    for (const char* boolean : {"/click", "/touch", "/proximity"}) {
+    for (const char* boolean : {"/click", "/touch", "/proximity", "/proximity_fb", "/proximity_meta", "/ready_ext"}) {
         if (component.ends_with(boolean)) return XR_ACTION_TYPE_BOOLEAN_INPUT;
     }
     if (component.ends_with("/pose")) return XR_ACTION_TYPE_POSE_INPUT;

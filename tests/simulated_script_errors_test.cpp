@@ -124,7 +124,8 @@ TEST_CASE("choicesAreListed") {
     refuses("no-headset-for 0", "the number of calls is 0, must be a whole number from 1");
     refuses("at 1 dance", "what happens is dance, must be should-render, visible, focused, slow-images");
     refuses("press left nose 0 1", "nose is not an input, must be one of: trigger, squeeze");
-    refuses("axis left a 0 1", "a has no axis, must be trigger, squeeze, thumbstick or trackpad");
+    refuses("axis left a 0 1",
+            "a has no axis, must be trigger, squeeze, select, pinch_ext, aim_activate_ext, grasp_ext, thumbstick or trackpad");
     refuses("frames", "the frames are missing, must be all, none, every N, or from A to B");
     refuses("frames every 0", "how many frames apart is 0");
     refuses("frames from 5 to 4", "the last frame is 4, must be a whole number from 5");
@@ -257,6 +258,11 @@ TEST_CASE("inputsThatTheControllersLackAreNamedWithTheirLine") {
     refuses("profile valve/index_controller\nprofile valve/index_controller", "profile is set again");
     CHECK(messageOf("profile valve/index_controller\npress left a 0 1\naxis right trackpad 0 1 1\n") == "accepted");
     CHECK(messageOf("press left a 0 1\npress left menu 0 1\n") == "accepted");
+    refuses("at 1 profile valve/index\n", "a.script:1: valve/index is not a profile of controllers");
+    // Any of those that it has in turn may have them.
+    const std::string simple_first = "profile khr/simple_controller\nat 1 profile valve/index_controller\n";
+    CHECK(messageOf(simple_first + "press left a 0 1\npress left select 0 1\n") == "accepted");
+    refuses(simple_first + "press left x 0 1\n", "a.script:3: the left hand of khr/simple_controller has no x");
 }
 
 TEST_CASE("aHeadCannotLookAtItself") {

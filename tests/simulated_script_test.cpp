@@ -207,6 +207,17 @@ TEST_CASE("pressesLastFromTheirBeginningUntilBeforeTheirEnd") {
     CHECK(script.at(1.5).controllers[kLeft].inputs.count("a/value") == 0);
 }
 
+TEST_CASE("gesturesHaveAValueAndAreReady") {
+    const Script script = parse("press right pinch_ext 1 2\ntouch right pinch_ext 3 4\naxis left grasp_ext 0 0\naxis left grasp_ext 1 1");
+    const auto right = [&](double time_s, const char* input) { return script.at(time_s).controllers[kRight].input(input); };
+    CHECK(right(1.5, "pinch_ext/value") == 1.0);
+    CHECK(right(1.5, "pinch_ext/ready_ext") == 1.0);
+    CHECK(right(3.5, "pinch_ext/value") == 0.0);
+    CHECK(right(3.5, "pinch_ext/ready_ext") == 1.0);
+    CHECK(script.at(0.5).controllers[kLeft].input("grasp_ext/value") == doctest::Approx(0.5));
+    CHECK(script.at(0.5).controllers[kLeft].input("grasp_ext/ready_ext") == 1.0);
+}
+
 TEST_CASE("touchesDoNotPress") {
     const ControllerState left = parse("touch left thumbstick 0 1").at(0.5).controllers[kLeft];
     CHECK(left.input("thumbstick/touch") == 1.0);

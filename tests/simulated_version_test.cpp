@@ -230,6 +230,21 @@ TEST_CASE("controllers of 1.1 may be bound in 1.1, and in 1.0 with their extensi
           XR_ERROR_PATH_UNSUPPORTED);
 }
 
+TEST_CASE("finger tips are poses of every hand with the hands' extension, and gestures are of its profile alone") {
+    const char* const simple = "/interaction_profiles/khr/simple_controller";
+    const char *const hands = "/interaction_profiles/ext/hand_interaction_ext", *const pinch = "/user/hand/left/input/pinch_ext/value";
+    const char* const tips[] = {"/user/hand/left/input/pinch_ext/pose", "/user/hand/right/input/poke_ext/pose"};
+    {
+        const DirectInstance made(k1_1, {});
+        for (const char* tip : tips) CHECK(made.suggest(simple, tip) == XR_ERROR_PATH_UNSUPPORTED);
+        CHECK(made.suggest(hands, pinch, XR_ACTION_TYPE_FLOAT_INPUT) == XR_ERROR_PATH_UNSUPPORTED);
+    }
+    const DirectInstance extended(k1_1, {"XR_EXT_hand_interaction"});
+    for (const char* tip : tips) CHECK(extended.suggest(simple, tip) == XR_SUCCESS);
+    CHECK(extended.suggest(hands, pinch, XR_ACTION_TYPE_FLOAT_INPUT) == XR_SUCCESS);
+    CHECK(extended.suggest(simple, pinch, XR_ACTION_TYPE_FLOAT_INPUT) == XR_ERROR_PATH_UNSUPPORTED);
+}
+
 TEST_CASE("the palm's surface is grip_surface in 1.1 and palm_ext by the extension") {
     const char* const simple = "/interaction_profiles/khr/simple_controller";
     const char *const grip_surface = "/user/hand/left/input/grip_surface/pose", *const palm = "/user/hand/left/input/palm_ext/pose";

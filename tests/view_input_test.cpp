@@ -6,22 +6,26 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <limits>
+#include <tuple>
+#include <vector>
 
 using namespace binosplat;
 using namespace binosplat::test;
 
 namespace {
 
-const std::string kSmall = "rate 100\nsize 96 96\nframes every 5\n";
 const std::string kScene = "builtin:fence --load-first --mode mono";
 
 std::string withProfile(const std::string& profile) { return kValidated + " BINOSPLAT_SIMULATED_PROFILE=" + profile; }
 
-ViewRun runWith(const Workplace& work, const std::string& profile, const std::string& lines, const std::string& options = "") {
+ViewRun runWith(const Workplace& work, const std::string& profile, const std::string& lines, const std::string& options = "",
+                const std::string& frames = "every 5") {
     std::string name = profile.substr(profile.find('/') + 1);
     static int count = 0;
     const ViewRun run =
-        runView(work, name + std::to_string(count++), kSmall + lines + "at 0.6 exit\n", kScene + options, withProfile(profile));
+        runView(work, name + std::to_string(count++), fmt::format("rate 100\nsize 96 96\nframes {}\n{}at 0.6 exit\n", frames, lines),
+                kScene + options, withProfile(profile));
     CAPTURE(profile);
     checkClean(run);
     return run;
@@ -42,10 +46,11 @@ std::string pointAtPanel(const ViewRun& seen, double time_s, const glm::dvec3& a
                        at.z, q[0], q[1], q[2], q[3]);
 }
 
-std::size_t pulses(const ViewRun& run) {
+// From a frame on until before another one.
+std::size_t pulses(const ViewRun& run, std::size_t first = 0, std::size_t last = std::numeric_limits<std::size_t>::max()) {
     std::size_t count = 0;
-    for (const auto& frame : run.frames) {
-        for (const auto& event : frame.at("events")) { count += event.get<std::string>().starts_with("haptic right") ? 1 : 0; }
+    for (std::size_t i = first; i < std::min(last, run.frames.size()); ++i) {
+        for (const auto& event : run.frames[i].at("events")) { count += event.get<std::string>().starts_with("haptic right") ? 1 : 0; }
     }
     return count;
 }
@@ -56,18 +61,54 @@ TEST_CASE("every controller brings the panel and sends it away, clicks on it, an
     const Workplace work;
     const ViewRun look = runWith(work, "oculus/touch_controller", "");
     const glm::dvec3 below(0.0, -0.1, 0.0);  // a ray that ends between the eyes is a point
-    for (const auto& [profile, trigger, menu] :
-         {std::tuple("oculus/touch_controller", "trigger", "b"), std::tuple("valve/index_controller", "trigger", "b"),
-          std::tuple("microsoft/motion_controller", "trigger", "menu"), std::tuple("htc/vive_controller", "trigger", "menu"),
-          std::tuple("khr/simple_controller", "select", "menu")}) {
+    // One after the other, a fifth of a second each.
+    const std::vector<std::tuple<std::string, std::string, std::string>> controllers{
+        {"oculus/touch_controller", "trigger", "b"},        {"valve/index_controller", "trigger", "b"},
+        {"microsoft/motion_controller", "trigger", "menu"}, {"htc/vive_controller", "trigger", "menu"},
+        {"khr/simple_controller", "select", "menu"},        {"hp/mixed_reality_controller", "trigger", "b"},
+        {"samsung/odyssey_controller", "trigger", "menu"},  {"htc/vive_cosmos_controller", "trigger", "b"},
+        {"htc/vive_focus3_controller", "trigger", "b"},     {"bytedance/pico_neo3_controller", "trigger", "b"},
+        {"bytedance/pico4_controller", "trigger", "b"},     {"facebook/touch_controller_pro", "trigger", "b"},
+        {"meta/touch_controller_plus", "trigger", "b"}};
+    std::string lines = pointAtPanel(look, 0.0, below);
+    double time_s = 0.2;
+    for (const auto& [profile, trigger, menu] : controllers) {
+        lines += fmt::format("at {:.2f} profile {}\n", time_s, profile);
+        lines += fmt::format("press right {} {:.3f} {:.3f}\n", trigger, time_s + 0.045, time_s + 0.075);
+        for (const double press_s : {time_s + 0.095, time_s + 0.145}) {
+            lines += fmt::format("press right {} {:.3f} {:.3f}\n", menu, press_s, press_s + 0.02);
+        }
+        time_s += 0.2;
+    }
+    const ViewRun run =
+        runView(work, "all", fmt::format("rate 100\nsize 96 96\nframes none\n{}at {} exit\n", lines, time_s + 0.05), kScene);
+    checkClean(run);
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        CAPTURE(std::get<0>(controllers[i]));
+        const std::size_t first = 20 * (i + 1);
+        CHECK(pulses(run, first + 3, first + 9) == 1);
+        CHECK(run.panels(first + 8).size() == 1);
+        CHECK(run.panels(first + 13).empty());
+        CHECK(run.panels(first + 19).size() == 1);
+    }
+}
+
+TEST_CASE("bare hands click on the panel and carry it, by either way to tell the program") {
+    const Workplace work;
+    const ViewRun look = runWith(work, "oculus/touch_controller", "");
+    const glm::dvec3 up(0.0, 0.2, 0.0);
+    for (const auto& [profile, click, grab] : {std::tuple("ext/hand_interaction_ext", "aim_activate_ext", "grasp_ext"),
+                                               std::tuple("microsoft/hand_interaction", "select", "squeeze")}) {
         CAPTURE(profile);
-        const std::string lines = "controller right 0 position 0.4 1.2 0.5\n" + pointAtPanel(look, 0.2, below) +
-                                  pointAtPanel(look, 0.4, below) +
-                                  fmt::format("press right {} 0.3 0.33\npress right {} 0.45 0.47\n", trigger, menu);
-        const ViewRun run = runWith(work, profile, lines);
-        CHECK(pulses(run) == 2);
-        CHECK(run.panels(40).size() == 1);
-        CHECK(run.panels(55).empty());
+        // Up and down again with the panel, then to *Quit*.
+        const std::string lines = pointAtPanel(look, 0.05) + pointAtPanel(look, 0.1) + pointAtPanel(look, 0.18, up) +
+                                  pointAtPanel(look, 0.25) + pointAtPanel(look, 0.3) +
+                                  "controller right 0.35 position 0.2 1.2 -0.35 look -0.286 1.774 -1.012\n" +
+                                  fmt::format("press right {} 0.06 0.28\npress right {} 0.38 0.42\n", grab, click);
+        const ViewRun run = runWith(work, profile, lines, "", "none");
+        CHECK(panelPlace(run, 18).y - panelPlace(look, 18).y == doctest::Approx(0.2).epsilon(0.1));
+        CHECK(pulses(run) == 0);
+        CHECK(run.frames.size() < 55);
     }
 }
 

@@ -394,3 +394,32 @@ TEST_CASE("sticks move and turn the wearer, both grips move the scene") {
                              "controller right 0.15 position 0.2 1.2 -0.35\ncontroller right 0.3 position 0.4 1.3 -0.5\n");
     CHECK(compare(held, still).psnrDb() < 35.0);
 }
+
+TEST_CASE("the scene that one hand holds moves with it, as far as it does and not about it") {
+    const Workplace work;
+    // Half a metre is a unit. The hand is turned as well; the other one saves what came of it.
+    const std::string hold =
+        "press left squeeze 0.05 0.16\ncontroller left 0.06 position -0.2 1.2 -0.35 turn 0 -80\n"
+        "controller left 0.15 position -0.1 1.4 -0.65 turn 30 -60\n";
+    const ViewRun run = runView(work, "hold", kSmall + hold + clickOn(startPanel(work), {placeOf("Save"), {0.9, 0.95}}),
+                                kScene + " --mode mono --eye 0,0,0 --look 0,0,3 --up 0,-1,0 --metres-per-unit 0.5");
+    checkClean(run);
+    const std::string& output = run.outcome.output;
+    const std::size_t at = output.find("saved as ");
+    REQUIRE(at != std::string::npos);
+    std::ifstream file(output.substr(at + 9, output.find('\n', at) - at - 9));
+    const std::string saved(std::istreambuf_iterator<char>(file), {});
+    const auto numbersOf = [&](const std::string& key) {
+        const std::size_t begin = saved.find(key + " = ");
+        INFO(key << " in " << saved);
+        REQUIRE(begin != std::string::npos);
+        return nlohmann::json::parse(saved.substr(begin + key.size() + 3, saved.find('\n', begin) - begin - key.size() - 3));
+    };
+    // The wearer's room lies in the scene as far the other way, in our axes: x right, y down, z ahead.
+    const auto position = numbersOf("scene-position").get<std::array<double, 3>>();
+    CHECK(position[0] == doctest::Approx(-0.2).epsilon(1e-4));
+    CHECK(position[1] == doctest::Approx(0.4).epsilon(1e-4));
+    CHECK(position[2] == doctest::Approx(-0.6).epsilon(1e-4));
+    CHECK(std::abs(numbersOf("scene-orientation").get<std::array<double, 4>>()[0]) == doctest::Approx(1.0));
+    CHECK(numbersOf("units-per-metre").get<double>() == doctest::Approx(2.0));
+}

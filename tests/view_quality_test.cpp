@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <sstream>
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -69,6 +71,48 @@ TEST_CASE("what the wearer set is the most there is, and it is kept where everyt
     const ViewRun off = runQuality(work, "off", kSlow, 40, "quality = \"off\"\n");
     CHECK(widthAt(off, 38) == 200);
     CHECK(off.outcome.output.find(" took ") == std::string::npos);
+}
+
+TEST_CASE("a load that comes and goes: less resolution at once, a method that was tried and saves enough, then all as it was") {
+    const Workplace work;
+    std::ofstream(work.path / "load.toml") << "[view]\nquality = \"balanced\"\n";
+    // Of 33 ms: everything fits, then both eyes take 42 and one made from the other 25, then everything fits again.
+    constexpr int kComes = 40, kGoes = 170, kSecond = 30;
+    const ViewRun run = runView(work, "load", fmt::format("rate {}\nsize 128 128\nframes none\n", kSecond),
+                                "builtin:fence --load-first --hide-panel --hide-hands --mode predicted --frames 235 --config load.toml",
+                                fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                            "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LOAD=0:8/5,{}:42/25,{}:8/5",
+                                            kValidated, kComes, kGoes));
+    checkClean(run);
+    struct Change {
+        int frame;
+        std::string settings;
+    };
+    std::vector<Change> changes;
+    std::istringstream output(run.outcome.output);
+    for (std::string line; std::getline(output, line);) {
+        const std::size_t end = line.find(" %");
+        if (line.starts_with("frame ") && line.find(" ms; ") != std::string::npos && end != std::string::npos) {
+            const std::size_t colon = line.find(": ");
+            changes.push_back({std::stoi(line.substr(6)), line.substr(colon + 2, end - colon - 2)});
+        }
+    }
+    INFO(run.outcome.output);
+    REQUIRE(changes.size() >= 4);
+    CHECK(changes.front().frame > kComes);
+    CHECK(changes.front().frame <= kComes + 10);
+    CHECK(changes.front().settings.starts_with("shared at "));
+    CHECK(widthAt(run, kComes + 15) < 128);
+    for (std::size_t i = 1; i < changes.size(); ++i) {
+        CAPTURE(i);
+        CHECK(changes[i].frame - changes[i - 1].frame >= kSecond);
+        if (changes[i].frame < kGoes) { CHECK(changes[i].settings.starts_with("predicted at ")); }
+    }
+    CHECK(changes[changes.size() - 2].settings == "predicted at 100");
+    CHECK(widthAt(run, kGoes) == 128);
+    CHECK(changes.back().frame > kGoes);
+    CHECK(changes.back().settings == "shared at 100");
+    CHECK(widthAt(run, run.frames.size() - 4) == 128);
 }
 
 TEST_CASE("the headset is asked for the rate that the settings name, and said to lack one that it has not") {

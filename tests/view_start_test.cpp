@@ -70,6 +70,20 @@ TEST_CASE("of a runtime without a stage no floor is known") {
     CHECK(says(run, "the wearer's place is the room's\n"));
 }
 
+TEST_CASE("without a stage the floor is that of LOCAL_FLOOR") {
+    const Workplace work;
+    const std::string script = kSmall + "stage off\nhead 0 position 0.2 1.45 0.1\nat 0.1 exit\n";
+    // Elder validation layers do not know that space.
+    const ViewRun run = runView(work, "local-floor", script, kScene, "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.errors.empty());
+    CHECK(says(run, "the wearer's place is the room's, 1.45 m above the floor"));
+    // Who does not make it, though it is offered, keeps nobody out.
+    const ViewRun refused = runView(work, "refused", script, kScene);
+    CHECK(refused.outcome.exit_code == 0);
+    CHECK((says(refused, "the wearer's place is the room's\n") || says(refused, "1.45 m above the floor")));
+}
+
 TEST_CASE("a head of which only the turn is known is placed by its turn, and again once its place is known") {
     const Workplace work;
     const ViewRun run = runView(

@@ -154,6 +154,28 @@ TEST_CASE("an exit request before the first picture, and while the scene still l
     runTrouble(work, "at 0.05 exit\n", "builtin:atelier");
 }
 
+TEST_CASE("whoever leaves while a large scene loads does not wait for the rest of it") {
+    const Workplace work;
+    // Discs that are all alike, in a file of which no block is stored.
+    constexpr std::uintmax_t kSplats = 4'000'000;
+    std::string header = "ply\nformat binary_little_endian 1.0\n" + fmt::format("element vertex {}\n", kSplats);
+    const char* const names[]{"x",       "y",       "z",     "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                              "scale_0", "scale_1", "rot_0", "rot_1",  "rot_2",  "rot_3"};
+    for (const char* name : names) { header += fmt::format("property float {}\n", name); }
+    std::ofstream(work.path / "large.ply") << header << "end_header\n";
+    const std::uintmax_t bytes = kSplats * sizeof(float) * std::size(names);
+    std::filesystem::resize_file(work.path / "large.ply", std::filesystem::file_size(work.path / "large.ply") + bytes);
+    std::ofstream(work.path / "leave.script") << kSmall << "at 0 exit\n";
+    const Outcome outcome = work.run("view large.ply --hide-panel --simulate leave.script",
+                                     kValidated + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                                  "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_READ=read");
+    CHECK(outcome.exit_code == 0);
+    std::uintmax_t read = 0;
+    std::ifstream(work.path / "read") >> read;
+    CHECK(read > 0);
+    CHECK(read < bytes / 2);
+}
+
 TEST_CASE("a scene that loads does not keep frames waiting") {
     const Workplace work;
     const ViewRun run = runTrouble(work, "at 0.2 exit\n", "builtin:atelier");

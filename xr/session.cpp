@@ -284,7 +284,12 @@ void Session::findFloor() {
     BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, count, &count, offered.data()));
     for (const XrReferenceSpaceType type : {XR_REFERENCE_SPACE_TYPE_STAGE, kLocalFloor}) {
         const bool is_floor = type == kLocalFloor ? instance_.hasLocalFloor() : std::ranges::find(offered, type) != offered.end();
-        if (is_floor && floor_ == XR_NULL_HANDLE) { floor_ = makeSpace(type, kHere); }
+        if (!is_floor || floor_ != XR_NULL_HANDLE) { continue; }
+        auto info = structure<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+        info.referenceSpaceType = type;
+        info.poseInReferenceSpace = kHere;
+        // Where it is offered and refused the floor is not known, which is no reason to stay out.
+        if (XR_FAILED(xrCreateReferenceSpace(session_, &info, &floor_))) { floor_ = XR_NULL_HANDLE; }
     }
 }
 

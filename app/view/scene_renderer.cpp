@@ -62,7 +62,8 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // One eye's picture for both is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
-        frame.hidden_tiles = stay.lens_mask.update(stay.session, views.eyes, stay.images->partPx());
+        frame.hidden_tiles =
+            stay.lens_mask.update(stay.session.hiddenMeshes(), stay.session.hiddenMeshVersion(), views.eyes, stay.images->partPx());
     }
     return frame;
 }

@@ -3,17 +3,20 @@
 // SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. BINOSPLAT_FAULT_TICKS=N: timestamps are
 // N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
-// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h.
+// BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
 #include "tests/faults/live.h"
+#include "tests/faults/load.h"
 
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 
 namespace {
@@ -38,6 +41,7 @@ struct Plan {
 
 // One instance and one device a process, as the program has them.
 PFN_vkGetInstanceProcAddr g_instance_next = nullptr;
+VkInstance g_instance = VK_NULL_HANDLE;
 PFN_vkGetDeviceProcAddr g_device_next = nullptr;
 PFN_vkQueueSubmit g_submit = nullptr;
 PFN_vkWaitForFences g_wait = nullptr;
@@ -96,9 +100,10 @@ VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::u
                                        void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
     const VkResult result = g_results(device, pool, first, count, bytes, data, stride, flags);
     const char* const apart = std::getenv("BINOSPLAT_FAULT_TICKS");
-    if (apart == nullptr || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
+    const std::optional<std::uint64_t> whole = faults::ticksOf(pool);
+    if ((apart == nullptr && !whole) || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t ticks = (first + i) * std::strtoull(apart, nullptr, 10);
+        const std::uint64_t ticks = whole ? *whole * i / std::max(count - 1u, 1u) : (first + i) * std::strtoull(apart, nullptr, 10);
         std::memcpy(static_cast<char*>(data) + i * stride, &ticks, sizeof ticks);
     }
     return result;
@@ -122,7 +127,9 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, 
     g_instance_next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
     const auto create = reinterpret_cast<PFN_vkCreateInstance>(g_instance_next(VK_NULL_HANDLE, "vkCreateInstance"));
-    return create(info, callbacks, instance);
+    const VkResult result = create(info, callbacks, instance);
+    if (result == VK_SUCCESS) { g_instance = *instance; }
+    return result;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, const VkDeviceCreateInfo* info,
@@ -140,6 +147,10 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
     g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
     faults::beginCounting(g_device_next, *device);
+    VkPhysicalDeviceProperties properties{};
+    reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(instance_next(g_instance, "vkGetPhysicalDeviceProperties"))(physical_device,
+                                                                                                                    &properties);
+    faults::beginLoad(g_device_next, *device, static_cast<double>(properties.limits.timestampPeriod));
     return VK_SUCCESS;
 }
 
@@ -157,7 +168,8 @@ PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
     if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }
-    return faults::countingFunction(name);
+    const PFN_vkVoidFunction load = faults::loadFunction(name);
+    return load != nullptr ? load : faults::countingFunction(name);
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {

@@ -1,6 +1,7 @@
 // What of a device is alive: objects, device memory and the host's heap, counted by the layer while a program runs.
 // BINOSPLAT_FAULT_LIVE=FILE: a line for every tenth submission: "submissions objects device-bytes heap-bytes resident-bytes kernels-made",
 // the objects and the device's bytes as the least and the most since the line before: "10 120-140 5242880-6291456 1048576 3145728 24".
+// BINOSPLAT_FAULT_READ=FILE: how many bytes the program has read of files when it lets go of the layer.
 #pragma once
 
 #include <vulkan/vulkan.h>

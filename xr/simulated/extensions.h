@@ -40,6 +40,10 @@ inline constexpr Extension kExtensions[] = {
     {"XR_HTC_vive_cosmos_controller_interaction", 1},
     {"XR_HTC_vive_focus3_controller_interaction", 2},
     {"XR_ML_ml2_controller_interaction", 1},
+    {"XR_FB_touch_controller_pro", 1},
+    {"XR_META_touch_controller_plus", 1},
+    {"XR_EXT_hand_interaction", 1},
+    {"XR_MSFT_hand_interaction", 1},
 };
 
 [[nodiscard]] constexpr bool isExtension(std::string_view name) {

@@ -78,11 +78,12 @@ XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
         if (owner.isHeadless() && owner.is_running) owner.passHeadlessFrame();
         const bool is_focused = owner.state == XR_SESSION_STATE_FOCUSED;
         if (owner.attachment) {
-            if (is_focused && owner.attachment->chooseProfiles(owner.instance, owner.automation)) {
+            const Clock& clock = owner.instance.simulation->clock;
+            const XrTime now = clock.now();
+            if (is_focused && owner.attachment->chooseProfiles(owner.instance, owner.automation, clock.secondsAt(now))) {
                 owner.instance.events.push(
                     XrEventDataInteractionProfileChanged{XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED, nullptr, session});
             }
-            const XrTime now = owner.instance.simulation->clock.now();
             owner.attachment->read(owner.at(now), is_focused ? active : std::vector<ActiveSet>{}, now);
         }
         return successOf(owner, is_focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED);

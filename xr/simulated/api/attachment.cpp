@@ -30,7 +30,9 @@ std::optional<std::string> resolve(const Profile& profile, std::string_view user
         return std::nullopt;
     };
     const bool is_whole = hasComponent(profile, user_path, path, words);
-    const bool is_number = is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/proximity", "/x", "/y"});
+    const bool is_number =
+        is_whole && endsIn(path, {"/click", "/touch", "/value", "/force", "/proximity", "/x", "/y", "/ready_ext", "/proximity_fb",
+                                  "/curl_fb", "/slide_fb", "/proximity_meta", "/curl_meta", "/slide_meta"});
     switch (type) {
         case XR_ACTION_TYPE_BOOLEAN_INPUT:
             if (is_number) return std::string(path);
@@ -73,8 +75,7 @@ glm::dvec2 valueOf(const ControllerState& controller, const BoundSource& source,
 
 Pose poseOf(const ControllerState& controller, const BoundSource& source) {
     if (source.source == "aim" || source.source == "gaze_ext") return controller.stage_from_aim;
-    if (source.source == "grip") return controller.stage_from_grip;
-    return compose(controller.stage_from_grip, gripFromPalm(source.device));
+    return compose(controller.stage_from_grip, gripFromPose(source.component, source.device));
 }
 
 bool isActivatedBy(const ActiveSet& active, const AttachedAction& action, const BoundSource& source) {
@@ -125,11 +126,18 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
 
 }  // namespace
 
-Pose gripFromPalm(std::size_t device) {
-    constexpr double kPalm_m = 0.02;
-    Pose grip_from_palm{glm::angleAxis(-std::numbers::pi / 4.0, glm::dvec3(1, 0, 0)), {}};
-    grip_from_palm.position.x = device == kLeftHand ? -kPalm_m : kPalm_m;
-    return grip_from_palm;
+Pose gripFromPose(std::string_view component, std::size_t device) {
+    // Of a right hand; a straight finger points along the grip's -y.
+    double turn = 0.25;
+    glm::dvec3 place_m(0.02, 0.0, 0.0);
+    if (component == "pinch_ext/pose") place_m = {0.01, -0.07, -0.05};
+    if (component == "poke_ext/pose") {
+        turn = 0.5;
+        place_m = {0.02, -0.115, -0.027};
+    }
+    if (component == "grip/pose") return {};
+    if (device == kLeftHand) place_m.x = -place_m.x;
+    return {glm::angleAxis(-turn * std::numbers::pi, glm::dvec3(1, 0, 0)), place_m};
 }
 
 AttachedAction* Attachment::find(std::uint64_t action) {
@@ -142,21 +150,25 @@ bool Attachment::isSuggested(const Instance& instance, const Profile& profile) c
     return std::any_of(suggestions.begin(), suggestions.end(), [&](const auto& one) { return one.profile == path; });
 }
 
-bool Attachment::chooseProfiles(Instance& instance, const Automation& automation) {
-    if (hands == nullptr) {
+bool Attachment::chooseProfiles(Instance& instance, const Automation& automation, double time_s) {
+    const Simulation& simulation = *instance.simulation;
+    const std::string later = simulation.script.later_profiles.at(time_s);
+    const std::string now_wanted = later.empty() ? simulation.favourite_profile : std::string(findHandProfile(later)->path);
+    if (now_wanted != hands_wanted) {
+        hands = nullptr;
         std::vector<Profile> candidates(allProfiles().begin(), allProfiles().end());
-        std::stable_partition(candidates.begin(), candidates.end(),
-                              [&](const Profile& one) { return one.path == instance.simulation->favourite_profile; });
+        std::stable_partition(candidates.begin(), candidates.end(), [&](const Profile& one) { return one.path == now_wanted; });
         for (const Profile& candidate : candidates) {
             if (!candidate.user_paths.front().starts_with("/user/hand/") || !isSuggested(instance, candidate)) continue;
-            checkInputs(instance.simulation->script, candidate);
+            if (!hands_wanted) checkInputs(simulation.script, candidate);
             hands = findProfile(candidate.path);
             break;
         }
+        hands_wanted = now_wanted;
     }
     std::array<const Profile*, kDevices> chosen{hands, hands};
     const Profile* const tracker = findProfile("/interaction_profiles/ext/eye_gaze_interaction");
-    const bool tracks_eyes = instance.simulation->script.gaze.tracker != EyeTracking::kOff;
+    const bool tracks_eyes = simulation.script.gaze.tracker != EyeTracking::kOff;
     if (tracks_eyes && isSuggested(instance, *tracker)) chosen[kGaze] = tracker;
     for (std::size_t device = 0; device < kDevices; ++device) {
         const Profile* const wanted = automation.devices[device].profile;

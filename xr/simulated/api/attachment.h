@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "xr/simulated/api/bindings.h"
@@ -59,20 +60,22 @@ struct Attachment {
     std::vector<AttachedAction> actions;
     // The profile that each device plays; none before the first xrSyncActions in focus.
     std::array<const Profile*, kDevices> profiles{};
-    // What the hands play as long as nobody says otherwise.
+    // What the hands play as long as nobody says otherwise, and what they were to play when that was chosen; empty: whatever there is.
     const Profile* hands = nullptr;
+    std::optional<std::string> hands_wanted;
 
     [[nodiscard]] AttachedAction* find(std::uint64_t action);
     // Whether any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
-    bool chooseProfiles(Instance& instance, const Automation& automation);
+    bool chooseProfiles(Instance& instance, const Automation& automation, double time_s);
     [[nodiscard]] bool isSuggested(const Instance& instance, const Profile& profile) const;
     void bindSources(const Instance& instance);
     void read(const State& state, const std::vector<ActiveSet>& active, XrTime time);
 };
 
-// The palm's surface lies beside what the hand holds: to the left of it in the left hand, and the other way round. A straightened index
-// finger points half way between where the held tube points, -z, and where the fingers of an open hand would, -y.
-Pose gripFromPalm(std::size_t device);
+// Of "grip/pose", "grip_surface/pose" (or "palm_ext/pose"), "pinch_ext/pose" and "poke_ext/pose". The palm's surface lies beside what the
+// hand holds: to the left of it in the left hand, and the other way round. A straightened index finger points half way between where the
+// held tube points, -z, and where the fingers of an open hand would, -y. Finger tips are where those of an open hand are.
+Pose gripFromPose(std::string_view component, std::size_t device);
 
 // XR_ERROR_ACTIONSET_NOT_ATTACHED.
 AttachedAction& getAttached(Session& session, XrAction action);

@@ -113,9 +113,8 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
             stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));
         require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "the place of the space is not known");
         Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
-        if (input.name == "grip_surface/pose" || input.name == "palm_ext/pose")
-            stage_from_pose = compose(stage_from_pose, inverse(gripFromPalm(checkedDevice(owner, topLevelPath))));
         const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
+        if (!aims) stage_from_pose = compose(stage_from_pose, inverse(gripFromPose(input.name, checkedDevice(owner, topLevelPath))));
         (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
         return successOf(owner);
     });

@@ -1,4 +1,7 @@
 // XR_EXT_hand_tracking: hands that hold the script's controllers; trigger and squeeze close the fingers.
+#include <algorithm>
+#include <initializer_list>
+
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/poses.h"
 #include "xr/simulated/api/session.h"
@@ -28,8 +31,14 @@ std::optional<std::array<HandJoint, kHandJoints>> jointsAt(const HandTracker& tr
     const ControllerState& controller = state.controllers[tracker.side];
     const std::optional<Pose> stage_from_base = stageFromSpace(base, state);
     if (!controller.tracked || !stage_from_base) return std::nullopt;
-    auto joints =
-        handJoints(tracker.side, controller.stage_from_grip, controller.input("trigger/value"), controller.input("squeeze/value"));
+    const auto mostOf = [&](std::initializer_list<const char*> inputs) {
+        double most = 0;
+        for (const char* input : inputs) most = std::max(most, controller.input(input));
+        return most;
+    };
+    auto joints = handJoints(tracker.side, controller.stage_from_grip,
+                             mostOf({"trigger/value", "select/value", "pinch_ext/value", "aim_activate_ext/value", "grasp_ext/value"}),
+                             mostOf({"squeeze/value", "grasp_ext/value"}));
     for (HandJoint& joint : joints) joint.stage_from_joint = compose(inverse(*stage_from_base), joint.stage_from_joint);
     return joints;
 }

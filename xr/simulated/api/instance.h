@@ -50,7 +50,8 @@ struct Instance : Object {
         return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
     }
     [[nodiscard]] Vocabulary vocabulary() const {
-        return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME)};
+        return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME),
+                extensions.contains("XR_EXT_hand_interaction")};
     }
     // What the core has since 1.1, and what 1.0 has with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }

@@ -162,6 +162,38 @@ inline constexpr std::string_view kPicoG3[] = {"/input/trigger/click", "/input/t
                                                "/input/grip/pose",     "/input/aim/pose",        "/input/thumbstick/x",
                                                "/input/thumbstick/y",  "/input/thumbstick/click"};
 
+// Of extensions alone, which 1.1 took up under other names.
+inline constexpr std::string_view kFbTouchPro[] = {"/input/squeeze/value",
+                                                   "/input/trigger/value",
+                                                   "/input/trigger/touch",
+                                                   "/input/trigger/proximity_fb",
+                                                   "/input/trigger/curl_fb",
+                                                   "/input/trigger/slide_fb",
+                                                   "/input/thumb_fb/proximity_fb",
+                                                   "/input/thumbstick/x",
+                                                   "/input/thumbstick/y",
+                                                   "/input/thumbstick/click",
+                                                   "/input/thumbstick/touch",
+                                                   "/input/thumbrest/touch",
+                                                   "/input/thumbrest/force",
+                                                   "/input/stylus_fb/force",
+                                                   "/input/grip/pose",
+                                                   "/input/aim/pose",
+                                                   "/output/haptic",
+                                                   "/output/haptic_trigger_fb",
+                                                   "/output/haptic_thumb_fb"};
+inline constexpr std::string_view kMetaTouchPlus[] = {
+    "/input/squeeze/value",          "/input/trigger/value",     "/input/trigger/touch",      "/input/trigger/force",
+    "/input/trigger/proximity_meta", "/input/trigger/curl_meta", "/input/trigger/slide_meta", "/input/thumb_meta/proximity_meta",
+    "/input/thumbstick/x",           "/input/thumbstick/y",      "/input/thumbstick/click",   "/input/thumbstick/touch",
+    "/input/thumbrest/touch",        "/input/grip/pose",         "/input/aim/pose",           "/output/haptic"};
+// Bare hands.
+inline constexpr std::string_view kExtHands[] = {
+    "/input/aim/pose",        "/input/grip/pose",           "/input/pinch_ext/pose",         "/input/poke_ext/pose",
+    "/input/pinch_ext/value", "/input/pinch_ext/ready_ext", "/input/aim_activate_ext/value", "/input/aim_activate_ext/ready_ext",
+    "/input/grasp_ext/value", "/input/grasp_ext/ready_ext"};
+inline constexpr std::string_view kMsftHands[] = {"/input/select/value", "/input/squeeze/value", "/input/aim/pose", "/input/grip/pose"};
+
 inline constexpr Profile kProfiles[] = {
     {"/interaction_profiles/oculus/touch_controller", "Touch controller", kHands, kTouch, kTouchLeft, kTouchRight},
     {"/interaction_profiles/valve/index_controller", "Index controller", kHands, kIndex, {}, {}},
@@ -244,6 +276,12 @@ inline constexpr Profile kProfiles[] = {
      {},
      Since::k1_1,
      "XR_ML_ml2_controller_interaction"},
+    {"/interaction_profiles/facebook/touch_controller_pro", "Touch Pro controller", kHands, kFbTouchPro, kTouchLeft, kTouchRight,
+     Since::kNone, "XR_FB_touch_controller_pro"},
+    {"/interaction_profiles/meta/touch_controller_plus", "Touch Plus controller", kHands, kMetaTouchPlus, kTouchLeft, kTouchRight,
+     Since::kNone, "XR_META_touch_controller_plus"},
+    {"/interaction_profiles/ext/hand_interaction_ext", "Hand", kHands, kExtHands, {}, {}, Since::kNone, "XR_EXT_hand_interaction"},
+    {"/interaction_profiles/microsoft/hand_interaction", "Hand", kHands, kMsftHands, {}, {}, Since::kNone, "XR_MSFT_hand_interaction"},
     {"/interaction_profiles/htc/vive_pro", "Vive Pro headset", kHeadPaths, kVivePro, {}, {}},
     {"/interaction_profiles/microsoft/xbox_controller", "Xbox controller", kGamepadPaths, kXbox, {}, {}},
     {"/interaction_profiles/ext/eye_gaze_interaction",

@@ -53,7 +53,8 @@ bool hasComponent(const Profile& profile, std::string_view user_path, std::strin
     if (holds(profile.components, component) || holds(of_side, component)) return true;
     if (profile.user_paths.front() != kHands[0]) return false;
     return (component == "/input/grip_surface/pose" && words.has_grip_surface) ||
-           (component == "/input/palm_ext/pose" && words.has_palm_ext);
+           (component == "/input/palm_ext/pose" && words.has_palm_ext) ||
+           ((component == "/input/pinch_ext/pose" || component == "/input/poke_ext/pose") && words.has_finger_tips);
 }
 
 bool allowsBinding(const Profile& profile, std::string_view binding, const Vocabulary& words) {

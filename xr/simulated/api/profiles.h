@@ -23,10 +23,11 @@ struct Profile {
 };
 
 // What of all hands' paths an instance has: grip_surface came with 1.1 (and XR_KHR_maintenance1), palm_ext is XR_EXT_palm_pose's name for
-// it.
+// it; XR_EXT_hand_interaction knows the finger tips of whatever hand holds something.
 struct Vocabulary {
     bool has_grip_surface = false;
     bool has_palm_ext = false;
+    bool has_finger_tips = false;
 };
 
 // In the order in which the simulated controllers like to play them; those that they cannot play come last.

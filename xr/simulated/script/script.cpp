@@ -21,18 +21,23 @@ void setAxis(ControllerState& state, const std::string& name, InputKind kind, co
     }
     constexpr double kClicksFrom = 0.9;
     state.inputs[name + "/value"] = value.x;
+    if (kind == InputKind::kGesture) {
+        state.inputs[name + "/ready_ext"] = value.x > 0.0 ? 1.0 : 0.0;
+        return;
+    }
     state.inputs[name + "/force"] = value.x;
     state.inputs[name + "/click"] = value.x >= kClicksFrom ? 1.0 : 0.0;
     state.inputs[name + "/touch"] = value.x > 0.0 ? 1.0 : 0.0;
 }
 
 void setPress(ControllerState& state, const Script::Hand::Press& press) {
-    state.inputs[press.input + "/touch"] = 1.0;
-    if (press.touch_only) { return; }
-    state.inputs[press.input + "/click"] = 1.0;
     const InputKind kind = *kindOfInput(press.input);
-    if (kind == InputKind::kAnalog) { state.inputs[press.input + "/value"] = 1.0; }
-    if (kind != InputKind::kButton) { state.inputs[press.input + "/force"] = 1.0; }
+    const bool is_gesture = kind == InputKind::kGesture;
+    state.inputs[press.input + (is_gesture ? "/ready_ext" : "/touch")] = 1.0;
+    if (press.touch_only) { return; }
+    if (!is_gesture) { state.inputs[press.input + "/click"] = 1.0; }
+    if (is_gesture || kind == InputKind::kAnalog) { state.inputs[press.input + "/value"] = 1.0; }
+    if (kind == InputKind::kAnalog || kind == InputKind::kStick) { state.inputs[press.input + "/force"] = 1.0; }
 }
 
 ControllerState controllerAt(const Script::Hand& hand, double time_s) {

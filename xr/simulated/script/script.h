@@ -162,7 +162,8 @@ public:
     bool writes_pictures = true;
     FrameChoice frames;
     std::set<std::string, std::less<>> extensions_off;
-    std::string profile;  // "valve/index_controller": the controllers to play; none: whatever the program knows
+    std::string profile;                // "valve/index_controller": the controllers to play; none: whatever the program knows
+    Steps<std::string> later_profiles;  // by time; none: still the first
 
     struct Hand {
         Track<Pose> stage_from_grip;

@@ -9,12 +9,13 @@
 namespace simulated {
 
 enum class InputKind {
-    kButton,  // click, touch
-    kAnalog,  // value, force, click, touch
-    kStick,   // x, y, click, touch; a trackpad also force
+    kButton,   // click, touch
+    kAnalog,   // value, force, click, touch
+    kStick,    // x, y, click, touch; a trackpad also force
+    kGesture,  // value, ready_ext
 };
 
-inline constexpr std::array<std::pair<std::string_view, InputKind>, 13> kInputs{{{"trigger", InputKind::kAnalog},
+inline constexpr std::array<std::pair<std::string_view, InputKind>, 16> kInputs{{{"trigger", InputKind::kAnalog},
                                                                                  {"squeeze", InputKind::kAnalog},
                                                                                  {"thumbstick", InputKind::kStick},
                                                                                  {"trackpad", InputKind::kStick},
@@ -23,10 +24,13 @@ inline constexpr std::array<std::pair<std::string_view, InputKind>, 13> kInputs{
                                                                                  {"x", InputKind::kButton},
                                                                                  {"y", InputKind::kButton},
                                                                                  {"menu", InputKind::kButton},
-                                                                                 {"select", InputKind::kButton},
+                                                                                 {"select", InputKind::kAnalog},
                                                                                  {"system", InputKind::kButton},
                                                                                  {"thumbrest", InputKind::kButton},
-                                                                                 {"shoulder", InputKind::kButton}}};
+                                                                                 {"shoulder", InputKind::kButton},
+                                                                                 {"pinch_ext", InputKind::kGesture},
+                                                                                 {"aim_activate_ext", InputKind::kGesture},
+                                                                                 {"grasp_ext", InputKind::kGesture}}};
 
 [[nodiscard]] std::optional<InputKind> kindOfInput(std::string_view name);
 

@@ -44,6 +44,7 @@ private:
     void parseImages(Words& words);
     void parseStateChanges(Words& words);
     void parseExtension(Words& words);
+    std::string profileName(Words& words);
     void parseProfile(Words& words);
     void parsePlugged(Words& words);
     void parseVulkanAdditions(Words& words);

@@ -31,7 +31,10 @@ void Parser::parseAxis(Words& words) {
     Script::Hand& hand = script_.hands[words.side()];
     const std::string input = inputName(words, hand);
     const InputKind kind = *kindOfInput(input);
-    if (kind == InputKind::kButton) { words.fail("{} has no axis, must be trigger, squeeze, thumbstick or trackpad", input); }
+    if (kind == InputKind::kButton) {
+        words.fail("{} has no axis, must be trigger, squeeze, select, pinch_ext, aim_activate_ext, grasp_ext, thumbstick or trackpad",
+                   input);
+    }
     const double time_s = words.time();
     glm::dvec2 value(0.0);
     if (kind == InputKind::kStick) {

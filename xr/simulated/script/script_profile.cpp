@@ -30,7 +30,10 @@ std::string inputsOf(const Profile& profile, Side side) {
 void checkInputs(const Script& script, const Profile& profile) {
     for (const Side side : kSides) {
         for (const auto& [input, place] : script.hands[side].input_places) {
-            if (hasInput(profile, side, input)) { continue; }
+            const auto isOfLater = [&, &moved = input](const auto& change) {
+                return hasInput(*findHandProfile(change.second), side, moved);
+            };
+            if (hasInput(profile, side, input) || std::ranges::any_of(script.later_profiles.changes(), isOfLater)) { continue; }
             failAt(place, "the {} hand of {} has no {}, must be one of: {}", side == kLeft ? "left" : "right",
                    shown(profile.path.substr(std::string_view("/interaction_profiles/").size())), input, inputsOf(profile, side));
         }

@@ -6,7 +6,8 @@
 
 namespace simulated {
 
-// Throws ScriptError for the first input that the script moves and that these controllers do not have on that hand.
+// Throws ScriptError for the first input that the script moves and that these controllers do not have on that hand, nor any that the
+// script has in their place later on.
 void checkInputs(const Script& script, const Profile& profile);
 
 }  // namespace simulated

@@ -31,13 +31,17 @@ void Parser::parseExtension(Words& words) {
     if (!script_.extensions_off.insert(name).second) { words.fail("{} is off already, must be named once", shown(name)); }
 }
 
-void Parser::parseProfile(Words& words) {
-    requireFirst(words, "profile");
-    const std::string name = words.text("the controllers' profile");
+std::string Parser::profileName(Words& words) {
+    std::string name = words.text("the controllers' profile");
     if (findHandProfile(name) == nullptr) {
         words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), handProfiles());
     }
-    script_.profile = name;
+    return name;
+}
+
+void Parser::parseProfile(Words& words) {
+    requireFirst(words, "profile");
+    script_.profile = profileName(words);
 }
 
 void Parser::parsePlugged(Words& words) {

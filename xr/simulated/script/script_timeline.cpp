@@ -34,8 +34,9 @@ void Parser::parseAt(Words& words) {
     }
     last_at_s_ = time_s;
     const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
-    switch (words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit",
-                                          "eye", "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "gaze"})) {
+    switch (
+        words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit", "eye",
+                                      "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "profile", "gaze"})) {
         case 0:
             return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
         case 1:
@@ -81,6 +82,8 @@ void Parser::parseAt(Words& words) {
             return;
         case 14:
             return addStep(words, script_.gpu_load, time_s, parseLoad(words));
+        case 15:
+            return addStep(words, script_.later_profiles, time_s, profileName(words));
         default:
             return parseGazeTracking(words, time_s, script_.gaze);
     }

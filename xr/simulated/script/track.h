@@ -51,6 +51,7 @@ public:
 
     void setInitial(const Value& value) { initial_ = value; }
     [[nodiscard]] const Value& initial() const { return initial_; }
+    [[nodiscard]] const std::vector<std::pair<double, Value>>& changes() const { return changes_; }
     // False, and nothing is added, if `time_s` is not after the last change.
     bool add(double time_s, const Value& value) {
         if (!changes_.empty() && time_s <= changes_.back().first) { return false; }

@@ -1,0 +1,120 @@
+// Watching what is recorded.
+#include "tests/faults/load.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <string>
+
+namespace binosplat::faults {
+
+namespace {
+
+// Since its timestamps were reset.
+struct Recording {
+    VkQueryPool timestamps = VK_NULL_HANDLE;
+    bool is_in_present = false, reprojects = false;
+    std::uint64_t groups = 0;  // that present pixels
+};
+
+struct Load {
+    double rendered_ms = 0.0, reprojected_ms = 0.0;
+};
+
+std::mutex g_load_mutex;
+std::map<VkCommandBuffer, Recording> g_recordings;
+std::uint64_t g_frames = 0, g_first_groups = 0;
+double g_tick_ns = 1.0;
+PFN_vkCmdResetQueryPool g_reset = nullptr;
+PFN_vkCmdDispatch g_dispatch = nullptr;
+PFN_vkCmdBeginDebugUtilsLabelEXT g_begin_label = nullptr;
+
+// By the frame from which on it is so.
+const std::map<std::uint64_t, Load>& loads() {
+    static const std::map<std::uint64_t, Load> all = [] {
+        std::map<std::uint64_t, Load> found;
+        const char* text = std::getenv("BINOSPLAT_FAULT_LOAD");
+        while (text != nullptr && *text != '\0') {
+            char* end = nullptr;
+            const std::uint64_t frame = std::strtoull(text, &end, 10);
+            Load& load = found[frame];
+            load.rendered_ms = std::strtod(end + 1, &end);
+            load.reprojected_ms = std::strtod(end + 1, &end);
+            text = *end == ',' ? end + 1 : end;
+        }
+        return found;
+    }();
+    return all;
+}
+
+VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool pool, std::uint32_t first, std::uint32_t count) {
+    {
+        const std::lock_guard lock(g_load_mutex);
+        g_recordings[commands] = {pool};
+    }
+    g_reset(commands, pool, first, count);
+}
+
+VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUtilsLabelEXT* label) {
+    {
+        const std::lock_guard lock(g_load_mutex);
+        Recording& recording = g_recordings[commands];
+        recording.is_in_present = std::strcmp(label->pLabelName, "10_present") == 0;
+        recording.reprojects = recording.reprojects || std::string(label->pLabelName).find("8d_reproject") != std::string::npos;
+    }
+    if (g_begin_label != nullptr) { g_begin_label(commands, label); }
+}
+
+VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    {
+        const std::lock_guard lock(g_load_mutex);
+        Recording& recording = g_recordings[commands];
+        if (recording.is_in_present) { recording.groups += std::uint64_t{x} * y * z; }
+    }
+    g_dispatch(commands, x, y, z);
+}
+
+template <typename Function>
+PFN_vkVoidFunction withoutType(Function* function) {
+    return reinterpret_cast<PFN_vkVoidFunction>(function);
+}
+
+}  // namespace
+
+bool hasLoad() { return !loads().empty(); }
+
+void beginLoad(PFN_vkGetDeviceProcAddr next, VkDevice device, double tick_ns) {
+    g_tick_ns = tick_ns;
+    g_reset = reinterpret_cast<PFN_vkCmdResetQueryPool>(next(device, "vkCmdResetQueryPool"));
+    g_dispatch = reinterpret_cast<PFN_vkCmdDispatch>(next(device, "vkCmdDispatch"));
+    g_begin_label = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(next(device, "vkCmdBeginDebugUtilsLabelEXT"));
+}
+
+PFN_vkVoidFunction loadFunction(const char* name) {
+    if (!hasLoad()) { return nullptr; }
+    if (std::strcmp(name, "vkCmdResetQueryPool") == 0) { return withoutType(resetQueryPool); }
+    if (std::strcmp(name, "vkCmdDispatch") == 0) { return withoutType(dispatch); }
+    if (std::strcmp(name, "vkCmdBeginDebugUtilsLabelEXT") == 0) { return withoutType(beginLabel); }
+    return nullptr;
+}
+
+std::optional<std::uint64_t> ticksOf(VkQueryPool pool) {
+    if (!hasLoad()) { return std::nullopt; }
+    const std::lock_guard lock(g_load_mutex);
+    for (const auto& [commands, recording] : g_recordings) {
+        if (recording.timestamps != pool || recording.groups == 0) { continue; }
+        if (g_first_groups == 0) { g_first_groups = recording.groups; }
+        const auto after = loads().upper_bound(g_frames++);
+        if (after == loads().begin()) { return 1; }
+        const Load& load = std::prev(after)->second;
+        const double share = static_cast<double>(recording.groups) / static_cast<double>(g_first_groups);
+        const double ms = share * (recording.reprojects ? load.reprojected_ms : load.rendered_ms);
+        return static_cast<std::uint64_t>(std::llround(ms * 1e6 / g_tick_ns));
+    }
+    return std::nullopt;
+}
+
+}  // namespace binosplat::faults

@@ -1,0 +1,23 @@
+// Frames that take as long as a test says, whatever the device makes of them.
+// BINOSPLAT_FAULT_LOAD=FRAME:MS/MS[,FRAME:MS/MS...], by FRAME from 0: from that frame on, a frame of as many pixels as the first one takes
+// the first time if both eyes are rendered and the second if one is made from the other; fewer pixels take their share of it. Frames are
+// what has a pass "10_present".
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace binosplat::faults {
+
+// Whether a test says so.
+bool hasLoad();
+// From now on of this device, whose timestamps tick every `tick_ns`.
+void beginLoad(PFN_vkGetDeviceProcAddr next, VkDevice device, double tick_ns);
+// A function of the device that records something of interest; null: it does not.
+PFN_vkVoidFunction loadFunction(const char* name);
+// How many ticks the frame took whose timestamps these are; none if it is no frame, or nobody says.
+std::optional<std::uint64_t> ticksOf(VkQueryPool pool);
+
+}  // namespace binosplat::faults
