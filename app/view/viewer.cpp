@@ -138,10 +138,10 @@ void Viewer::drawFrame() {
     chooseThings(wearer, views);
     obeyWindow(step_seconds);
     if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
-    renderer_.govern(*stay_, settings_);
-
     status_.state.clear();
     if (settings_.panel || window_) { layOutPanel(settings_.panel); }
+    // Last, since the panel and the window may change what is wished for.
+    renderer_.govern(*stay_, settings_);
     if (window_) { window_->acquire(); }
     if (LoadedScene* scene = scenes_.get()) {
         renderer_.render(*stay_, *scene, scenes_.scene_from_room, settings_, views, window_.get(),
