@@ -3,6 +3,7 @@
 #include "engine/picture/metrics.h"
 #include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
+#include "xr/simulated/extensions.h"
 
 #include <doctest/doctest.h>
 
@@ -422,4 +423,59 @@ TEST_CASE("the scene that one hand holds moves with it, as far as it does and no
     CHECK(position[2] == doctest::Approx(-0.6).epsilon(1e-4));
     CHECK(std::abs(numbersOf("scene-orientation").get<std::array<double, 4>>()[0]) == doctest::Approx(1.0));
     CHECK(numbersOf("units-per-metre").get<double>() == doctest::Approx(2.0));
+}
+
+TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
+    const Workplace work;
+    std::string script = "rate 90\nsize 160 160\nframes every 4\nstage off\nprofile khr/simple_controller\n";
+    for (const simulated::Extension& extension : simulated::kExtensions) {
+        const std::string name = extension.name;
+        if (name != "XR_KHR_vulkan_enable2") { script += fmt::format("extension {} off\n", name); }
+    }
+    std::vector<glm::dvec2> places;
+    for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) { places.push_back(placeOf(mode)); }
+    places.emplace_back(0.9, 0.95);
+    const ViewRun run = runView(work, "core", script + clickOn(startPanel(work), places, "select"),
+                                "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+    checkClean(run);
+    CHECK(says(run, "the wearer's place is the room's\n"));
+    std::size_t from = 0;
+    for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) {
+        from = run.outcome.output.find(fmt::format("mode = \"{}\"", mode), from);
+        INFO(mode << " in " << run.outcome.output);
+        REQUIRE(from != std::string::npos);
+    }
+    const std::size_t last = (run.frames.size() - 4) / 4 * 4;
+    CHECK(run.layers(last, "projection").at(0).at("views").at(0).contains("depth") == false);
+    CHECK(run.layers(last, "quad").size() > 3);  // rays and controllers beside the panel
+    checkAgreesWithRender(work, run, last, "--mode shared");
+}
+
+TEST_CASE("controllers are put down, hands click, and controllers are taken up again") {
+    const Workplace work;
+    const Panel panel = startPanel(work);
+    // Whatever is not in the hand does nothing.
+    const std::string script = kSmall + pointAt(panel, placeOf("shared"), 0.1) + pointAt(panel, placeOf("shared"), 0.2) +
+                               pointAt(panel, placeOf("two-pass"), 0.25) + pointAt(panel, placeOf("two-pass"), 0.4) +
+                               pointAt(panel, placeOf("mono"), 0.45) + pointAt(panel, placeOf("mono"), 0.6) +
+                               "press right aim_activate_ext 0.11 0.13\npress right trigger 0.15 0.18\n"
+                               "press right trigger 0.28 0.31\npress right aim_activate_ext 0.34 0.37\n"
+                               "press right aim_activate_ext 0.48 0.51\npress right trigger 0.54 0.57\n"
+                               "at 0.22 profile ext/hand_interaction_ext\nat 0.42 profile oculus/touch_controller\nat 0.65 exit\n";
+    const ViewRun run = runView(work, "change", script, kScene);
+    checkClean(run);
+    std::vector<std::string> changes;
+    for (std::size_t at = run.outcome.output.find("frame "); at != std::string::npos; at = run.outcome.output.find("frame ", at + 1)) {
+        const std::string line = run.outcome.output.substr(at, run.outcome.output.find('\n', at) - at);
+        if (line.find("mode = ") != std::string::npos) { changes.push_back(line); }
+    }
+    INFO(run.outcome.output);
+    REQUIRE(changes.size() == 3);
+    const std::pair<const char*, std::pair<int, int>> expected[]{{"shared", {13, 20}}, {"two-pass", {30, 36}}, {"mono", {48, 55}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(changes[i].find(expected[i].first) != std::string::npos);
+        const int frame = std::stoi(changes[i].substr(6));
+        CHECK(frame >= expected[i].second.first);
+        CHECK(frame <= expected[i].second.second);
+    }
 }

@@ -30,13 +30,13 @@ inline std::string pointAt(const Panel& panel, const glm::dvec2& share, double t
                        at.z, q.x, q.y, q.z, q.w);
 }
 
-// Points at one place after the other, a fifth of a second each, and clicks there.
-inline std::string clickOn(const Panel& panel, const std::vector<glm::dvec2>& places) {
+// Points at one place after the other, a fifth of a second each, and clicks there with the right hand's `input`.
+inline std::string clickOn(const Panel& panel, const std::vector<glm::dvec2>& places, const std::string& input = "trigger") {
     std::string script;
     double time_s = 0.2;
     for (const glm::dvec2& place : places) {
         script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15);
-        script += fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
+        script += fmt::format("press right {} {} {}\n", input, time_s + 0.05, time_s + 0.1);
         time_s += 0.2;
     }
     return script + fmt::format("at {} exit\n", time_s);
