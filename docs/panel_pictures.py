@@ -29,6 +29,10 @@ STATES = {
     "scene": ("builtin:fence --load-first", LAST),
     "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
     "lost": ("builtin:fence --load-first", LAST + "at 3 head off\n"),
+    "other": ("builtin:fence --load-first", LAST + "at 3 should-render off\n"),
+    "replaced": ("builtin:fence --load-first", LAST + "at 12 lose-session\n"),
+    "beaten": ("builtin:fence --load-first --config view.toml", LAST),
+    "held": ("builtin:fence --load-first --config view.toml", "rate 14\nsize 200 200\nframes none\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
 SCENES = ("room2.ply", "room10.ply", "Küche.ply", "Τραπέζι.ply", "Комната.ply")
@@ -81,6 +85,8 @@ def take(program, folder, name, scene, script):
             file.write(script)
         for scene_file in ("a.ply", *(SCENES if name == "scenes" else SCENES[:1])):
             subprocess.run([program, "scene", "fence", "--out", scene_file], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        with open(os.path.join(work, "view.toml"), "w") as file:
+            file.write('[view]\nquality = "fast"\n')
         with open(os.path.join(work, "b.ply"), "w") as file:
             file.write("ply\nformat ascii 1.0\nelement vertex many\n")
         size = "{}x{}x24".format(*SCREEN)
