@@ -276,21 +276,7 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
             passes_.recordVisible(commands, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
             passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
             if (per_eye_) { passes_.recordVisible(commands, *scene_, buffers_, alone(second), "affiliated "); }
-            stereo_passes_.record(commands, {.scene = *scene_,
-                                             .buffers = buffers_,
-                                             .stereo = stereo_buffers_,
-                                             .settings = stereo,
-                                             .rectified = relation_.rectified,
-                                             .may_move = may_move_,
-                                             .list = affiliated.list,
-                                             .dominant_eye = first,
-                                             .dominant = images_[first],
-                                             .affiliated = images_[second],
-                                             .dominant_shown = shown_[first],
-                                             .affiliated_shown = shown_[second],
-                                             .background = affiliated.background,
-                                             .affiliated_lens = eyes[static_cast<std::size_t>(second)].intrinsics,
-                                             .affiliated_gaze = settings.gazes[static_cast<std::size_t>(second)]});
+            recordMoving(commands, eyes, settings, stereo, affiliated);
             if (stereo.patching == Patching::kNone) { break; }
             if (!per_eye_) { recordOrderOfAffiliated(commands, settings.order); }
             if (!may_move_) {
@@ -302,6 +288,26 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
             break;
     }
     commands.endPass();
+}
+
+void StereoFrame::recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
+                               const EyeTarget& affiliated) {
+    const int first = dominant_, second = 1 - dominant_;
+    stereo_passes_.record(commands, {.scene = *scene_,
+                                     .buffers = buffers_,
+                                     .stereo = stereo_buffers_,
+                                     .settings = stereo,
+                                     .rectified = relation_.rectified,
+                                     .may_move = may_move_,
+                                     .list = affiliated.list,
+                                     .dominant_eye = first,
+                                     .dominant = images_[first],
+                                     .affiliated = images_[second],
+                                     .dominant_shown = shown_[first],
+                                     .affiliated_shown = shown_[second],
+                                     .background = affiliated.background,
+                                     .affiliated_lens = eyes[static_cast<std::size_t>(second)].intrinsics,
+                                     .affiliated_gaze = settings.gazes[static_cast<std::size_t>(second)]});
 }
 
 FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const {

@@ -171,6 +171,9 @@ private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings);
     void recordOrderOfAffiliated(Commands& commands, Order order);
+    // Passes 8a to 8i: the dominant eye's picture goes where the affiliated eye sees it.
+    void recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
+                      const EyeTarget& affiliated);
     // Whether one order of the splats is that of both eyes.
     [[nodiscard]] bool sharesOrder(Order order) const { return order == Order::kDistance || relation_.same_depths; }
     // Of visible splats, an eye's: both eyes' unless each has its own.
