@@ -38,7 +38,8 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const x
       canvas_(context_, kPanelPx, format_),
       panel_(kPanelPx, kPanelWidthMetres),
       commands_(context_),
-      scenes_(context_, options_, log_, FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), {}}) {
+      scenes_(context_, options_, log_,
+              FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
     if (mirrored) { openWindow(); }
