@@ -35,7 +35,7 @@ STATES = {
     "held": ("builtin:fence --load-first --config view.toml", "rate 14\nsize 200 200\nframes none\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
-SCENES = ("room2.ply", "room10.ply", "Küche.ply", "Τραπέζι.ply", "Комната.ply")
+SCENES = ("room2.ply", "room10.ply", "Küche.ply", "Τραπέζι.ply", "Комната.ply", "חדר.ply", "غرفة.ply", "森の家.ply")
 SCREEN = (1400, 800)
 EYE_PX = 720  # the window shows an eye of this size, and the panel beside it
 PANEL_PX = (EYE_PX * 768 // 960, EYE_PX)

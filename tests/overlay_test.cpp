@@ -1,5 +1,6 @@
 // Facts about the panel's pages: what can be read and pointed at, whatever stands on them.
 #include "app/view/scene_facts.h"
+#include "app/view/shown_text.h"
 #include "engine/error.h"
 #include "tests/panel_sketch.h"
 #include "tests/run_program.h"
@@ -7,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -39,7 +41,7 @@ void write(const fs::path& path, const std::string& text = "x") { std::ofstream(
 TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Greek and Cyrillic are there") {
     REQUIRE_FALSE(vectorFont().empty());
     PanelSketch sketch;
-    CHECK(sketch.complaint.empty());
+    CHECK(sketch.font->complaint().empty());
     sketch.draw();
     ImFont& font = *ImGui::GetIO().Fonts->Fonts[0];
     const ImFontGlyph* capital = font.FindGlyphNoFallback('H');
@@ -52,11 +54,69 @@ TEST_CASE("letters are half a degree high where the panel hangs, and Latin, Gree
         CAPTURE(letter);
         CHECK(font.FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr);
     }
-    // What is not there is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
+    // What is not there yet is a box: Chinese, bytes that are no UTF-8, and what lies beyond 16 bits.
     const ImFontGlyph* box = font.FindGlyphNoFallback(0x25a1);
     REQUIRE(box != nullptr);
     CHECK(font.FindGlyph(0x4e2d) == box);
     CHECK(font.FindGlyph(0xfffd) == box);
+}
+
+TEST_CASE("names bring their letters along, those that no font has stay boxes, and what is on the panel stays where it is") {
+    const Workplace work;
+    PanelSketch sketch;
+    const WidgetPlaces before = sketch.draw().places;
+    const auto isThere = [](int letter) {
+        return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
+    };
+    CHECK_FALSE(isThere(0x5d0));
+    sketch.status.message = "\xd7\x90 \xe1\x83\x90 \xef\xb7\xbf\xee\x80\x80";  // Hebrew, Georgian, private letters
+    CHECK(sketch.draw().places == before);
+    CHECK(isThere(0x5d0));
+    CHECK(isThere(0x10d0));
+    CHECK_FALSE(isThere(0xe000));
+    CHECK(isThere('A'));
+    CHECK_FALSE(sketch.font->add(sketch.status.message));  // once
+    // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
+    const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
+    write(work.path / chinese);
+    sketch.pages.shown = Page::kScenes;
+    sketch.pages.chooser.showFolder(work.path.string());
+    CHECK(sketch.draw().places.contains(chinese));
+    CHECK(isThere(0x5d0));
+    const std::vector<fs::path> further = furtherFontFiles();
+    if (std::ranges::any_of(further, [](const fs::path& file) { return fs::exists(file) && file.filename() != "DejaVuSans.ttf"; })) {
+        CHECK(isThere(0x68ee));
+        CHECK(isThere(0x6797));
+    } else {
+        MESSAGE("skipped: no font of Chinese, Japanese and Korean is installed");
+    }
+    // However many there are, the atlas is one that a device can sample.
+    for (int page = 0; page < 8; ++page) {
+        std::string text;
+        for (int letter = 0x4e00 + 2000 * page; letter < 0x4e00 + 2000 * (page + 1); ++letter) {
+            text += static_cast<char>(0xe0 + (letter >> 12));
+            text += static_cast<char>(0x80 + ((letter >> 6) & 0x3f));
+            text += static_cast<char>(0x80 + (letter & 0x3f));
+        }
+        CHECK(sketch.font->add(text));
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        CHECK(std::max(width, height) <= 4096);
+        CHECK(isThere('A'));
+    }
+}
+
+TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are joined") {
+    CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
+    // Alef, bet, gimel within a path: gimel stands first, the path keeps its order.
+    CHECK(asShown("/a/\xd7\x90\xd7\x91\xd7\x92/b.ply") == "/a/\xd7\x92\xd7\x91\xd7\x90/b.ply");
+    // Beh, alef: alef's final form, then beh's initial one.
+    CHECK(asShown("\xd8\xa8\xd8\xa7") == "\xef\xba\x8e\xef\xba\x91");
+    // Lam and alef are one sign.
+    CHECK(asShown("\xd9\x84\xd8\xa7") == "\xef\xbb\xbb");
+    // Bytes that are no UTF-8 do no harm.
+    CHECK(asShown("\xd7\xff\xf0\x9f").find("\xef\xbf\xbd") != std::string::npos);
 }
 
 TEST_CASE("without a font that can be used the small built-in one is, and one line says why") {
@@ -69,9 +129,9 @@ TEST_CASE("without a font that can be used the small built-in one is, and one li
         CAPTURE(name);
         setenv("BINOSPLAT_FONT", (work.path / name).c_str(), 1);
         PanelSketch sketch;
-        CHECK(sketch.complaint.starts_with("the panel is written in a small built-in font: "));
-        CHECK(sketch.complaint.find(name) != std::string::npos);
-        CHECK(sketch.complaint.find('\n') == std::string::npos);
+        CHECK(sketch.font->complaint().starts_with("the panel is written in a small built-in font: "));
+        CHECK(sketch.font->complaint().find(name) != std::string::npos);
+        CHECK(sketch.font->complaint().find('\n') == std::string::npos);
         CHECK(sketch.click("shared").places.contains("Quit"));
         CHECK(sketch.settings.stereo.mode == Mode::kShared);
     }
@@ -190,7 +250,7 @@ TEST_CASE("names of any bytes and of any length are shown, and a long message is
     sketch.pages.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.size() == 12 + 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
-    CHECK(withoutControls("a\nb\x1b[1m\x7f") ==
+    CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"
           "b\xef\xbf\xbd[1m\xef\xbf\xbd");
     // What is said moves nothing that can be pointed at.

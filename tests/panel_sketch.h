@@ -2,12 +2,14 @@
 #pragma once
 
 #include "app/view/overlay.h"
+#include "app/view/panel_font.h"
 #include "app/view/panel_style.h"
 
 #include <doctest/doctest.h>
 #include <imgui.h>
 
 #include <limits>
+#include <memory>
 #include <string>
 
 namespace binosplat::test {
@@ -19,10 +21,9 @@ public:
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
         io.DisplaySize = ImVec2(static_cast<float>(kPanelPx.x), static_cast<float>(kPanelPx.y));
-        complaint = stylePanel();
-        unsigned char* pixels = nullptr;
-        int width = 0, height = 0;
-        io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        stylePanel();
+        font = std::make_unique<PanelFont>();
+        takeLetters();
         status.has_scene = true;
         status.scene = "scene.ply";
     }
@@ -32,6 +33,7 @@ public:
 
     // One frame, with something that points and presses, or nothing.
     OverlayActions draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
+        if (font->add(namesOn(pages, status))) { takeLetters(); }
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
         io.MousePos =
@@ -53,10 +55,18 @@ public:
         return draw(&place);
     }
 
-    std::string complaint;
+    std::unique_ptr<PanelFont> font;
     ViewSettings settings;
     OverlayPages pages;
     OverlayStatus status;
+
+private:
+    // What makes a texture of them elsewhere.
+    static void takeLetters() {
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+    }
 };
 
 // Where to point at a widget of the first page, in shares of the panel's width and height; `with_all`: also at those that not every

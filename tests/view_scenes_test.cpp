@@ -57,21 +57,23 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
 
 TEST_CASE("a scene is chosen on the panel, in the folder of the one that is shown, and both are remembered") {
     const Workplace work;
-    const std::filesystem::path folder = work.path / "scenes";
+    // "scenes" in Hebrew: letters that the panel's font gets while it is shown.
+    const std::string name = "\xd7\xa1\xd7\xa6\xd7\xa0\xd7\x95\xd7\xaa";
+    const std::filesystem::path folder = work.path / name;
     std::filesystem::create_directory(folder);
-    REQUIRE(work.run("scene fence --out scenes/room10.ply").exit_code == 0);
-    REQUIRE(work.run("scene step-edge --out scenes/room9.ply").exit_code == 0);
+    REQUIRE(work.run("scene fence --out " + name + "/room10.ply").exit_code == 0);
+    REQUIRE(work.run("scene step-edge --out " + name + "/room9.ply").exit_code == 0);
     std::ofstream(folder / "room1.ply") << "ply\nnonsense\n";
     const Panel panel = startPanel(work);
     const glm::dvec2 broken = placeOfScene("room1.ply", folder.string()), other = placeOfScene("room9.ply", folder.string());
     const ViewRun run =
         runView(work, "choose",
                 kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, broken, 0.4) + clickAt(panel, other, 1.5) + "at 6 exit\n",
-                "scenes/room10.ply --load-first");
+                name + "/room10.ply --load-first");
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::string place = (folder / "room9.ply").string(), bad = (folder / "room1.ply").string();
-    CHECK(output.find("shows scenes/room10.ply") < output.find(bad + ":"));
+    CHECK(output.find("shows " + name + "/room10.ply") < output.find(bad + ":"));
     CHECK(output.find(bad + ":") < output.find("shows " + place));
     CHECK(output.find("shows " + place) != std::string::npos);
     std::ifstream file(work.base / "config" / "binosplat" / "recent-scenes.txt");

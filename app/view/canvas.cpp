@@ -9,6 +9,7 @@
 #include <backends/imgui_impl_vulkan.h>
 
 #include <limits>
+#include <mutex>
 
 namespace binosplat {
 
@@ -75,7 +76,12 @@ void Canvas::startImGui() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.DisplaySize = ImVec2(static_cast<float>(size_px_.x), static_cast<float>(size_px_.y));
-    font_complaint_ = stylePanel();
+    stylePanel();
+    font_ = std::make_unique<PanelFont>();
+    startBackend();
+}
+
+void Canvas::startBackend() {
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = *context_.instance();
     info.PhysicalDevice = *context_.physicalDevice();
@@ -92,6 +98,17 @@ void Canvas::startImGui() {
     ImGui_ImplVulkan_CreateFontsTexture(*commands.buffer());
     commands.submitAndWait();
     ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+void Canvas::bringLetters(std::string_view text) {
+    if (!font_->add(text)) { return; }
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();  // frames under way read the letters there were
+    }
+    ImGui_ImplVulkan_Shutdown();
+    descriptors_.reset();
+    startBackend();
 }
 
 void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {

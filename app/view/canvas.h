@@ -2,12 +2,15 @@
 // copies are raw: an sRGB image shows them as they are.
 #pragma once
 
+#include "app/view/panel_font.h"
 #include "engine/gpu/commands.h"
 
 #include <glm/glm.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace binosplat {
 
@@ -27,24 +30,27 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
+    // Before begin(): `text` can be written, in as far as a font has its letters. What is new waits for the queue.
+    void bringLetters(std::string_view text);
     // Widgets are drawn between this and record().
     void begin(const CanvasPointer& pointer, double step_seconds);
     // Draws; then the canvas may be copied from.
     void record(Commands& commands);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
-    // Why the small built-in font is used; empty: it is not. See stylePanel.
-    [[nodiscard]] const std::string& fontComplaint() const { return font_complaint_; }
+    // Why the small built-in font is used; empty: it is not.
+    [[nodiscard]] const std::string& fontComplaint() const { return font_->complaint(); }
     [[nodiscard]] vk::Image image() const { return *image_; }
 
 private:
     void makeImage(vk::Format format);
     void makeRenderPass(vk::Format format);
     void startImGui();
+    void startBackend();
 
     const Context& context_;
     glm::uvec2 size_px_;
-    std::string font_complaint_;
+    std::unique_ptr<PanelFont> font_;  // once there is an ImGui context
     vk::raii::DeviceMemory memory_{nullptr};
     vk::raii::Image image_{nullptr};
     vk::raii::ImageView view_{nullptr};

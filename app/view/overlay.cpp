@@ -5,6 +5,7 @@
 #include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/comfort_widgets.h"
+#include "app/view/shown_text.h"
 #include "engine/platform.h"
 
 #include <fmt/format.h>
@@ -207,7 +208,7 @@ void drawChooser(PanelWidgets& widgets, SceneChooser& chooser, OverlayActions& a
     // As many lines as there may be entries, so that what is below stays where it is.
     const float rows = static_cast<float>(SceneChooser::kRows) * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows));
-    text(endOf(withoutControls(chooser.list().title)));
+    text(endOf(asShown(chooser.list().title)));
     if (!chooser.list().trouble.empty()) { writeWrapped(chooser.list().trouble); }
     if (chooser.list().trouble.empty() && chooser.list().entries.empty()) { text("No scenes and no folders"); }
     const SceneEntry* pressed = nullptr;
@@ -254,6 +255,17 @@ void drawPageButtons(PanelWidgets& widgets, OverlayPages& pages, const OverlaySt
 
 }  // namespace
 
+std::string namesOn(const OverlayPages& pages, const OverlayStatus& status) {
+    std::string names = asShown(status.scene) + asShown(status.message);
+    if (pages.shown == OverlayPages::Page::kScenes) {
+        names += asShown(pages.chooser.list().title) + asShown(pages.chooser.list().trouble);
+        for (const SceneEntry& entry : pages.chooser.shown()) { names += asShown(entry.name) + asShown(entry.trouble); }
+    } else if (pages.shown == OverlayPages::Page::kFacts) {
+        for (const auto& [name, value] : status.facts) { names += asShown(value); }
+    }
+    return names;
+}
+
 OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status) {
     OverlayActions actions;
     PanelWidgets widgets;
@@ -265,7 +277,7 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPa
     if (status.has_scene) { drawPageButtons(widgets, pages, status); }
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.885f);
     actions.quit = widgets.button("Quit");
-    text(endOf(withoutControls(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
+    text(endOf(asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
     if (!status.has_scene) {
         if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     } else if (pages.shown == OverlayPages::Page::kSettings) {

@@ -1,6 +1,8 @@
 // ImGui's widgets, with their places noted down.
 #include "app/view/panel_widgets.h"
 
+#include "app/view/shown_text.h"
+
 namespace binosplat {
 
 bool PanelWidgets::button(const char* name) {
@@ -28,7 +30,7 @@ bool PanelWidgets::entry(const std::string& name, const std::string& trouble) {
     const bool pressed = ImGui::Button("##entry", ImVec2(-1.0f, 0.0f));
     ImGui::EndDisabled();
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), padding = ImGui::GetStyle().FramePadding;
-    const std::string shown = withoutControls(trouble.empty() ? name : name + "   " + trouble);
+    const std::string shown = asShown(trouble.empty() ? name : name + "   " + trouble);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(low, high, true);
     draw.AddText(ImVec2(low.x + padding.x, low.y + padding.y), ImGui::GetColorU32(trouble.empty() ? ImGuiCol_Text : ImGuiCol_TextDisabled),
@@ -54,19 +56,10 @@ void PanelWidgets::noteBox(const char* name) {
     places_[name] = {low.x + 0.5f * (high.y - low.y), 0.5f * (low.y + high.y)};
 }
 
-std::string withoutControls(std::string_view text) {
-    std::string clean;
-    for (const char letter : text) {
-        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
-        clean += control ? "\xef\xbf\xbd" : std::string(1, letter);
-    }
-    return clean;
-}
-
 void writeWrapped(std::string_view text) {
-    const std::string clean = withoutControls(text);
+    const std::string shown = asShown(text);
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(clean.data(), clean.data() + clean.size());
+    ImGui::TextUnformatted(shown.data(), shown.data() + shown.size());
     ImGui::PopTextWrapPos();
 }
 

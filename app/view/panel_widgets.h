@@ -46,8 +46,7 @@ private:
     WidgetPlaces places_;
 };
 
-// Text that may hold anything: wrapped, its control characters shown as boxes.
+// Text that may hold anything, see asShown, in as many lines as it needs.
 void writeWrapped(std::string_view text);
-std::string withoutControls(std::string_view text);
 
 }  // namespace binosplat

@@ -278,6 +278,7 @@ void Viewer::layOutPanel(bool hung) {
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
+    canvas_.bringLetters(namesOn(pages_, status_));
     canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
     obey(drawOverlay(kPanelPx, settings_, pages_, status_));
 }

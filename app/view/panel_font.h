@@ -1,0 +1,44 @@
+// The letters of the panel.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+// Of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, which is read at arm's length in any headset.
+inline constexpr float kFontPx = 24.0f;
+
+// Where the font may lie, the best place first: BINOSPLAT_FONT alone if it is set, else where systems keep DejaVu Sans.
+std::vector<std::filesystem::path> fontFiles();
+// Where systems keep DejaVu Sans and fonts of Chinese, Japanese and Korean, for letters that the font lacks.
+std::vector<std::filesystem::path> furtherFontFiles();
+
+// Whether the tables that a TrueType or OpenType font says it has, and those that are needed, lie within these bytes; of a collection, its
+// first font.
+bool looksLikeFont(std::span<const unsigned char> bytes);
+
+// The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the beginning, others as names
+// bring them along, boxes for what no font has.
+class PanelFont {
+public:
+    // Before the font is made a texture. Where there is no vector font, ImGui's own small one is taken.
+    PanelFont();
+    // Empty, or why ImGui's own font is used: one line.
+    [[nodiscard]] const std::string& complaint() const { return complaint_; }
+    // Between two frames. True: the text (UTF-8) has letters that were never asked for, and the font must be made a texture anew.
+    [[nodiscard]] bool add(std::string_view text);
+
+private:
+    std::string bytes_, complaint_;
+    std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
+};
+
+}  // namespace binosplat
