@@ -6,16 +6,18 @@ shared uint group_is_last;
 // Whether all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
 // every workgroup, once.
 //
-// What the others wrote is then there to read, if it is read and written through a `coherent` array: a thread's writes come before its
-// memoryBarrierBuffer (release, for the whole device), that before the barrier() at which thread 0 learns of it, and that before the
-// atomicAdd, which the last workgroup's atomicAdd sees; from there the same way back: barrier() and memoryBarrierBuffer (acquire).
+// What the others wrote is then there to read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
+// each memoryBarrierBuffer releases and acquires for the whole device; two of them synchronize where a barrier() lies between them, or the
+// two atomicAdds. So a thread's writes are handed to its thread 0, from there to thread 0 of the last workgroup, and on to its threads.
 bool isLastGroup(ListStates list) {
     memoryBarrierBuffer();
     barrier();
     if (gl_LocalInvocationIndex == 0) {
+        memoryBarrierBuffer();
         const uint done = atomicAdd(list.at[0].groups_done, 1) + 1;
         group_is_last = done == gl_NumWorkGroups.x * gl_NumWorkGroups.y ? 1 : 0;
         if (group_is_last != 0) { atomicExchange(list.at[0].groups_done, 0); }
+        memoryBarrierBuffer();
     }
     barrier();
     memoryBarrierBuffer();
