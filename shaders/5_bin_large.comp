@@ -35,10 +35,10 @@ void main() {
             uint tiles = end - begin;
             if (kMasked && tiles > 0) { tiles = countInMask(pass.tile_mask, pass.size_tiles, uint(row), begin, end); }
             uvec2 own = uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y);
+            pairs.x += subgroupAdd(tiles);
             for (uint x = begin; x < end; ++x) {
                 if (!kMasked || isInMask(pass.tile_mask, pass.size_tiles, uvec2(x, row))) { putPair(own, uvec2(x, row), rank); }
             }
-            pairs.x += subgroupAdd(tiles);
         }
         // 4_project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
         for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {

@@ -72,14 +72,14 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * kLowPass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
-    // A subgroup's slots follow one another, so that one lane can set the bits of all; 32 divides the slot of lane 0 or is
+    // A subgroup's slots follow one another, so that one lane can set the bits of all that are here; 32 divides the slot of lane 0 or is
     // divided by the subgroup's width.
-    const uint cells = cellsOf(splat, tile_px);
+    const uint cells = cellsOf(splat, tile_px), first_slot = slot - gl_SubgroupInvocationID;
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
         if (subgroupElect()) {
             for (uint word = 0; word < (lanes_in_subgroup + 31) / 32; ++word) {
-                if (lanes[word] != 0) { atomicOr(cell_splats[cell][slot / 32 + word], lanes[word] << (slot & 31)); }
+                if (lanes[word] != 0) { atomicOr(cell_splats[cell][first_slot / 32 + word], lanes[word] << (first_slot & 31)); }
             }
         }
     }

@@ -36,9 +36,9 @@ uint scanGroup(uint value, out uint total) {
         for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
             const uint s = first + gl_SubgroupInvocationID;
             const uint sum = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
-            const uint before = subgroupExclusiveAdd(sum);
+            const uint before = subgroupExclusiveAdd(sum), of_all = subgroupAdd(sum);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = carry + before; }
-            carry += subgroupAdd(sum);
+            carry += of_all;
         }
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
@@ -60,9 +60,9 @@ uint scanGroupMax(uint value, out uint greatest) {
         for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
             const uint s = first + gl_SubgroupInvocationID;
             const uint own = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
-            const uint before = subgroupExclusiveMax(own);
+            const uint before = subgroupExclusiveMax(own), of_all = subgroupMax(own);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = max(carry, before); }
-            carry = max(carry, subgroupMax(own));
+            carry = max(carry, of_all);
         }
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
