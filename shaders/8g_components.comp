@@ -24,11 +24,14 @@ bool isHole(StereoView stereo, uvec2 at) {
 // Other threads change parents meanwhile; every value one may see leads to the same root.
 uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[slotOf(pixel)].parent, 0); }
 
+// On the way up each pixel is hung on its grandparent: otherwise the chains of a hole are as long as it is wide and high.
 uint rootOf(uint pixel) {
     uint parent = parentOf(pixel);
     while (parent != pixel) {
+        const uint above = parentOf(parent);
+        if (above != parent) { atomicMin(pass.pixels.at[slotOf(pixel)].parent, above); }
         pixel = parent;
-        parent = parentOf(pixel);
+        parent = above;
     }
     return pixel;
 }

@@ -3,6 +3,7 @@
 // workgroup finds from the price list (8h) where the budget ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
@@ -14,6 +15,7 @@ layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
 
 const uint kBinsPerThread = kPriceBins / kStereoGroup;
+const uint kTilesPerStep = 8;  // loaded at a time, since each load takes as long as all of them
 
 shared uint last_bin;       // the one in which the budget ends
 shared uint left_for_last;  // of the budget
@@ -44,12 +46,15 @@ void findLastBin(uint budget) {
 // What is left is for those that are worth so much by themselves; what came down from a higher bin has had its turn there.
 bool isOfLast(uint price) { return price != 0 && price >> 22 == last_bin && ((price & kSeenInPart) == 0 || left_for_last == 0xffffffffu); }
 
-// What the tiles of the last bin cost that come before this workgroup's.
+// What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.
 uint costBefore(uint first_tile) {
     uint own = 0;
-    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kStereoGroup) {
-        const uint price = pass.tile_prices.at[tile];
-        own += isOfLast(price) ? price & kMaxTileCost : 0;
+    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kStereoGroup) {
+        uint prices[kTilesPerStep];
+        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
+            prices[i] = tile + i * kStereoGroup < first_tile ? pass.tile_prices.at[tile + i * kStereoGroup] : 0;
+        }
+        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i]) ? prices[i] & kMaxTileCost : 0; }
     }
     uint total;
     scanGroup(own, total);
