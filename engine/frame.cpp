@@ -340,7 +340,7 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
         target.kept.spread = settings.mode == Mode::kPredicted;
         target.kept.depth_choice = settings.stereo.depth_choice;
         target.moving = stereo_buffers_.moving(other);
-        target.arrivals = stereo_buffers_.arrivals(other);
+        if (!movesRows(relation_.rectified, stereo_buffers_)) { target.arrivals = stereo_buffers_.arrivals(other); }
         target.row_words = stereo_buffers_.rowWords();
     }
     // Until the dominant eye is blended nothing is in the other one's picture.

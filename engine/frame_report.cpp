@@ -64,6 +64,7 @@ void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const
     counters["stereo_bytes"] = stereo_buffers_.bytes();
     result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
                                                    .may_move = flight.may_move,
+                                                   .moves_rows = movesRows(flight.relation.rectified, stereo_buffers_),
                                                    .half_floats = settings.half_floats,
                                                    .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
                                                    .classes = stereo_buffers_.classesBuffer().bytes() > 0,

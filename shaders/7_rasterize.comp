@@ -3,6 +3,7 @@
 // their own splats alone. A thread blends several pixels of a column, so that what it reads from shared memory serves them all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -199,6 +200,7 @@ void main() {
         }
     }
 
+    const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const uvec2 pixel = first_pixel + uvec2(0, p * kRowStep);
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
@@ -209,7 +211,7 @@ void main() {
             if (kMoments) { pass.moments.at[at] = moments[p]; }
             if (kMoving) {
                 pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
-                pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0;
+                if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
             }
         }
     }

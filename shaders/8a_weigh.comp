@@ -61,6 +61,7 @@ void main() {
         }
         pass.tile_costs.at[tile] = cost;
         pass.tile_errors.at[tile] = 0;
+        pass.tile_depths.at[tile] = kNothingArrived;
     }
     const uint threads = gl_NumWorkGroups.x * kStereoGroup;
     for (uint i = tile; i < maskWords(stereo.size_tiles) * stereo.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }

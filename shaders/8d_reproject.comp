@@ -18,44 +18,11 @@ layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
 layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
 layout(constant_id = 2) const bool kForward = false;      // colours are going to be copied
 
-struct Moved {
-    vec2 place_px;
-    float inverse_depth;
-    uint spread;
-    bool valid;
-};
+#include "lib/reproject.glsl"
 
-// Whether the pixel or one within kHiddenMargin of it lies in a hidden tile; tiles are larger than that.
-bool isNearHidden(StereoView stereo, uvec2 pixel) {
-    const vec2 low = vec2(pixel) - kHiddenMargin, high = vec2(pixel) + kHiddenMargin;
-    return isHiddenAt(stereo, pass.shown_mask, low) || isHiddenAt(stereo, pass.shown_mask, high) ||
-           isHiddenAt(stereo, pass.shown_mask, vec2(low.x, high.y)) || isHiddenAt(stereo, pass.shown_mask, vec2(high.x, low.y));
-}
-
-// A dominant pixel as the affiliated eye sees it.
-Moved moveDominant(StereoView stereo, uvec2 pixel) {
-    const uint moving = pass.moving.at[pixel.y * stereo.row_words + pixel.x];
-    const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
-    const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
-    const bool seen = !kHiddenTiles || !isNearHidden(stereo, pixel);
-    const uint spread = kForward ? parityOf(pixel) : moving & kSpreadBits;
-    return Moved(moved.xy, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
-}
-
-void put(StereoView stereo, ivec2 at, float inverse_depth, uint landed, uint spread) {
+void put(StereoView stereo, ivec2 at, uint arrival) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(stereo.size_px)))) { return; }
-    atomicMax(pass.arrivals.at[uint(at.y) * stereo.row_words + uint(at.x)], movingPixel(inverse_depth, landed, spread));
-}
-
-// Along a row: the pixels between `here` and its right neighbour.
-void putBetween(StereoView stereo, Moved here, Moved right, int row) {
-    const float reach = right.place_px.x - here.place_px.x;
-    if (!(right.valid && reach > 1 && reach <= float(stereo.gap_px + 1))) { return; }
-    const int first = int(floor(here.place_px.x)) + 1, end = int(floor(right.place_px.x));
-    for (int x = first; x < end; ++x) {
-        put(stereo, ivec2(x, row), mix(here.inverse_depth, right.inverse_depth, (float(x) + 0.5 - here.place_px.x) / reach), 0,
-            max(here.spread, right.spread));
-    }
+    atomicMax(pass.arrivals.at[uint(at.y) * stereo.row_words + uint(at.x)], arrival);
 }
 
 // In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower neighbour.
@@ -74,8 +41,8 @@ void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
             const vec2 d = vec2(at) + 0.5 - here.place_px;
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
-            put(stereo, at, here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth), 0,
-                max(here.spread, max(right.spread, below.spread)));
+            const float inverse_depth = here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth);
+            put(stereo, at, movingPixel(inverse_depth, 0, max(here.spread, max(right.spread, below.spread))));
         }
     }
 }
@@ -85,10 +52,8 @@ void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(pixel, stereo.size_px))) { return; }
     const Moved here = moveDominant(stereo, pixel);
-    // Too far out to reach the picture even where the surface is stretched.
-    const float reach_px = float(stereo.gap_px + 2);
-    if (!here.valid || any(lessThan(here.place_px, vec2(-reach_px))) || any(greaterThan(here.place_px, vec2(stereo.size_px) + reach_px))) { return; }
-    put(stereo, ivec2(floor(here.place_px)), here.inverse_depth, kLanded, here.spread);
+    if (!here.valid || isOut(stereo, here)) { return; }
+    putLanded(stereo, here);
     if (kForward || pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
     const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));
     if (kRectified) {

@@ -26,22 +26,12 @@ const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
 const uint kMaxTiles = 1024;
 
-// What lies at a pixel: what reached it, or else the farther of what reached its row beside it, since what is hidden lies behind.
-float inverseDepthNear(StereoView stereo, uvec2 at) {
-    const uint row = at.y * stereo.row_words;
-    const uint here = pass.arrivals.at[row + at.x];
-    if (here != 0) { return inverseDepthOf(here); }
-    uint left = 0, right = 0;
-    for (uint x = at.x; x > 0 && left == 0; --x) { left = pass.arrivals.at[row + x - 1]; }
-    for (uint x = at.x + 1; x < stereo.size_px.x && right == 0; ++x) { right = pass.arrivals.at[row + x]; }
-    const uint farther = left == 0 ? right : right == 0 ? left : min(left, right);
-    return farther == 0 ? 0 : inverseDepthOf(farther);
-}
-
-// Whether the splat's centre, held to the picture, is clearly nearer than what reached that pixel; also in a tile that is rendered.
+// Whether the splat's centre, held to the picture, is clearly nearer than the farthest that reached its tile; also in a tile that is
+// rendered.
 bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
-    const uvec2 at = uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1)));
-    return pass.tile_kinds.at[tileOf(stereo, at)] != 0 || inverse_depth > kInFrontRatio * inverseDepthNear(stereo, at);
+    const uint tile = tileOf(stereo, uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1))));
+    const uint farthest = pass.tile_depths.at[tile];
+    return pass.tile_kinds.at[tile] != 0 || farthest == kNothingArrived || inverse_depth > kInFrontRatio * inverseDepthOf(farthest << 6);
 }
 
 // Sums stop at half of what a word holds; whatever gets there is rendered anyway. By exchange, since many threads that each looked before

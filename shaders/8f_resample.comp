@@ -1,4 +1,5 @@
 // 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
+// Where pixels move along their row alone and a row fits into shared memory (kMovesRow), they arrive there, as 8d has it otherwise.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
@@ -11,6 +12,8 @@
 #include "lib/group.glsl"
 #include "lib/stereo.glsl"
 #include "lib/moving_pixel.glsl"
+#include "lib/tile_mask.glsl"
+#include "lib/unseen.glsl"
 
 layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { ResamplePass pass; };
@@ -18,12 +21,16 @@ layout(constant_id = 1) const bool kPredictErrors = false;
 layout(constant_id = 2) const bool kDepth = false;
 layout(constant_id = 3) const bool kClasses = false;     // somebody asks for the class of each pixel
 layout(constant_id = 4) const bool kComponents = false;  // holes are going to be grouped
-// A whole row of arrivals in shared memory, which colours may then take the place of. 0: rows are too long, and arrivals lie elsewhere.
+// A whole row of arrivals in shared memory, whose place in device memory colours may then take. 0: rows are too long, and arrivals lie
+// elsewhere.
 layout(constant_id = 5) const uint kRowSteps = 1;
 layout(constant_id = 6) const bool kHalfColours = false;
 layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
+layout(constant_id = 8) const bool kMovesRow = false;
+layout(constant_id = 9) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered; for kMovesRow
 
 #include "lib/picture.glsl"
+#include "lib/reproject.glsl"
 
 const uint kMaxWidth = 16384;
 const uint kSharedRow = kRowSteps * kArrivalsStep;
@@ -35,7 +42,11 @@ shared uint moved_tiles[(kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16];  // of
 shared uint moved_count;
 shared uint hidden_count;
 
-uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.arrivals.at[row + x] : row_arrivals[x]; }
+uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
+
+void put(StereoView stereo, ivec2 at, uint arrival) {
+    if (at.x >= 0 && at.x < int(stereo.size_px.x)) { atomicMax(row_arrivals[at.x], arrival); }
+}
 
 // Which tiles of the row are moved, i.e. come from here, and whether any is hidden.
 void listTiles(uint first_tile, uint tiles, bool moves) {
@@ -46,17 +57,35 @@ void listTiles(uint first_tile, uint tiles, bool moves) {
     }
 }
 
+// The dominant eye's row, to where the affiliated eye sees it; four pixels at a time, each with its right neighbour.
+void moveRow(StereoView stereo, uint y, uint width) {
+    for (uint first = 4 * gl_LocalInvocationIndex; first < width; first += 4 * kStereoGroup) {
+        Moved here = moveDominant(stereo, uvec2(first, y));
+        for (uint x = first; x < min(first + 4, width); ++x) {
+            Moved right = moveDominant(stereo, uvec2(min(x + 1, width - 1), y));
+            right.valid = right.valid && x + 1 < width;
+            if (here.valid && !isOut(stereo, here)) {
+                putLanded(stereo, here);
+                if (!kForward && stereo.gap_px > 0) { putBetween(stereo, here, right, int(y)); }
+            }
+            here = right;
+        }
+    }
+}
+
 // Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
 void loadRow(uint row, uint width) {
     uint x = 4 * gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         uvec4 four = uvec4(0);
-        if (x + 4 <= width) {
-            four = uvec4(pass.arrivals.at[row + x], pass.arrivals.at[row + x + 1], pass.arrivals.at[row + x + 2], pass.arrivals.at[row + x + 3]);
+        if (kMovesRow) {
+            if (x < width) { four = uvec4(row_arrivals[x], row_arrivals[x + 1], row_arrivals[x + 2], row_arrivals[x + 3]); }
+        } else if (x + 4 <= width) {
+            four = uvec4(pass.moving.at[row + x], pass.moving.at[row + x + 1], pass.moving.at[row + x + 2], pass.moving.at[row + x + 3]);
         } else {
-            [[unroll]] for (uint i = 0; i < 3; ++i) { four[i] = x + i < width ? pass.arrivals.at[row + x + i] : 0; }
+            [[unroll]] for (uint i = 0; i < 3; ++i) { four[i] = x + i < width ? pass.moving.at[row + x + i] : 0; }
         }
-        if (kSharedRow != 0 && x < width) {
+        if (!kMovesRow && kSharedRow != 0 && x < width) {
             [[unroll]] for (uint i = 0; i < 4; ++i) { row_arrivals[x + i] = four[i]; }
         }
         const uvec4 arrived = mix(uvec4(0), uvec4(1, 2, 4, 8), notEqual(four, uvec4(0)));
@@ -257,12 +286,16 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
-// Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which.
-void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint lanes) {
-    const uint slots = max(lanes / kTileSize, 1u);
+// Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which. The
+// farthest that arrived in a tile, of every other row, is what newcomers (8e) must stand in front of.
+void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint arrival, uint lanes) {
+    const uint slots = max(lanes / kTileSize, 1u), depth = arrival == 0 ? kNothingArrived : arrival >> 6;
     for (uint s = first_slot; s < first_slot + slots; ++s) {
-        const uint sum = subgroupAdd(slot == s ? steps : 0);
-        if (sum > 0 && subgroupElect()) { atomicAdd(pass.tile_errors.at[first_tile + moved_tiles[s]], sum); }
+        const uint sum = subgroupAdd(slot == s ? steps : 0), farthest = subgroupMin(slot == s ? depth : kNothingArrived);
+        if (subgroupElect()) {
+            if (sum > 0) { atomicAdd(pass.tile_errors.at[first_tile + moved_tiles[s]], sum); }
+            if (farthest != kNothingArrived) { atomicMin(pass.tile_depths.at[first_tile + moved_tiles[s]], farthest); }
+        }
     }
 }
 
@@ -290,10 +323,17 @@ void main() {
     if (kClasses) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { tile_classes[tile] = 0; }
     }
+    if (kMovesRow) {
+        for (uint x = gl_LocalInvocationIndex; x < min(width + 4, kSharedRow + 1); x += kStereoGroup) { row_arrivals[x] = 0; }
+    }
     barrier();
     listTiles(first_tile, tiles, pass.counters.at[0].moves != 0);
     barrier();
     const uint items = moved_count * kTileSize;
+    if (kMovesRow) {
+        if (items > 0) { moveRow(stereo, y, width); }
+        barrier();
+    }
     if (items > 0) { loadRow(row, width); }
     barrier();
 
@@ -312,7 +352,10 @@ void main() {
                 if (pixel_class != kCovered) { atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize))); }
             }
         }
-        if (kPredictErrors) { addErrors(first_tile, subgroupBroadcastFirst(slot), slot, steps, lanes); }
+        if (kPredictErrors) {
+            const uint arrival = x < width && (y & 1) == 0 ? arrivalAt(row, x) : 0;
+            addErrors(first_tile, subgroupBroadcastFirst(slot), slot, steps, arrival, lanes);
+        }
         begin += kStereoGroup;
     } while (begin < items);
     if (hidden_count > 0) { hideTiles(y, first_tile, width); }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 using namespace binosplat;
 using reference::PixelClass;
@@ -106,6 +107,60 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample finds the twin's colours, depths and classes
     CHECK(worst_depth <= 1e-6);
 }
 
+TEST_CASE_FIXTURE(Gpu, "8f_resample moves a row itself as 8d_reproject would, to the bit") {
+    std::size_t pictures = 0;
+    for (StereoCase c : test::makeStereoCases()) {
+        for (const auto& [gap_px, forward, hides] : {std::tuple(2, false, false), std::tuple(0, false, true), std::tuple(5, false, true),
+                                                     std::tuple(2, true, false), std::tuple(2, true, true)}) {
+            for (const Rows rows : {Rows::kShared, Rows::kSharedHalves, Rows::kOwn}) {
+                CAPTURE(c.name);
+                CAPTURE(gap_px);
+                CAPTURE(forward);
+                CAPTURE(hides);
+                CAPTURE(static_cast<int>(rows));
+                c.settings.gap_px = gap_px;
+                c.settings.forward = forward;
+                const auto resampled = [&](bool moves_row) {
+                    StereoOnDevice device = toDevice(*this, c, rows);
+                    if (hides) {
+                        std::vector<std::uint8_t> hidden(device.tileCount(), 0);
+                        for (std::size_t t = 1; t < hidden.size(); t += 5) { hidden[t] = 1; }
+                        device.writeHidden(hidden);
+                    }
+                    device.writeTileKinds(test::kindsOf(test::markSome(device.tileCount())));
+                    if (!moves_row) { device.reproject(hides, forward); }
+                    // What is left of the two planes lies in tiles that are rendered.
+                    device.resample({.errors = !forward,
+                                     .depths = true,
+                                     .classes = true,
+                                     .forward = forward,
+                                     .moves_row = moves_row,
+                                     .hidden_tiles = moves_row && hides});
+                    return std::tuple(device.readAffiliated(), device.readDepths(), device.readClasses(), device.readTileErrors(),
+                                      device.readTileDepths());
+                };
+                if (toDevice(*this, c, rows).rectified() == 0) { continue; }
+                const auto [colours, depths, classes, errors, tile_depths] = resampled(false);
+                const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true);
+                const auto kinds = test::markSome(errors.size());
+                std::size_t other = 0;
+                for (std::size_t i = 0; i < colours.size(); ++i) {
+                    if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
+                    other += colours[i] == own_colours[i] && std::bit_cast<gpu::uint>(depths[i]) == std::bit_cast<gpu::uint>(own_depths[i])
+                                 ? 0
+                                 : 1;
+                }
+                CHECK(other == 0);
+                CHECK(own_classes == classes);
+                CHECK(own_errors == errors);
+                CHECK(own_tile_depths == tile_depths);
+                ++pictures;
+            }
+        }
+    }
+    CHECK(pictures >= 100);
+}
+
 TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are moved, and none of the others") {
     std::size_t tiles = 0, other_tiles = 0;
     double worst = 0.0;
@@ -123,11 +178,12 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are 
             const auto kinds = test::markSome(device.tileCount());
             device.writeArrivals(arrived.words);
             device.writeTileKinds(test::kindsOf(kinds));
-            // On top of what 8e has added.
+            // On top of what is there.
             const gpu::uint newcomers = 12345;
             device.writeTileErrors(std::vector<gpu::uint>(device.tileCount(), newcomers));
             device.resample({.errors = true});
             const auto errors = device.readTileErrors();
+            CHECK(device.readTileDepths() == test::depthsOf(arrived.words, kinds, c.sizePx()));
             const auto expected = reference::expectErrors(reference::resolve(arrived.arrivals, c.eyes, c.settings), arrived.arrivals,
                                                           c.dominant, kinds, c.eyes, c.settings);
             for (std::size_t t = 0; t < errors.size(); ++t) {

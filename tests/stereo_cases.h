@@ -172,15 +172,28 @@ struct Arrived {
     std::vector<reference::Arrival> arrivals;
 };
 
+inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
+    return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
+}
+
+// What 8f tells 8e of tiles that are moved: the farthest that arrived in every other row.
+inline std::vector<gpu::uint> depthsOf(const std::vector<gpu::uint>& arrivals, const std::vector<reference::TileKind>& kinds,
+                                       glm::uvec2 size_px) {
+    std::vector<gpu::uint> depths(kinds.size(), gpu::kNothingArrived);
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+        const std::size_t t = tileOf(i, size_px);
+        if (i / size_px.x % 2 == 0 && arrivals[i] != 0 && kinds[t] == reference::TileKind::kNone) {
+            depths[t] = std::min(depths[t], arrivals[i] >> 6);
+        }
+    }
+    return depths;
+}
+
 // Kinds of which every third tile has one.
 inline std::vector<reference::TileKind> markSome(std::size_t tiles) {
     std::vector<reference::TileKind> kinds(tiles, reference::TileKind::kNone);
     for (std::size_t t = 0; t < tiles; t += 3) { kinds[t] = static_cast<reference::TileKind>(1 + t % 5); }
     return kinds;
-}
-
-inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
-    return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
 
 inline double share(std::size_t part, std::size_t whole) { return static_cast<double>(part) / static_cast<double>(whole); }

@@ -64,7 +64,7 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     newcomers.expected = reference::addNewcomers(expected, target, target_pairs, source_pairs, arrived.arrivals, kinds, c.sizePx(),
                                                  c.settings.newcomer_error);
 
-    device.writeArrivals(arrived.words);
+    device.writeTileDepths(test::depthsOf(arrived.words, kinds, c.sizePx()));
     device.writeTileKinds(test::kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
     for (const reference::TilePair& pair : source_pairs) { ++source_tiles[pair.splat]; }
@@ -211,9 +211,8 @@ TEST_CASE_FIXTURE(Gpu, "8e_newcomers finds the twin's splats and adds the twin's
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "8e_newcomers holds a splat against the farther of what arrived beside it, and against nothing where nothing is moved") {
-    // 1/2 deep up to column 12, 1/4 from column 30; nothing between. Small discs of inverse depth 1/3 along the middle row.
+TEST_CASE_FIXTURE(Gpu, "8e_newcomers holds a splat against the farthest that arrived in its tile, and against nothing where nothing did") {
+    // Small discs of inverse depth 1/3 along the middle row.
     const glm::uvec2 size_px(64, 16);
     const Eye eye = test::makeEye(size_px);
     const std::array<double, 5> columns{6.5, 14.5, 24.5, 33.5, 56.5};
@@ -223,15 +222,11 @@ TEST_CASE_FIXTURE(Gpu,
     }
     StereoCase c{"beside", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
     c.dominant.rgba.resize(64 * 16);
-    std::vector<gpu::uint> words(64 * 16, 0);
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        const std::size_t x = i % 64;
-        words[i] = x <= 12 ? test::packMoving(0.5, true, 0) : x >= 30 ? test::packMoving(0.25, true, 0) : 0;
-    }
     const test::SceneOnDevice scene(*this, c.scene, {eye, eye}, 0.2);
-    const auto found = [&](const std::vector<gpu::uint>& arrivals, const std::vector<gpu::uint>& kinds) {
+    const gpu::uint near = test::packMoving(0.5, true, 0) >> 6, far = test::packMoving(0.25, true, 0) >> 6, nothing = gpu::kNothingArrived;
+    const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
         StereoOnDevice device = toDevice(*this, c);
-        device.writeArrivals(arrivals);
+        device.writeTileDepths(depths);
         device.writeTileKinds(kinds);
         device.addNewcomers(scene, {0, 1, 2, 3, 4}, {0, 0, 0, 0, 0});
         const auto errors = device.readTileErrors();
@@ -239,12 +234,9 @@ TEST_CASE_FIXTURE(Gpu,
         for (const gpu::uint error : errors) { tiles += error > 0 ? 'x' : '.'; }
         return std::to_string(device.readCounters().newcomers) + tiles;
     };
-    // All but the first, which lies behind what it meets.
-    CHECK(found(words, {0, 0, 0, 0}) == "4xxxx");
-    // Without the farther ones the nearer ones are all there is.
-    std::vector<gpu::uint> near_only = words;
-    for (std::size_t i = 0; i < words.size(); ++i) { near_only[i] = i % 64 <= 12 ? words[i] : 0; }
-    CHECK(found(near_only, {0, 0, 0, 0}) == "0....");
-    CHECK(found(near_only, {gpu::kTileCheap, 0, gpu::kTileEdge, 0}) == "3.x..");  // one of them reaches beyond its tile
-    CHECK(found(std::vector<gpu::uint>(64 * 16, 0), {0, 0, 0, 0}) == "5xxxx");
+    // The first two share a tile, and the second reaches beyond it.
+    CHECK(found({near, far, far, far}, {0, 0, 0, 0}) == "3.xxx");
+    CHECK(found({near, near, near, near}, {0, 0, 0, 0}) == "0....");
+    CHECK(found({near, near, near, near}, {gpu::kTileCheap, 0, gpu::kTileEdge, 0}) == "3.x..");
+    CHECK(found({nothing, nothing, nothing, nothing}, {0, 0, 0, 0}) == "5xxxx");
 }

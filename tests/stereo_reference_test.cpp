@@ -349,11 +349,12 @@ TEST_CASE("the budget ends where it would if all errors were seen whole, and wha
     CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
 }
 
-TEST_CASE("a newcomer stands in front of the farther of what is beside it, and wherever nothing is moved") {
-    // Three tiles; pixels 8 and 40 are reached at 1/2 and 1/4. One splat each at pixels 20 and 44, in its own tile.
+TEST_CASE("a newcomer stands in front of the farthest that its tile shows, and wherever nothing is moved or nothing arrived") {
+    // Three tiles; pixels 8, 38 and 40 are reached at 1/2, 1/3 and 1/4, the one between at none. One splat each, in its own tile.
     const glm::uvec2 size_px(48, 1);
     std::vector<Arrival> arrivals(48);
     arrivals[8] = {Arrival::kLanded, 0.5, 0};
+    arrivals[38] = {Arrival::kLanded, 1.0 / 3.0, 0};
     arrivals[40] = {Arrival::kLanded, 0.25, 0};
     const auto found = [&](double x, double depth, TileKind kind) {
         reference::ProjectedSplat splat{};
@@ -372,7 +373,7 @@ TEST_CASE("a newcomer stands in front of the farther of what is beside it, and w
     };
     const double error = 0.25 * 3.14159265358979 / 2.0;
     CHECK(found(20.5, 3.9, TileKind::kNone).second == doctest::Approx(error));
-    CHECK(found(20.5, 3.97, TileKind::kNone).first == 0);
+    CHECK(found(20.5, 100.0, TileKind::kNone).first == 1);
     CHECK(found(8.5, 1.97, TileKind::kNone).first == 1);
     CHECK(found(8.5, 1.99, TileKind::kNone).first == 0);
     CHECK(found(44.5, 3.9, TileKind::kNone).first == 1);

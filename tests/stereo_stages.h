@@ -40,6 +40,7 @@ public:
           tile_kinds_(gpu.upload("tile kinds", std::vector<gpu::uint>(tileCount(), 0))),
           tile_costs_(gpu.upload("tile costs", std::vector<gpu::uint>(tileCount(), kUnwritten))),
           tile_errors_(gpu.upload("tile errors", std::vector<gpu::uint>(tileCount(), 0))),
+          tile_depths_(gpu.upload("tile depths", std::vector<gpu::uint>(tileCount(), gpu::kNothingArrived))),
           tile_prices_(gpu.upload("tile prices", std::vector<gpu::uint>(tileCount(), kUnwritten))),
           tile_list_(gpu.upload("tile list", std::vector<gpu::uint>(tileCount(), kUnwritten))),
           tile_mask_(gpu.upload("tile mask", std::vector<gpu::uint>(maskWords(), 0))),
@@ -62,6 +63,7 @@ public:
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::StereoCounters{}});
         fill(tile_errors_, tileCount(), kUnwritten);
+        fill(tile_depths_, tileCount(), kUnwritten);
         fill(tile_mask_, maskWords(), kUnwritten);
         fill(bins_, gpu::kPriceBins, kUnwritten);
         dispatch("8a_weigh", {rectified(), hidden_tiles},
@@ -71,6 +73,7 @@ public:
                                 .tile_kinds = words(tile_kinds_),
                                 .tile_costs = words(tile_costs_),
                                 .tile_errors = words(tile_errors_),
+                                .tile_depths = words(tile_depths_),
                                 .tile_mask = words(tile_mask_),
                                 .price_bins = words(bins_),
                                 .shown_mask = words(shown_mask_),
@@ -110,7 +113,7 @@ public:
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
                                     .stereo = view(),
-                                    .arrivals = arrivals(),
+                                    .tile_depths = words(tile_depths_),
                                     .order = order_buffer.address<gpu::uint>(),
                                     .visible = lists.address<gpu::ListState>(),
                                     .dominant_counts = count_buffer.address<gpu::uint>(),
@@ -123,25 +126,29 @@ public:
     }
     struct ResampleParts {
         bool errors = false, depths = false, classes = false, components = false, forward = false;
+        bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what 8d left
         glm::vec3 background{0.0f};
     };
     void resample(const ResampleParts& parts) {
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8f_resample",
-                 {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward},
+                 {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
+                  parts.moves_row, parts.hidden_tiles},
                  gpu::ResamplePass{.stereo = view(),
                                    .dominant = colours_.address<gpu::vec4>(),
                                    .half_dominant = colours_.address<gpu::uvec2>(),
-                                   .arrivals = arrivals(),
+                                   .moving = parts.moves_row ? moving() : arrivals(),
                                    .affiliated = affiliated_.address<gpu::vec4>(),
                                    .half_affiliated = affiliated_.address<gpu::uvec2>(),
                                    .depths = depths_.address<float>(),
                                    .tile_kinds = words(tile_kinds_),
                                    .tile_errors = words(tile_errors_),
+                                   .tile_depths = words(tile_depths_),
                                    .pixel_classes = words(classes_),
                                    .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
                                    .counters = counters(),
+                                   .shown_mask = words(shown_mask_),
                                    .background = parts.background},
                  {view_.size_px.y, 1});
     }
@@ -216,6 +223,7 @@ public:
     [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
     [[nodiscard]] gpu::StereoCounters readCounters() { return gpu_.readBack<gpu::StereoCounters>(counters_, 1)[0]; }
     [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return gpu_.readBack<gpu::uint>(tile_errors_, tileCount()); }
+    [[nodiscard]] std::vector<gpu::uint> readTileDepths() { return gpu_.readBack<gpu::uint>(tile_depths_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileCosts() { return gpu_.readBack<gpu::uint>(tile_costs_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTilePrices() { return gpu_.readBack<gpu::uint>(tile_prices_, tileCount()); }
@@ -256,6 +264,7 @@ public:
     void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
     void writeTileCosts(const std::vector<gpu::uint>& costs) { gpu_.upload(tile_costs_, costs); }
     void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
+    void writeTileDepths(const std::vector<gpu::uint>& depths) { gpu_.upload(tile_depths_, depths); }
     void writeBins(const std::vector<gpu::uint>& bins) { gpu_.upload(bins_, bins); }
     // A byte a tile, 1 for those that the dominant eye's lens hides.
     void writeHidden(const std::vector<std::uint8_t>& hidden) {
@@ -264,6 +273,14 @@ public:
         gpu_.upload(shown_mask_, maskOf(shown, view_.size_tiles));
     }
 
+    // Whether pixels move along their row.
+    [[nodiscard]] std::uint32_t rectified() const {
+        const glm::vec3 zero(0.0f);
+        const auto alongRows = [&](const gpu::PixelMap& map) {
+            return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
+        };
+        return alongRows(view_.affiliated_from_dominant) && alongRows(view_.dominant_from_affiliated) ? 1 : 0;
+    }
     [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
     [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
 
@@ -284,13 +301,6 @@ private:
         return counters;
     }
     [[nodiscard]] std::size_t maskWords() const { return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y; }
-    [[nodiscard]] std::uint32_t rectified() const {
-        const glm::vec3 zero(0.0f);
-        const auto alongRows = [&](const gpu::PixelMap& map) {
-            return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
-        };
-        return alongRows(view_.affiliated_from_dominant) && alongRows(view_.dominant_from_affiliated) ? 1 : 0;
-    }
     static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kStereoGroup) {
         return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
     }
@@ -333,7 +343,7 @@ private:
     Rows rows_;
     gpu::StereoView view_;
     Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
-    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
+    Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
     Buffer moving_, arrivals_;  // where rows are their own
     std::uint32_t box_capacity_;
 };

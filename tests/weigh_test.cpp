@@ -83,6 +83,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     // What others add to begins at nothing.
     const auto isZero = [](gpu::uint value) { return value == 0; };
     CHECK(std::ranges::all_of(device.readTileErrors(), isZero));
+    CHECK(std::ranges::count(device.readTileDepths(), gpu::kNothingArrived) == static_cast<std::ptrdiff_t>(device.tileCount()));
     CHECK(std::ranges::all_of(device.readTileMask(), isZero));
     CHECK(std::ranges::all_of(device.readBins(), isZero));
     return other;

@@ -61,11 +61,16 @@ KernelTable stereoKernels() {
                                                       {"kComponents", 2},
                                                       {"kRowSteps", gpu::kMostRowSteps + 1},
                                                       {"kHalfColours", 2},
-                                                      {"kForward", 2}})) {
-        // Only the paper's holes are grouped, and by their classes. Errors are those of sampling.
+                                                      {"kForward", 2},
+                                                      {"kMovesRow", 2},
+                                                      {"kHiddenTiles", 2}})) {
+        // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they can be.
         const std::vector<std::uint32_t> values = variant.values();
         const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
-        if (groups && (values[1] == 0 || values[7] == 0)) { table.push_back(variant); }
+        const bool can_move = values[0] == 1 && values[5] > 0;
+        if (groups && (values[1] == 0 || values[7] == 0) && (values[8] == 1) == can_move && values[9] <= values[8]) {
+            table.push_back(variant);
+        }
     }
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
     append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
@@ -114,6 +119,8 @@ private:
     [[nodiscard]] std::uint32_t alongRows() const { return in_.rectified ? 1 : 0; }
     [[nodiscard]] std::uint32_t hidesDominant() const { return in_.dominant_shown.hideAny() ? 1 : 0; }
     [[nodiscard]] std::uint32_t halfFloats() const { return in_.dominant.half_floats ? 1 : 0; }
+    // Whether 8f moves the dominant eye's pixels itself.
+    [[nodiscard]] std::uint32_t movesRows() const { return binosplat::movesRows(in_.rectified, in_.stereo) ? 1 : 0; }
     [[nodiscard]] std::uint32_t copiesColours() const { return in_.settings.forward && !predicts() ? 1 : 0; }
     [[nodiscard]] gpu::uint tileGroups() const { return (in_.stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup; }
 
@@ -131,6 +138,7 @@ void StereoRecorder::weigh() {
                               .tile_kinds = in_.stereo.tileKinds(),
                               .tile_costs = in_.stereo.tileCosts(),
                               .tile_errors = in_.stereo.tileErrors(),
+                              .tile_depths = in_.stereo.tileDepths(),
                               .tile_mask = in_.stereo.tileMask(),
                               .price_bins = in_.stereo.bins(),
                               .shown_mask = in_.dominant_shown.mask(),
@@ -167,6 +175,7 @@ void StereoRecorder::findEdgeRois() {
 }
 
 void StereoRecorder::reproject() {
+    if (movesRows() != 0) { return; }
     commands_.beginPass("affiliated 8d_reproject");
     const gpu::ReprojectPass pass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.dominant_shown.mask()};
     dispatchByCounter(kernel("8d_reproject", pass, {alongRows(), hidesDominant(), copiesColours()}), pass,
@@ -178,7 +187,7 @@ void StereoRecorder::findNewcomers() {
     const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
                                   .eyes = in_.buffers.eyes(),
                                   .stereo = view(),
-                                  .arrivals = arrivals(),
+                                  .tile_depths = in_.stereo.tileDepths(),
                                   .order = in_.buffers.visible.order().values,
                                   .visible = visible(),
                                   .dominant_counts = in_.buffers.visible.tileCounts(),
@@ -195,21 +204,23 @@ void StereoRecorder::resample() {
     const gpu::ResamplePass pass{.stereo = view(),
                                  .dominant = in_.dominant.colours.address<gpu::vec4>(),
                                  .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
-                                 .arrivals = arrivals(),
+                                 .moving = movesRows() != 0 ? moving() : arrivals(),
                                  .affiliated = in_.affiliated.colours.address<gpu::vec4>(),
                                  .half_affiliated = in_.affiliated.colours.address<gpu::uvec2>(),
                                  .depths = in_.affiliated.depths.address<float>(),
                                  .tile_kinds = in_.stereo.tileKinds(),
                                  .tile_errors = in_.stereo.tileErrors(),
+                                 .tile_depths = in_.stereo.tileDepths(),
                                  .pixel_classes = in_.stereo.pixelClasses(),
                                  .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),
+                                 .shown_mask = in_.dominant_shown.mask(),
                                  .background = in_.background};
     const std::uint32_t keeps_classes = in_.stereo.needs().classes || groupsHoles() ? 1 : 0;
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
-    const Kernel& resample_kernel =
-        kernel("8f_resample", pass,
-               {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(), halfFloats(), copiesColours()});
+    const Kernel& resample_kernel = kernel("8f_resample", pass,
+                                           {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
+                                            halfFloats(), copiesColours(), movesRows(), movesRows() & hidesDominant()});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
 
@@ -265,7 +276,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
         passes.weigh();
         if (!in.may_move) { return; }
     } else {
-        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
+        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8f_resample");
         passes.clearTiles();
     }
     if (passes.followsPaper()) {
@@ -273,8 +284,8 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
         passes.findEdgeRois();
     }
     passes.reproject();
-    if (passes.predicts()) { passes.findNewcomers(); }
     passes.resample();
+    if (passes.predicts()) { passes.findNewcomers(); }
     if (passes.groupsHoles()) { passes.groupHoles(); }
     if (passes.predicts()) { passes.price(); }
     if (passes.followsPaper() || passes.predicts()) { passes.select(); }

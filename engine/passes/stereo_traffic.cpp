@@ -21,24 +21,24 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
-    Traffic traffic{{"dominant 7_rasterize, for moving", facts.may_move ? moving + arrival : 0.0}};
+    Traffic traffic{{"dominant 7_rasterize, for moving", !facts.may_move ? 0.0 : facts.moves_rows ? moving : moving + arrival}};
     if (predict) {
-        // moving, ranges; kinds (in and out), costs, errors, a bit of the mask
-        traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1.0 / 32));
+        // moving, ranges; kinds (in and out), costs, errors, depths, a bit of the mask
+        traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1 + 1.0 / 32));
     }
     if (paper) {
         traffic.emplace_back("8b_depth_bounds", colour + moving);
         traffic.emplace_back("8c_edge_rois", perTile(2));
     }
-    traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival));
+    if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
+    // A row of pixels reads its tiles' kinds, and adds to their errors; every other row to their depths.
+    const double of_rows = perTile(gpu::kTileSize * (predict ? 4 : 1));
+    traffic.emplace_back(
+        "8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (predict) {
         // counts of tiles; what newcomers read besides is nothing beside it
         traffic.emplace_back("8e_newcomers", any_moved * kWord * facts.visible / pixels);
     }
-    // A row of pixels reads its tiles' kinds, and adds to their errors.
-    const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
-    traffic.emplace_back(
-        "8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (components) { traffic.emplace_back("8g_components", 3 * pixel_class); }
     if (predict) {
         traffic.emplace_back("8h_price", perTile(4));  // kinds, costs, errors; prices

@@ -20,35 +20,19 @@ double squareCoverage(const ProjectedSplat& splat) {
     return low_pass + std::numbers::pi / jacobian;
 }
 
-// What the target has been given so far.
-struct Reached {
-    std::span<const Arrival> arrivals;
-    std::span<const TileKind> kinds;
-    glm::ivec2 size_px;
-
-    [[nodiscard]] bool isMoved(const glm::ivec2& at) const {
-        const int columns = (size_px.x + kTileSize - 1) / kTileSize;
-        return kinds[static_cast<std::size_t>(at.y / kTileSize * columns + at.x / kTileSize)] == TileKind::kNone;
-    }
-    // Where nothing arrived, that of the farther of the two beside it.
-    [[nodiscard]] double inverseDepth(const glm::ivec2& at) const {
-        const auto row = arrivals.subspan(static_cast<std::size_t>(at.y * size_px.x), static_cast<std::size_t>(size_px.x));
-        std::optional<double> farther;
-        for (const int step : {-1, 1}) {
-            int x = at.x;
-            while (x >= 0 && x < size_px.x && row[static_cast<std::size_t>(x)].way == Arrival::kNone) { x += step; }
-            if (x < 0 || x >= size_px.x) { continue; }
-            const double here = row[static_cast<std::size_t>(x)].inverse_depth;
-            farther = farther ? std::min(*farther, here) : here;
+// By tile, the farthest that arrived, as an inverse depth: pixels of every other row are asked. 0 where nothing did.
+std::vector<double> farthestByTile(std::span<const Arrival> arrivals, glm::uvec2 size_px, std::size_t tiles) {
+    std::vector<double> farthest(tiles, 0.0);
+    const std::size_t columns = (size_px.x + kTileSize - 1) / kTileSize;
+    for (std::size_t y = 0; y < size_px.y; y += 2) {
+        for (std::size_t x = 0; x < size_px.x; ++x) {
+            const Arrival& arrival = arrivals[y * size_px.x + x];
+            if (arrival.way == Arrival::kNone) { continue; }
+            double& of_tile = farthest[y / kTileSize * columns + x / kTileSize];
+            of_tile = of_tile == 0.0 ? arrival.inverse_depth : std::min(of_tile, arrival.inverse_depth);
         }
-        return farther.value_or(0.0);
     }
-};
-
-// Whether the centre, held to the image, is nearer than what was reprojected there; where nothing will be, it is.
-bool standsInFront(const ProjectedSplat& splat, const Reached& reached) {
-    const glm::ivec2 at(glm::floor(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(reached.size_px) - 1.0)));
-    return !reached.isMoved(at) || 1.0 / splat.depth > kInFrontRatio * reached.inverseDepth(at);
+    return farthest;
 }
 
 std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size_t splats) {
@@ -62,12 +46,18 @@ std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
                          std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
                          glm::uvec2 size_px, double newcomer_error) {
-    const Reached reached{arrivals, kinds, glm::ivec2(size_px)};
+    const std::vector<double> farthest = farthestByTile(arrivals, size_px, kinds.size());
+    // Whether the centre, held to the image, is nearer than the farthest that was reprojected in its tile; where nothing was, it is.
+    const auto standsInFront = [&](const ProjectedSplat& splat) {
+        const glm::uvec2 at(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0));
+        const std::size_t tile = at.y / kTileSize * ((size_px.x + kTileSize - 1) / kTileSize) + at.x / kTileSize;
+        return kinds[tile] != TileKind::kNone || 1.0 / splat.depth > kInFrontRatio * farthest[tile];
+    };
     const std::vector<std::uint32_t> in_target = countTiles(target_pairs, target_splats.size()),
                                      in_source = countTiles(source_pairs, target_splats.size());
     const auto isNewcomer = [&](std::size_t i) {
         const ProjectedSplat& splat = target_splats[i];
-        return in_target[i] > 0 && in_source[i] == 0 && (!splat.low_pass || standsInFront(splat, reached));
+        return in_target[i] > 0 && in_source[i] == 0 && (!splat.low_pass || standsInFront(splat));
     };
     std::size_t newcomers = 0;
     for (std::size_t i = 0; i < target_splats.size(); ++i) { newcomers += isNewcomer(i) ? 1 : 0; }

@@ -102,8 +102,8 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
 // To 19 bits, which is how far the device tells inverse depths apart.
 double roundedDepth(double inverse_depth);
 
-// 8e: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what was
-// reprojected. Splats are in one order, pairs are by splat. Returns the number of such splats.
+// 8e: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than the farthest
+// that was reprojected in its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
                          std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
                          glm::uvec2 size_px, double newcomer_error);

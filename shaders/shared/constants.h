@@ -121,7 +121,8 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again.
+// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again, and
+// pixels come there by 8d.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
 BINOSPLAT_CONSTANT uint kLongestSharedRow = kMostRowSteps * kArrivalsStep;
@@ -145,9 +146,12 @@ BINOSPLAT_CONSTANT float kSpreadWeight = 0.5f;
 // A disparity uncertain by more pixels than these is not a blur any more: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 
-// A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio: a wall that goes
-// on beyond the border is as deep as what is repeated there, and rounding must not decide.
+// A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio than that of the
+// farthest thing in the tile: a wall that goes on beyond the border is as deep as what is repeated there, and rounding must not decide.
 BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
+
+// Of a tile in which no pixel of another eye arrived.
+BINOSPLAT_CONSTANT uint kNothingArrived = 0xffffffffu;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;

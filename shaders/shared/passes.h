@@ -89,7 +89,7 @@ struct RasterizePass {
     Floats depths;            // out where asked for: D = sum w z
     Vec2s moments;            // out where asked for: I = sum w/z and J = sum w/z^2
     Uints moving;             // out where the picture is going to be moved: lib/moving_pixel.glsl
-    Uints arrivals;           // likewise: of the other eye's pixel, that nothing has reached yet
+    Uints arrivals;           // likewise, if it is not null: of the other eye's pixel, that nothing has reached yet
     Uints tile_list;          // under a mask: the tiles to render
     ListStates masked_tiles;  // likewise: how many
     vec3 background;
@@ -105,6 +105,7 @@ struct WeighPass {
     Uints tile_kinds;   // out, but for kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
+    Uints tile_depths;  // out: kNothingArrived
     Uints tile_mask;    // out: zeros
     Uints price_bins;   // out: zeros
     Uints shown_mask;   // where the dominant eye has hidden tiles: the others
@@ -144,7 +145,7 @@ struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
     StereoViews stereo;
-    Uints arrivals;
+    Uints tile_depths;  // kNothingArrived, or a moving pixel without its last six bits
     Uints order;
     ListStates visible;
     Uints dominant_counts;  // of tiles
@@ -160,16 +161,18 @@ struct ResamplePass {
     StereoViews stereo;
     FloatColours dominant;
     HalfColours half_dominant;
-    Uints arrivals;
-    FloatColours affiliated;  // out; `arrivals` may lie in the same row
+    Uints moving;             // the dominant eye's, or of this eye what 8d left: lib/moving_pixel.glsl
+    FloatColours affiliated;  // out; `moving` may lie in the same row
     HalfColours half_affiliated;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
     Uints tile_errors;                 // out, where errors are predicted
+    Uints tile_depths;                 // likewise: the farthest that arrived, see 8e_newcomers
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
     StereoCounterss counters;
-    vec3 background;  // of tiles that are hidden
+    Uints shown_mask;  // where the dominant eye has hidden tiles and rows are moved here: the others
+    vec3 background;   // of tiles that are hidden
 };
 
 // 8g_components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
