@@ -337,6 +337,16 @@ TEST_CASE("a headless session has no swapchains and no frames, and is in focus a
     CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
 }
 
+TEST_CASE("a headless session begins whatever view configuration it names") {
+    for (const auto type :
+         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
+        const HeadlessSession made(k1_0, {});
+        const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, type};
+        CHECK(made.xr<PFN_xrBeginSession>("xrBeginSession")(made.session, &info) == XR_SUCCESS);
+        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
+    }
+}
+
 TEST_CASE("a headless session ends at once when it is asked to") {
     const HeadlessSession made(k1_0, {});
     made.begin();

@@ -221,7 +221,8 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
     return answer(__func__, [&] {
         Session& begun = getSession(session);
         const XrSessionBeginInfo& info = checked(beginInfo, XR_TYPE_SESSION_BEGIN_INFO);
-        checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
+        // XR_MND_headless: whatever it says is ignored.
+        if (!begun.isHeadless()) checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
         require(!begun.is_running, XR_ERROR_SESSION_RUNNING, "the session runs already");
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not READY");
         begun.is_running = true;
