@@ -154,6 +154,7 @@ LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image)
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, "more layers than maxLayerCount");
     require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of layers is missing");
+    require(info.layerCount == 0 || !session.isHeadless(), XR_ERROR_LAYER_INVALID, "a headless session shows no layers");
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         require(info.layers[i] != nullptr, XR_ERROR_LAYER_INVALID, "a layer is null");
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];

@@ -108,6 +108,7 @@ void Session::meetEvents(XrTime display_time) {
     for (const ScriptEvent& event : simulation.script.eventsIn(simulation.events_until_s, time_s)) {
         std::string& logged = log_events.emplace_back(nameOf(event.kind));
         if (event.kind == ScriptEvent::Kind::kRate) logged.append(" ").append(std::to_string(std::lround(event.value)));
+    if (frames.are_used) return;
         if (event.kind == ScriptEvent::Kind::kSlowImages) logged.append(" ").append(std::to_string(event.count));
         switch (event.kind) {
             case ScriptEvent::Kind::kRate:
