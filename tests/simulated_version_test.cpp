@@ -140,6 +140,29 @@ TEST_CASE("LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL broug
     }
 }
 
+TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that is there") {
+    const auto announced = [](const HeadlessSession& made) {
+        made.begin();
+        for (int frame = 0; frame < 3; ++frame) REQUIRE(made.sync() == XR_SUCCESS);
+        std::vector<XrReferenceSpaceType> types;
+        const auto poll = made.xr<PFN_xrPollEvent>("xrPollEvent");
+        for (XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER}; poll(made.instance, &event) == XR_SUCCESS;
+             event = {XR_TYPE_EVENT_DATA_BUFFER}) {
+            if (event.type != XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) continue;
+            const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
+            CHECK(change.session == made.session);
+            CHECK(change.changeTime == kStart + 150'000'000);
+            types.push_back(change.referenceSpaceType);
+        }
+        return types;
+    };
+    const std::string script = "rate 10\nat 0.15 recentre\n";
+    const std::vector<XrReferenceSpaceType> both{XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR};
+    CHECK(announced(HeadlessSession(k1_0, {}, script)) == std::vector{XR_REFERENCE_SPACE_TYPE_LOCAL});
+    CHECK(announced(HeadlessSession(k1_0, {XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}, script)) == both);
+    CHECK(announced(HeadlessSession(k1_1, {}, script)) == both);
+}
+
 TEST_CASE("spaces are located all at once, as one by one") {
     const HeadlessSession made(k1_1, {}, kAside);
     const auto locateSpaces = made.xr<PFN_xrLocateSpaces>("xrLocateSpaces");
@@ -334,29 +357,6 @@ TEST_CASE("a headless session has no swapchains, needs no frames, and is in focu
     CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
 }
 
-TEST_CASE("a headless session begins whatever view configuration it names") {
-    for (const auto type :
-         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
-        const HeadlessSession made(k1_0, {});
-        const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, type};
-        CHECK(made.xr<PFN_xrBeginSession>("xrBeginSession")(made.session, &info) == XR_SUCCESS);
-        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
-    }
-}
-
-TEST_CASE("a headless session ends at once when it is asked to") {
-    const HeadlessSession made(k1_0, {});
-    made.begin();
-    CHECK(made.xr<PFN_xrRequestExitSession>("xrRequestExitSession")(made.session) == XR_SUCCESS);
-    CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("without the extension a session needs graphics") {
-    const DirectInstance made(k1_1, {});
-    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, nullptr, 0, made.system};
-    XrSession session = XR_NULL_HANDLE;
-    CHECK(made.xr<PFN_xrCreateSession>("xrCreateSession")(made.instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
-}
 TEST_CASE("a headless session may have frames, which nobody draws; time and states then go by them alone") {
     const HeadlessSession made(k1_0, {}, "rate 10\nat 0 gpu-load 250 %\nat 0.15 focused off\nat 0.35 exit\n");
     const auto wait = made.xr<PFN_xrWaitFrame>("xrWaitFrame");
@@ -390,3 +390,26 @@ TEST_CASE("a headless session may have frames, which nobody draws; time and stat
     CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
 }
 
+TEST_CASE("a headless session begins whatever view configuration it names") {
+    for (const auto type :
+         {static_cast<XrViewConfigurationType>(0), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO, static_cast<XrViewConfigurationType>(4711)}) {
+        const HeadlessSession made(k1_0, {});
+        const XrSessionBeginInfo info{XR_TYPE_SESSION_BEGIN_INFO, nullptr, type};
+        CHECK(made.xr<PFN_xrBeginSession>("xrBeginSession")(made.session, &info) == XR_SUCCESS);
+        CHECK(made.states().back() == XR_SESSION_STATE_FOCUSED);
+    }
+}
+
+TEST_CASE("a headless session ends at once when it is asked to") {
+    const HeadlessSession made(k1_0, {});
+    made.begin();
+    CHECK(made.xr<PFN_xrRequestExitSession>("xrRequestExitSession")(made.session) == XR_SUCCESS);
+    CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
+}
+
+TEST_CASE("without the extension a session needs graphics") {
+    const DirectInstance made(k1_1, {});
+    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, nullptr, 0, made.system};
+    XrSession session = XR_NULL_HANDLE;
+    CHECK(made.xr<PFN_xrCreateSession>("xrCreateSession")(made.instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
+}

@@ -45,6 +45,21 @@ GraphicsBinding graphicsOf(const Instance& instance, const XrGraphicsBindingVulk
             binding.queueIndex};
 }
 
+// LOCAL_FLOOR goes where LOCAL goes.
+void announceRecentring(const Session& session, XrTime change_time) {
+    std::vector<XrReferenceSpaceType> moved{XR_REFERENCE_SPACE_TYPE_LOCAL};
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) moved.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+    for (const XrReferenceSpaceType type : moved) {
+        session.instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+                                                                            nullptr,
+                                                                            handleOf(session),
+                                                                            type,
+                                                                            change_time,
+                                                                            XR_FALSE,
+                                                                            {{0, 0, 0, 1}, {0, 0, 0}}});
+    }
+}
+
 }  // namespace
 
 Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(owner), device(std::move(graphics)) {
@@ -93,6 +108,7 @@ void Session::settle() {
 }
 
 void Session::passHeadlessFrame() {
+    if (frames.are_used) return;
     Clock& clock = instance.simulation->clock;
     if (!clock.isReal()) clock.nextFrame();
     meetEvents(clock.now());
@@ -108,7 +124,6 @@ void Session::meetEvents(XrTime display_time) {
     for (const ScriptEvent& event : simulation.script.eventsIn(simulation.events_until_s, time_s)) {
         std::string& logged = log_events.emplace_back(nameOf(event.kind));
         if (event.kind == ScriptEvent::Kind::kRate) logged.append(" ").append(std::to_string(std::lround(event.value)));
-    if (frames.are_used) return;
         if (event.kind == ScriptEvent::Kind::kSlowImages) logged.append(" ").append(std::to_string(event.count));
         switch (event.kind) {
             case ScriptEvent::Kind::kRate:
@@ -121,14 +136,7 @@ void Session::meetEvents(XrTime display_time) {
                 wants_exit = true;
                 break;
             case ScriptEvent::Kind::kRecentre:
-                instance.events.push(
-                    XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
-                                                           nullptr,
-                                                           handleOf(*this),
-                                                           XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                                           simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds),
-                                                           XR_FALSE,
-                                                           {{0, 0, 0, 1}, {0, 0, 0}}});
+                announceRecentring(*this, simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds));
                 break;
             case ScriptEvent::Kind::kLoseSession:
                 loss_announced = display_time;
