@@ -30,10 +30,17 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
     const std::vector<XrReferenceSpaceType> types = referenceSpacesOf(session);
     return std::find(types.begin(), types.end(), type) != types.end();
 }
+// Spaces of one pose action stand on one thing and never move against each other, though nobody may know where that thing is.
+bool areOnOneThing(const Space& space, const Space& base) {
+    return !space.reference && !base.reference && space.action == base.action && space.subaction_path == base.subaction_path &&
+           isLocatable(space.session, space.action, space.subaction_path);
+}
+
 
 bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
 
 // A head that is not tracked has no place but relative to itself; where only its turn is known, its place is given and not tracked. A gaze
+    if (areOnOneThing(space, base)) return kPoseKnown;
 // is on the head, and tracked whole or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
@@ -45,6 +52,7 @@ XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, cons
     if (!state.head_turn_known) return 0;
     if (gaze || base_gaze) return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
     return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
+    if (areOnOneThing(space, base)) return compose(inverse(base.origin_from_space), space.origin_from_space);
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
@@ -228,9 +236,10 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
         const XrBaseInStructure* const sample = has_samples ? findInChain(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT) : nullptr;
         // The script knows the gaze of any time; 0 stands for no sample.
-        if (sample != nullptr)
-            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time =
-                flags != 0 && isGaze(located) ? time : 0;
+        if (sample != nullptr) {
+            const bool is_seen = flags != 0 && isGaze(located) && stageFromSpace(located, located.session.at(time));
+            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time = is_seen ? time : 0;
+        }
         return successOf(located.session);
     });
 }
