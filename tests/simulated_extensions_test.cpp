@@ -373,3 +373,39 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     CHECK(destroy(left) == XR_ERROR_HANDLE_INVALID);
     CHECK(locate(left, &where, &locations) == XR_ERROR_HANDLE_INVALID);
 }
+
+TEST_CASE("the joints of a hand turn with its controller, and those of a finger that bends with that, too") {
+    const HeadlessSession made(k1_0, {XR_EXT_HAND_TRACKING_EXTENSION_NAME},
+                               "rate 10\ncontroller left 0 position 0 1 0 turn 0 0\ncontroller left 1 position 0 1 0 turn 45 0\n"
+                               "axis right trigger 0 0\naxis right trigger 1 1\n");
+    made.begin();
+    XrHandJointLocationEXT joints[XR_HAND_JOINT_COUNT_EXT];
+    XrHandJointVelocityEXT speeds[XR_HAND_JOINT_COUNT_EXT];
+    const auto locate = [&](XrHandEXT side) {
+        const XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, side, XR_HAND_JOINT_SET_DEFAULT_EXT};
+        XrHandTrackerEXT hand = XR_NULL_HANDLE;
+        REQUIRE(made.xr<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT")(made.session, &info, &hand) == XR_SUCCESS);
+        XrHandJointVelocitiesEXT velocities{XR_TYPE_HAND_JOINT_VELOCITIES_EXT, nullptr, XR_HAND_JOINT_COUNT_EXT, speeds};
+        XrHandJointLocationsEXT locations{XR_TYPE_HAND_JOINT_LOCATIONS_EXT, &velocities, XR_FALSE, XR_HAND_JOINT_COUNT_EXT, joints};
+        const XrHandJointsLocateInfoEXT where{XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT, nullptr, made.space(XR_REFERENCE_SPACE_TYPE_STAGE),
+                                              kStart + 500'000'000};
+        REQUIRE(made.xr<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT")(hand, &where, &locations) == XR_SUCCESS);
+        REQUIRE(locations.isActive == XR_TRUE);
+        for (const auto& speed : speeds)
+            CHECK(speed.velocityFlags == (XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT));
+    };
+    const auto turning = [&](XrHandJointEXT joint) {
+        const XrVector3f& speed = speeds[joint].angularVelocity;
+        return std::hypot(speed.x, speed.y, speed.z);
+    };
+    // A quarter of pi in a second, to the left, which is about +y.
+    locate(XR_HAND_LEFT_EXT);
+    for (const auto& speed : speeds) {
+        CHECK(speed.angularVelocity.x == doctest::Approx(0));
+        CHECK(speed.angularVelocity.y == doctest::Approx(0.25 * 3.14159265).epsilon(1e-3));
+        CHECK(speed.angularVelocity.z == doctest::Approx(0));
+    }
+    locate(XR_HAND_RIGHT_EXT);
+    CHECK(turning(XR_HAND_JOINT_INDEX_TIP_EXT) > 1);
+    CHECK(turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
+}
