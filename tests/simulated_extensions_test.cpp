@@ -19,7 +19,8 @@ struct Heard {
 
 XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
               const XrDebugUtilsMessengerCallbackDataEXT* data, void* heard) {
-    Heard message{severity, types, data->messageId, data->functionName, data->message, {}, {}};
+    const auto textOf = [](const char* text) { return text == nullptr ? "none" : text; };
+    Heard message{severity, types, textOf(data->messageId), textOf(data->functionName), data->message, {}, {}};
     for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) message.labels.emplace_back(data->sessionLabels[i].labelName);
     for (std::uint32_t i = 0; i < data->objectCount; ++i)
         message.objects.emplace_back(data->objects[i].objectName == nullptr ? "nameless" : data->objects[i].objectName);
@@ -166,6 +167,43 @@ TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, wi
     const auto nameless = label(nullptr);
     CHECK(insert(session, &nameless) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(end_region(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
+}
+
+TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed on as it is, and what it leaves out stays left out") {
+    const auto submit = xr<PFN_xrSubmitDebugUtilsMessageEXT>("xrSubmitDebugUtilsMessageEXT");
+    const XrDebugUtilsLabelEXT region{XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, "the session's own"};
+    CHECK(xr<PFN_xrSessionBeginDebugUtilsLabelRegionEXT>("xrSessionBeginDebugUtilsLabelRegionEXT")(session, &region) == XR_SUCCESS);
+    const auto handle = reinterpret_cast<std::uint64_t>(session);
+    XrDebugUtilsObjectNameInfoEXT registered{XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, XR_OBJECT_TYPE_SESSION, handle,
+                                             "registered"};
+    CHECK(xr<PFN_xrSetDebugUtilsObjectNameEXT>("xrSetDebugUtilsObjectNameEXT")(instance, &registered) == XR_SUCCESS);
+
+    XrDebugUtilsLabelEXT labels[]{{XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, "inner"}, {XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, "outer"}};
+    XrDebugUtilsObjectNameInfoEXT objects[3] = {registered, registered, registered};
+    objects[0].objectName = "passed";
+    objects[1].objectName = nullptr;
+    objects[2].objectHandle = 77;
+    objects[2].objectName = "never registered";
+    XrDebugUtilsMessengerCallbackDataEXT data{
+        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, nullptr, "hello", 3, objects, 2, labels};
+    const auto info = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
+    const auto general = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+    CHECK(submit(instance, info, general, &data) == XR_SUCCESS);
+    REQUIRE(heard.size() == 1);
+    CHECK(heard[0].id == "none");
+    CHECK(heard[0].function == "none");
+    CHECK(heard[0].labels == std::vector<std::string>{"inner", "outer"});
+    CHECK(heard[0].objects == std::vector<std::string>{"passed", "registered", "never registered"});
+    data.messageId = "an id";
+    data.functionName = "";
+    CHECK(submit(instance, info, general, &data) == XR_SUCCESS);
+    REQUIRE(heard.size() == 2);
+    CHECK(heard[1].id == "an id");
+    CHECK(heard[1].function.empty());
+    labels[1].labelName = nullptr;
+    CHECK(submit(instance, info, general, &data) == XR_ERROR_VALIDATION_FAILURE);
+    data.sessionLabels = nullptr;
+    CHECK(submit(instance, info, general, &data) == XR_ERROR_VALIDATION_FAILURE);
 }
 
 TEST_CASE("a messenger in the chain hears why the instance itself was refused") {
