@@ -20,9 +20,9 @@ Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& imag
     require(swapchain.has_released, XR_ERROR_LAYER_INVALID, "no image of the swapchain was released");
     const auto& [offset, extent] = image.imageRect;
     const std::int64_t right = std::int64_t{offset.x} + extent.width, bottom = std::int64_t{offset.y} + extent.height;
-    const bool is_inside = offset.x >= 0 && offset.y >= 0 && extent.width > 0 && extent.height > 0 && right <= swapchain.info.size.width &&
-                           bottom <= swapchain.info.size.height;
-    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a rectangle reaches out of its image, or is empty");
+    const bool is_inside = offset.x >= 0 && offset.y >= 0 && extent.width >= 0 && extent.height >= 0 &&
+                           right <= swapchain.info.size.width && bottom <= swapchain.info.size.height;
+    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a rectangle reaches out of its image, or is of negative size");
     require(image.imageArrayIndex < swapchain.info.layers, XR_ERROR_VALIDATION_FAILURE, "no such array layer");
     return swapchain;
 }
