@@ -339,13 +339,32 @@ TEST_CASE("halfTransparentWhiteOverBlackIsHalfTheLight") {
 TEST_CASE("rectanglesOutsideThePictureAreRefused") {
     const Canvas canvas({4, 4}, {1, 2, 3, 4});
     QuadLayer layer = quad(canvas, {0, 0, -1}, {1, 1});
-    for (const Rect& rect : {Rect{{0, 0}, {5, 4}}, Rect{{4, 0}, {1, 1}}, Rect{{0, 0}, {0, 1}}, Rect{{0xffffffffu, 0}, {1, 1}}}) {
+    for (const Rect& rect : {Rect{{0, 0}, {5, 4}}, Rect{{4, 0}, {1, 1}}, Rect{{0xffffffffu, 0}, {1, 1}}}) {
         layer.rect = rect;
         CHECK_THROWS_AS((void)compose(eyeOf({2, 2}), {layer}), std::invalid_argument);
     }
     layer.rect = canvas.whole();
     layer.picture.bytes = layer.picture.bytes.subspan(1);
     CHECK_THROWS_AS((void)compose(eyeOf({2, 2}), {layer}), std::invalid_argument);
+}
+
+TEST_CASE("emptyRectanglesShowNothing") {
+    const Canvas canvas({4, 4}, {255, 255, 255, 255});
+    const EyeView eye = eyeOf({2, 2});
+    for (const Rect& rect : {Rect{{0, 0}, {0, 4}}, Rect{{0, 0}, {4, 0}}, Rect{{4, 4}, {0, 0}}}) {
+        QuadLayer flat = quad(canvas, {0, 0, -1}, {9, 9});
+        CylinderLayer cylinder{canvas.picture(), canvas.whole(), {}, 0.0, 4.0 * kEighth, 1.0, Visibility::kBoth, {}};
+        SphereLayer sphere{canvas.picture(), canvas.whole(), {}, 0.0, 8.0 * kEighth, kEighth, -kEighth, Visibility::kBoth, {}};
+        ProjectionLayer views = projection(canvas, eye);
+        CHECK(at(compose(eye, {flat}), 0, 0) != kBlack);
+        CHECK(at(compose(eye, {cylinder}), 0, 0) != kBlack);
+        CHECK(at(compose(eye, {sphere}), 0, 0) != kBlack);
+        CHECK(at(compose(eye, {views}), 0, 0) != kBlack);
+        flat.rect = cylinder.rect = sphere.rect = views.views[kLeft].rect = rect;
+        CHECK(compose(eye, {flat, cylinder, sphere, views}) == compose(eye, {}));
+        // The other eye's part of a projection is whole.
+        CHECK(at(compose(eye, {views}, kRight), 0, 0) != kBlack);
+    }
 }
 
 TEST_CASE("eyesSideBySideKeepTheirPixels") {

@@ -10,49 +10,6 @@ namespace {
 
 constexpr XrTime kStart = 1'000'000'000;
 
-struct Heard {
-    XrDebugUtilsMessageSeverityFlagsEXT severity;
-    XrDebugUtilsMessageTypeFlagsEXT types;
-    std::string id, function, text;
-    std::vector<std::string> labels, objects;
-};
-
-XrBool32 hear(XrDebugUtilsMessageSeverityFlagsEXT severity, XrDebugUtilsMessageTypeFlagsEXT types,
-              const XrDebugUtilsMessengerCallbackDataEXT* data, void* heard) {
-    Heard message{severity, types, data->messageId, data->functionName, data->message, {}, {}};
-    for (std::uint32_t i = 0; i < data->sessionLabelCount; ++i) message.labels.emplace_back(data->sessionLabels[i].labelName);
-    for (std::uint32_t i = 0; i < data->objectCount; ++i)
-        message.objects.emplace_back(data->objects[i].objectName == nullptr ? "nameless" : data->objects[i].objectName);
-    static_cast<std::vector<Heard>*>(heard)->push_back(message);
-    return XR_FALSE;
-}
-
-XrDebugUtilsMessengerCreateInfoEXT messengerOf(std::vector<Heard>& heard) {
-    return {XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-            nullptr,
-            XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT,
-            XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
-            hear,
-            &heard};
-}
-
-struct MessageFixture : HeadlessSession {
-    std::vector<Heard> heard;
-    XrDebugUtilsMessengerEXT messenger = XR_NULL_HANDLE;
-
-    MessageFixture() : HeadlessSession(k1_0, {XR_EXT_DEBUG_UTILS_EXTENSION_NAME}) {
-        const XrDebugUtilsMessengerCreateInfoEXT info = messengerOf(heard);
-        REQUIRE(create(&info) == XR_SUCCESS);
-    }
-    XrResult create(const XrDebugUtilsMessengerCreateInfoEXT* info) {
-        return xr<PFN_xrCreateDebugUtilsMessengerEXT>("xrCreateDebugUtilsMessengerEXT")(instance, info, &messenger);
-    }
-    void beMistaken() const {
-        XrPath path = XR_NULL_PATH;
-        CHECK(xr<PFN_xrStringToPath>("xrStringToPath")(instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-    }
-};
-
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
 
 std::vector<bool> presences(const HeadlessSession& made) {
@@ -76,118 +33,6 @@ TEST_CASE("extensions have no functions for instances that did not enable them")
                              "xrGetDisplayRefreshRateFB", "xrSetInputDeviceActiveEXT"}) {
         CHECK_FALSE(made.has(name));
     }
-}
-
-TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's own function, with what was wrong") {
-    beMistaken();
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].severity == XR_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT);
-    CHECK(heard[0].types == XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT);
-    CHECK(heard[0].id == "XR_ERROR_PATH_FORMAT_INVALID");
-    CHECK(heard[0].function == "xrStringToPath");
-    CHECK(heard[0].text == "not a well-formed path");
-    CHECK(heard[0].labels.empty());
-    // The loader's own questions are no mistakes.
-    CHECK_FALSE(has("xrMakeCoffee"));
-    CHECK(heard.size() == 1);
-    CHECK(xr<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_SUCCESS);
-    beMistaken();
-    CHECK(heard.size() == 1);
-    CHECK(xr<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_ERROR_HANDLE_INVALID);
-}
-
-TEST_CASE_FIXTURE(MessageFixture, "a messenger hears what it asked for, and has to ask for something") {
-    XrDebugUtilsMessengerCreateInfoEXT info = messengerOf(heard);
-    info.messageSeverities = XR_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
-    CHECK(create(&info) == XR_SUCCESS);
-    info = messengerOf(heard);
-    info.messageTypes = XR_DEBUG_UTILS_MESSAGE_TYPE_CONFORMANCE_BIT_EXT;
-    CHECK(create(&info) == XR_SUCCESS);
-    beMistaken();
-    CHECK(heard.size() == 1);
-    const auto refused = [&](auto&& change) {
-        XrDebugUtilsMessengerCreateInfoEXT bad = messengerOf(heard);
-        change(bad);
-        return create(&bad);
-    };
-    CHECK(refused([](auto& bad) { bad.messageSeverities = 0; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(refused([](auto& bad) { bad.messageSeverities = 2; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(refused([](auto& bad) { bad.messageTypes = 0; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(refused([](auto& bad) { bad.messageTypes = 1 << 9; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(refused([](auto& bad) { bad.userCallback = nullptr; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(refused([](auto& bad) { bad.type = XR_TYPE_UNKNOWN; }) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(create(nullptr) == XR_ERROR_VALIDATION_FAILURE);
-}
-
-TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, with the session's labels and the objects' names") {
-    const auto submit = xr<PFN_xrSubmitDebugUtilsMessageEXT>("xrSubmitDebugUtilsMessageEXT");
-    const auto label = [](const char* name) { return XrDebugUtilsLabelEXT{XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, name}; };
-    const auto begin_region = xr<PFN_xrSessionBeginDebugUtilsLabelRegionEXT>("xrSessionBeginDebugUtilsLabelRegionEXT");
-    const auto end_region = xr<PFN_xrSessionEndDebugUtilsLabelRegionEXT>("xrSessionEndDebugUtilsLabelRegionEXT");
-    const auto insert = xr<PFN_xrSessionInsertDebugUtilsLabelEXT>("xrSessionInsertDebugUtilsLabelEXT");
-    const auto frame = label("frame"), eye = label("left eye"), here = label("here");
-    CHECK(begin_region(session, &frame) == XR_SUCCESS);
-    CHECK(begin_region(session, &eye) == XR_SUCCESS);
-    CHECK(insert(session, &here) == XR_SUCCESS);
-    const auto handle = reinterpret_cast<std::uint64_t>(session);
-    XrDebugUtilsObjectNameInfoEXT object{XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, XR_OBJECT_TYPE_SESSION, handle, "the session"};
-    const auto setName = xr<PFN_xrSetDebugUtilsObjectNameEXT>("xrSetDebugUtilsObjectNameEXT");
-    CHECK(setName(instance, &object) == XR_SUCCESS);
-    object.objectName = nullptr;
-    XrDebugUtilsMessengerCallbackDataEXT data{
-        XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT, nullptr, nullptr, "main", "hello", 1, &object, 0, nullptr};
-    const auto info = XR_DEBUG_UTILS_MESSAGE_SEVERITY_INFO_BIT_EXT;
-    const auto general = XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
-    CHECK(submit(instance, info, general, &data) == XR_SUCCESS);
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].text == "hello");
-    CHECK(heard[0].function == "main");
-    CHECK(heard[0].severity == info);
-    CHECK(heard[0].labels == std::vector<std::string>{"here", "left eye", "frame"});
-    CHECK(heard[0].objects == std::vector<std::string>{"the session"});
-
-    CHECK(setName(instance, &object) == XR_SUCCESS);
-    CHECK(end_region(session) == XR_SUCCESS);
-    CHECK(submit(instance, info, general, &data) == XR_SUCCESS);
-    REQUIRE(heard.size() == 2);
-    CHECK(heard[1].labels == std::vector<std::string>{"frame"});
-    CHECK(heard[1].objects == std::vector<std::string>{"nameless"});
-    CHECK(submit(instance, XR_DEBUG_UTILS_MESSAGE_SEVERITY_VERBOSE_BIT_EXT, general, &data) == XR_SUCCESS);
-    CHECK(heard.size() == 2);
-
-    CHECK(submit(instance, 0, general, &data) == XR_ERROR_VALIDATION_FAILURE);
-    data.message = nullptr;
-    CHECK(submit(instance, info, general, &data) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(submit(XR_NULL_HANDLE, info, general, &data) == XR_ERROR_HANDLE_INVALID);
-    object.objectHandle = 0;
-    CHECK(setName(instance, &object) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(begin_region(XR_NULL_HANDLE, &frame) == XR_ERROR_HANDLE_INVALID);
-    CHECK(begin_region(session, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    const auto nameless = label(nullptr);
-    CHECK(insert(session, &nameless) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(end_region(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
-}
-
-TEST_CASE("a messenger in the chain hears why the instance itself was refused") {
-    const Headset headset(kQuietScript);
-    const Direct runtime;
-    std::vector<Heard> heard;
-    XrDebugUtilsMessengerCreateInfoEXT messenger = messengerOf(heard);
-    const std::vector<const char*> extensions{XR_EXT_DEBUG_UTILS_EXTENSION_NAME, "XR_KHR_opengl_enable"};
-    XrInstanceCreateInfo info = instanceInfo(extensions);
-    info.next = &messenger;
-    XrInstance instance = XR_NULL_HANDLE;
-    const auto create = runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance");
-    CHECK(create(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    REQUIRE(heard.size() == 1);
-    CHECK(heard[0].id == "XR_ERROR_EXTENSION_NOT_PRESENT");
-    CHECK(heard[0].text == "XR_KHR_opengl_enable: this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
-    // Without the extension nobody listens.
-    const std::vector<const char*> unknown{"XR_KHR_nothing"};
-    info = instanceInfo(unknown);
-    info.next = &messenger;
-    CHECK(create(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
-    CHECK(heard.size() == 1);
 }
 
 TEST_CASE("time is converted to CLOCK_MONOTONIC and back") {
@@ -372,4 +217,40 @@ TEST_CASE("hands hold the script's controllers, in focus and while they are trac
     CHECK(destroy(left) == XR_SUCCESS);
     CHECK(destroy(left) == XR_ERROR_HANDLE_INVALID);
     CHECK(locate(left, &where, &locations) == XR_ERROR_HANDLE_INVALID);
+}
+
+TEST_CASE("the joints of a hand turn with its controller, and those of a finger that bends with that, too") {
+    const HeadlessSession made(k1_0, {XR_EXT_HAND_TRACKING_EXTENSION_NAME},
+                               "rate 10\ncontroller left 0 position 0 1 0 turn 0 0\ncontroller left 1 position 0 1 0 turn 45 0\n"
+                               "axis right trigger 0 0\naxis right trigger 1 1\n");
+    made.begin();
+    XrHandJointLocationEXT joints[XR_HAND_JOINT_COUNT_EXT];
+    XrHandJointVelocityEXT speeds[XR_HAND_JOINT_COUNT_EXT];
+    const auto locate = [&](XrHandEXT side) {
+        const XrHandTrackerCreateInfoEXT info{XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT, nullptr, side, XR_HAND_JOINT_SET_DEFAULT_EXT};
+        XrHandTrackerEXT hand = XR_NULL_HANDLE;
+        REQUIRE(made.xr<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT")(made.session, &info, &hand) == XR_SUCCESS);
+        XrHandJointVelocitiesEXT velocities{XR_TYPE_HAND_JOINT_VELOCITIES_EXT, nullptr, XR_HAND_JOINT_COUNT_EXT, speeds};
+        XrHandJointLocationsEXT locations{XR_TYPE_HAND_JOINT_LOCATIONS_EXT, &velocities, XR_FALSE, XR_HAND_JOINT_COUNT_EXT, joints};
+        const XrHandJointsLocateInfoEXT where{XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT, nullptr, made.space(XR_REFERENCE_SPACE_TYPE_STAGE),
+                                              kStart + 500'000'000};
+        REQUIRE(made.xr<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT")(hand, &where, &locations) == XR_SUCCESS);
+        REQUIRE(locations.isActive == XR_TRUE);
+        for (const auto& speed : speeds)
+            CHECK(speed.velocityFlags == (XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT));
+    };
+    const auto turning = [&](XrHandJointEXT joint) {
+        const XrVector3f& speed = speeds[joint].angularVelocity;
+        return std::hypot(speed.x, speed.y, speed.z);
+    };
+    // A quarter of pi in a second, to the left, which is about +y.
+    locate(XR_HAND_LEFT_EXT);
+    for (const auto& speed : speeds) {
+        CHECK(speed.angularVelocity.x == doctest::Approx(0));
+        CHECK(speed.angularVelocity.y == doctest::Approx(0.25 * 3.14159265).epsilon(1e-3));
+        CHECK(speed.angularVelocity.z == doctest::Approx(0));
+    }
+    locate(XR_HAND_RIGHT_EXT);
+    CHECK(turning(XR_HAND_JOINT_INDEX_TIP_EXT) > 1);
+    CHECK(turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
 }

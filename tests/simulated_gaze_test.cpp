@@ -180,6 +180,13 @@ TEST_CASE("a gaze may be lost, found again, and be too poor to rely on; whatever
     // Both parts of a gaze are tracked, or neither.
     CHECK(made.at(0.55, made.local).location.locationFlags == XR_SPACE_LOCATION_ORIENTATION_VALID_BIT);
 
+    // A gaze is known in itself, lost or poor, though only a gaze that is seen has a sample.
+    for (const double time_s : {0.15, 0.25}) {
+        gaze = made.read(1'000'000'000 + std::lround(time_s * 1e9), made.gaze_space);
+        CHECK(gaze.location.locationFlags == (kValid | kTracked));
+        CHECK((gaze.sampled > 0) == (time_s > 0.2));
+    }
+
     XrEyeGazeSampleTimeEXT sample{XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT, nullptr, 77};
     XrSpaceLocation location{XR_TYPE_SPACE_LOCATION, &sample};
     REQUIRE(xrLocateSpace(made.view, made.view, 1'000'000'000, &location) == XR_SUCCESS);

@@ -145,6 +145,36 @@ TEST_CASE_FIXTURE(InputFixture, "a controller that is off is inactive, and its s
     CHECK(location.locationFlags == 0);
 }
 
+TEST_CASE_FIXTURE(InputFixture, "spaces of one action are known in one another while its set is active, though the controller is off") {
+    start();
+    const XrActionSpaceCreateInfo info{XR_TYPE_ACTION_SPACE_CREATE_INFO, nullptr, grip, right, {{0, 0, 0, 1}, {0, 0.5f, 0}}};
+    const XrSpace held = spaceOf(grip, right), other = spaceOf(grip, left);
+    XrSpace above = XR_NULL_HANDLE;
+    REQUIRE(xrCreateActionSpace(session, &info, &above) == XR_SUCCESS);
+    XrSpaceVelocity velocity{XR_TYPE_SPACE_VELOCITY};
+    XrSpaceLocation location{XR_TYPE_SPACE_LOCATION, &velocity};
+    const auto flagsOf = [&](XrSpace space, XrSpace base, XrTime time) {
+        REQUIRE(xrLocateSpace(space, base, time, &location) == XR_SUCCESS);
+        return location.locationFlags;
+    };
+    CHECK_MESSAGE(flagsOf(above, held, 1'500'000'000) == 0, "no set was active yet");
+    // The controller is off from 2 s on: once after the set was read, once before.
+    REQUIRE(sync(set) == XR_SUCCESS);
+    CHECK(flagsOf(above, held, 2'500'000'000) == 15);
+    runTo(11);
+    REQUIRE(sync(set) == XR_SUCCESS);
+    CHECK(flagsOf(above, held, 2'100'000'000) == 15);
+    CHECK(location.pose.position.y == doctest::Approx(0.5));
+    CHECK(velocity.velocityFlags == (XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT));
+    CHECK(velocity.linearVelocity.y == 0);
+    CHECK(flagsOf(held, above, 2'100'000'000) == 15);
+    CHECK(location.pose.position.y == doctest::Approx(-0.5));
+    CHECK(flagsOf(above, other, 2'100'000'000) == 0);
+    CHECK(flagsOf(above, local, 2'100'000'000) == 0);
+    REQUIRE(sync(set, left) == XR_SUCCESS);
+    CHECK(flagsOf(above, held, 2'100'000'000) == 0);
+}
+
 TEST_CASE_FIXTURE(InputFixture, "an action space moves with its hand, also once its action's handle is gone") {
     start();
     const XrSpace space = spaceOf(grip, left), stage = makeSpace(XR_REFERENCE_SPACE_TYPE_STAGE);

@@ -101,6 +101,12 @@ TEST_CASE_FIXTURE(LayersFixture, "rectangles stay inside their image") {
     CHECK(withRect({{32, 0}, {-32, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     CHECK(withRect({{1, 0}, {INT32_MAX, 32}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
     CHECK(withRect({{63, 31}, {1, 1}}) == XR_SUCCESS);
+    // Empty ones reach out nowhere.
+    CHECK(withRect({{0, 0}, {0, 32}}) == XR_SUCCESS);
+    CHECK(withRect({{64, 32}, {0, 0}}) == XR_SUCCESS);
+    CHECK(withRect({{65, 0}, {0, 0}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    CHECK(withRect({{0, 0}, {32, -1}}) == XR_ERROR_SWAPCHAIN_RECT_INVALID);
+    quad.subImage.imageRect = {{63, 31}, {1, 1}};
     quad.subImage.imageArrayIndex = 1;
     CHECK(shown(&quad) == XR_ERROR_VALIDATION_FAILURE);
 }
@@ -190,6 +196,12 @@ TEST_CASE_FIXTURE(WritingFixture, "frames are logged, and pictures written for t
     CHECK(line.find("VK_FORMAT_D32_SFLOAT") != std::string::npos);
     CHECK(line.find("\"LOCAL\"") != std::string::npos);
     CHECK(!std::getline(log, line));
+}
+
+TEST_CASE_FIXTURE(WritingFixture, "a layer of which no pixel is chosen is logged, and the picture is written without it") {
+    for (XrCompositionLayerProjectionView& view : views) view.subImage.imageRect = {{0, 0}, {0, 0}};
+    CHECK(shown(&projection) == XR_SUCCESS);
+    CHECK(std::filesystem::exists(written / "frame_000003.png"));
 }
 
 TEST_CASE_FIXTURE(WritingFixture, "what is on show stays on show while the application holds every image") {

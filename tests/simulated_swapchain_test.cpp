@@ -12,6 +12,10 @@ struct SlowFixture : SessionFixture {
     SlowFixture() : SessionFixture("size 64 64\nframes none\nat 0 slow-images 2\n") {}
 };
 
+struct SlowAndLosingFixture : SessionFixture {
+    SlowAndLosingFixture() : SessionFixture("size 64 64\nframes none\nat 0 slow-images 2\nat 0 lose-session\n") {}
+};
+
 // Vulkan's loader, which notes what images are made with.
 struct ImageRecorder {
     static inline PFN_vkGetDeviceProcAddr find_in_device = nullptr;
@@ -290,6 +294,17 @@ TEST_CASE_FIXTURE(SlowFixture, "a slow image times out, and is there later") {
     CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_TIMEOUT_EXPIRED);
     CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_SUCCESS);
     CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SUCCESS);
+}
+
+TEST_CASE_FIXTURE(SlowAndLosingFixture, "while a session is being lost slow images are waited for, and can be released") {
+    const XrSwapchain swapchain = makeSwapchain();
+    begin();
+    waitFrame();
+    const XrSwapchainImageWaitInfo wait{XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, 1000};
+    std::uint32_t index = 0;
+    CHECK(xrAcquireSwapchainImage(swapchain, nullptr, &index) == XR_SESSION_LOSS_PENDING);
+    CHECK(xrWaitSwapchainImage(swapchain, &wait) == XR_SESSION_LOSS_PENDING);
+    CHECK(xrReleaseSwapchainImage(swapchain, nullptr) == XR_SESSION_LOSS_PENDING);
 }
 
 TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on every turn") {

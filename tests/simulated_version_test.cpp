@@ -14,7 +14,6 @@ namespace {
 constexpr const char* kAside = "head 0 position 1 1.7 0 turn 90 20\nhead 1 position 2 1.7 0\n";
 
 constexpr XrTime kStart = 1'000'000'000;
-using States = std::vector<XrSessionState>;
 
 }  // namespace
 
@@ -138,6 +137,29 @@ TEST_CASE("LOCAL_FLOOR is there in 1.1, and in 1.0 by its extension: LOCAL broug
         CHECK(location.pose.position.y == doctest::Approx(-1.7));
         CHECK(location.pose.orientation.w == doctest::Approx(1));
     }
+}
+
+TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that is there") {
+    const auto announced = [](const HeadlessSession& made) {
+        made.begin();
+        for (int frame = 0; frame < 3; ++frame) REQUIRE(made.sync() == XR_SUCCESS);
+        std::vector<XrReferenceSpaceType> types;
+        const auto poll = made.xr<PFN_xrPollEvent>("xrPollEvent");
+        for (XrEventDataBuffer event{XR_TYPE_EVENT_DATA_BUFFER}; poll(made.instance, &event) == XR_SUCCESS;
+             event = {XR_TYPE_EVENT_DATA_BUFFER}) {
+            if (event.type != XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING) continue;
+            const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
+            CHECK(change.session == made.session);
+            CHECK(change.changeTime == kStart + 150'000'000);
+            types.push_back(change.referenceSpaceType);
+        }
+        return types;
+    };
+    const std::string script = "rate 10\nat 0.15 recentre\n";
+    const std::vector<XrReferenceSpaceType> both{XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR};
+    CHECK(announced(HeadlessSession(k1_0, {}, script)) == std::vector{XR_REFERENCE_SPACE_TYPE_LOCAL});
+    CHECK(announced(HeadlessSession(k1_0, {XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}, script)) == both);
+    CHECK(announced(HeadlessSession(k1_1, {}, script)) == both);
 }
 
 TEST_CASE("spaces are located all at once, as one by one") {
@@ -311,42 +333,4 @@ TEST_CASE("the palm's surface lies beside the grip, turned towards the index fin
         CHECK(location.pose.orientation.x == doctest::Approx(-std::sin(3.14159265 / 8)));
         CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
     }
-}
-
-TEST_CASE("a headless session has no swapchains and no frames, and is in focus at once") {
-    const HeadlessSession made(k1_0, {}, "rate 10\nat 0.35 focused off\nat 0.55 exit\n");
-    std::uint32_t count = 9;
-    CHECK(made.xr<PFN_xrEnumerateSwapchainFormats>("xrEnumerateSwapchainFormats")(made.session, 0, &count, nullptr) == XR_SUCCESS);
-    CHECK(count == 0);
-    const XrSwapchainCreateInfo info = swapchainInfo();
-    XrSwapchain swapchain = XR_NULL_HANDLE;
-    CHECK(made.xr<PFN_xrCreateSwapchain>("xrCreateSwapchain")(made.session, &info, &swapchain) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(made.states() == States{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_READY});
-    made.begin();
-    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_VISIBLE, XR_SESSION_STATE_FOCUSED});
-    XrFrameState state{XR_TYPE_FRAME_STATE};
-    CHECK(made.xr<PFN_xrWaitFrame>("xrWaitFrame")(made.session, nullptr, &state) == XR_ERROR_VALIDATION_FAILURE);
-    CHECK(made.xr<PFN_xrBeginFrame>("xrBeginFrame")(made.session, nullptr) == XR_ERROR_VALIDATION_FAILURE);
-    // Each xrSyncActions is a frame's time: 0, 0.1, 0.2, 0.3 s in focus.
-    for (int i = 0; i < 4; ++i) CHECK(made.sync() == XR_SUCCESS);
-    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
-    CHECK(made.states() == States{XR_SESSION_STATE_VISIBLE});
-    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
-    CHECK(made.sync() == XR_SESSION_NOT_FOCUSED);
-    CHECK(made.states() == States{XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING});
-    CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("a headless session ends at once when it is asked to") {
-    const HeadlessSession made(k1_0, {});
-    made.begin();
-    CHECK(made.xr<PFN_xrRequestExitSession>("xrRequestExitSession")(made.session) == XR_SUCCESS);
-    CHECK(made.xr<PFN_xrEndSession>("xrEndSession")(made.session) == XR_SUCCESS);
-}
-
-TEST_CASE("without the extension a session needs graphics") {
-    const DirectInstance made(k1_1, {});
-    const XrSessionCreateInfo info{XR_TYPE_SESSION_CREATE_INFO, nullptr, 0, made.system};
-    XrSession session = XR_NULL_HANDLE;
-    CHECK(made.xr<PFN_xrCreateSession>("xrCreateSession")(made.instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
 }

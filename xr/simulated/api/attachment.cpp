@@ -110,6 +110,7 @@ ActionReading readAction(const AttachedAction& action, XrPath subaction_path, co
         const BoundSource& source = action.sources[i];
         if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
         if (!isActivated(active, action, source) || action.priority < highest.at({source.device, source.source})) continue;
+        reading.is_activated = true;
         keeps_followed = keeps_followed || followed_before == i;
         const ControllerState& controller = state.device(source.device);
         if (!controller.tracked) continue;
@@ -219,16 +220,22 @@ AttachedAction& getAttached(Session& session, XrAction action) {
 
 namespace {
 
-// What a pose action is read from; null while it is inactive.
-const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
-    if (!session.attachment || !session.is_running) return nullptr;
+// An action and what it read; null if it is not attached, or the session does not run.
+std::pair<const AttachedAction*, const ActionReading*> readingOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    if (!session.attachment || !session.is_running) return {};
     for (const AttachedAction& attached : session.attachment->actions) {
         if (attached.number != action) continue;
         const auto reading = attached.readings.find(subaction_path);
-        if (reading == attached.readings.end() || !reading->second.is_active) return nullptr;
-        return reading->second.followed ? &attached.sources[*reading->second.followed] : nullptr;
+        if (reading != attached.readings.end()) return {&attached, &reading->second};
     }
-    return nullptr;
+    return {};
+}
+
+// What a pose action is read from; null while it is inactive.
+const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    const auto [attached, reading] = readingOf(session, action, subaction_path);
+    if (reading == nullptr || !reading->is_active || !reading->followed) return nullptr;
+    return &attached->sources[*reading->followed];
 }
 
 }  // namespace
@@ -237,6 +244,11 @@ std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action
     const BoundSource* const source = sourceOf(session, action, subaction_path);
     if (source == nullptr || !state.device(source->device).tracked) return std::nullopt;
     return poseOf(state.device(source->device), *source);
+}
+
+bool isLocatable(const Session& session, std::uint64_t action, XrPath subaction_path) {
+    const ActionReading* const reading = readingOf(session, action, subaction_path).second;
+    return reading != nullptr && reading->is_activated;
 }
 
 bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path) {

@@ -31,6 +31,7 @@ struct BoundSource {
 // As of the last xrSyncActions, for one subaction path or for all.
 struct ActionReading {
     bool is_active = false;
+    bool is_activated = false;   // some source of it was to be read, though it may not have been tracked
     glm::dvec2 value{0.0, 0.0};  // booleans are 0 or 1, scalars have y = 0
     bool has_changed = false;
     XrTime changed_at = 0;
@@ -82,6 +83,8 @@ AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
 std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
+// Whether its set was active then, with a source for it: else its spaces are nowhere, not even in one another.
+bool isLocatable(const Session& session, std::uint64_t action, XrPath subaction_path);
 // Whether that source is the eye tracker.
 bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path);
 

@@ -27,7 +27,6 @@ std::condition_variable& frameBegun() {
 Session& runningSession(XrSession session) {
     Session& found = getSession(session);
     require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
-    require(!found.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no frames");
     return found;
 }
 
@@ -44,7 +43,7 @@ void loadGpu(Session& session, const XrFrameEndInfo& info) {
     const Simulation& simulation = *session.instance.simulation;
     const GpuLoad load = simulation.script.gpu_load.at(simulation.clock.secondsAt(info.displayTime));
     session.frames.gpu_ms.reset();
-    if (load.amount == 0) return;
+    if (load.amount == 0 || session.isHeadless()) return;
     double megapixels = 0;
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         if (info.layers[i]->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) continue;
@@ -117,7 +116,8 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         owner.announcePresence(state);
         const bool is_visible = owner.state == XR_SESSION_STATE_VISIBLE || owner.state == XR_SESSION_STATE_FOCUSED;
         owner.frames.waited = frame.display_time;
-        owner.frames.should_render = is_visible && state.should_render;
+        owner.frames.are_used = true;
+        owner.frames.should_render = is_visible && state.should_render && !owner.isHeadless();
         output.predictedDisplayTime = frame.display_time;
         output.predictedDisplayPeriod =
             simulation.clock.period() * (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);

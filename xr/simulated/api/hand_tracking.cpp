@@ -23,7 +23,6 @@ struct HandTracker : Object {
 
 constexpr XrSpaceLocationFlags kPlaceKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
                                              XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-constexpr XrDuration kStep = 1'000'000;
 
 // In the base space; none while the hand is not seen.
 std::optional<std::array<HandJoint, kHandJoints>> jointsAt(const HandTracker& tracker, const Space& base, XrTime time) {
@@ -55,15 +54,14 @@ void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, Xr
                     : XrHandJointLocationEXT{0, toXr(Pose{}), 0};
     }
     if (velocities == nullptr) return;
-    const auto before = now ? jointsAt(tracker, base, time - kStep) : std::nullopt;
-    const auto after = now ? jointsAt(tracker, base, time + kStep) : std::nullopt;
+    const auto before = now ? jointsAt(tracker, base, time - kMotionStep) : std::nullopt;
+    const auto after = now ? jointsAt(tracker, base, time + kMotionStep) : std::nullopt;
     for (std::size_t i = 0; i < kHandJoints; ++i) {
         XrHandJointVelocityEXT& joint = velocities->jointVelocities[i];
         joint = {0, {0, 0, 0}, {0, 0, 0}};
         if (!before || !after) continue;
-        const glm::vec3 linear(((*after)[i].stage_from_joint.position - (*before)[i].stage_from_joint.position) / (2e-9 * kStep));
-        joint.velocityFlags = XR_SPACE_VELOCITY_LINEAR_VALID_BIT;
-        joint.linearVelocity = {linear.x, linear.y, linear.z};
+        const Motion motion = motionOf((*before)[i].stage_from_joint, (*after)[i].stage_from_joint);
+        joint = {XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT, motion.linear_m_s, motion.angular_rad_s};
     }
 }
 

@@ -20,9 +20,9 @@ Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& imag
     require(swapchain.has_released, XR_ERROR_LAYER_INVALID, "no image of the swapchain was released");
     const auto& [offset, extent] = image.imageRect;
     const std::int64_t right = std::int64_t{offset.x} + extent.width, bottom = std::int64_t{offset.y} + extent.height;
-    const bool is_inside = offset.x >= 0 && offset.y >= 0 && extent.width > 0 && extent.height > 0 && right <= swapchain.info.size.width &&
-                           bottom <= swapchain.info.size.height;
-    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a rectangle reaches out of its image, or is empty");
+    const bool is_inside = offset.x >= 0 && offset.y >= 0 && extent.width >= 0 && extent.height >= 0 &&
+                           right <= swapchain.info.size.width && bottom <= swapchain.info.size.height;
+    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a rectangle reaches out of its image, or is of negative size");
     require(image.imageArrayIndex < swapchain.info.layers, XR_ERROR_VALIDATION_FAILURE, "no such array layer");
     return swapchain;
 }
@@ -154,6 +154,7 @@ LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image)
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, "more layers than maxLayerCount");
     require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of layers is missing");
+    require(info.layerCount == 0 || !session.isHeadless(), XR_ERROR_LAYER_INVALID, "a headless session shows no layers");
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         require(info.layers[i] != nullptr, XR_ERROR_LAYER_INVALID, "a layer is null");
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];

@@ -22,10 +22,14 @@ struct Pending {
     void* user_data;
     XrDebugUtilsMessageSeverityFlagsEXT severity;
     XrDebugUtilsMessageTypeFlagsEXT types;
-    std::string id, function, text;
+    std::optional<std::string> id, function;
+    std::string text;
     std::vector<std::string> labels;
-    std::vector<std::pair<XrDebugUtilsObjectNameInfoEXT, std::string>> objects;
+    std::vector<std::pair<XrDebugUtilsObjectNameInfoEXT, std::optional<std::string>>> objects;
 };
+
+std::optional<std::string> copyOf(const char* text) { return text == nullptr ? std::nullopt : std::optional<std::string>(text); }
+const char* pointerTo(const std::optional<std::string>& text) { return text ? text->c_str() : nullptr; }
 
 std::vector<Pending>& pending() {
     thread_local std::vector<Pending> messages;
@@ -117,12 +121,12 @@ void deliverMessages() {
         std::vector<XrDebugUtilsObjectNameInfoEXT> objects;
         for (const auto& [object, name] : message.objects) {
             objects.push_back(object);
-            objects.back().objectName = name.empty() ? nullptr : name.c_str();
+            objects.back().objectName = pointerTo(name);
         }
         const XrDebugUtilsMessengerCallbackDataEXT data{XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT,
                                                         nullptr,
-                                                        message.id.c_str(),
-                                                        message.function.c_str(),
+                                                        pointerTo(message.id),
+                                                        pointerTo(message.function),
                                                         message.text.c_str(),
                                                         static_cast<std::uint32_t>(objects.size()),
                                                         objects.data(),
@@ -165,14 +169,18 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "no or unknown types of messages");
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
         require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
-        const auto textOr = [](const char* text) { return std::string(text == nullptr ? "" : text); };
-        Pending message{
-            nullptr,          nullptr, messageSeverity, messageTypes, textOr(data.messageId), textOr(data.functionName), data.message,
-            labelsOf(&owner), {}};
+        require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
+        // What the application says stays as it is; what it leaves open is filled in.
+        Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
+                        {},      {}};
+        for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) message.labels.push_back(checkedLabel(&data.sessionLabels[i]));
+        if (message.labels.empty()) message.labels = labelsOf(&owner);
         for (std::uint32_t i = 0; i < data.objectCount; ++i) {
             const auto& object = data.objects[i];
-            const auto name = owner.object_names.find({object.objectType, object.objectHandle});
-            message.objects.emplace_back(object, name == owner.object_names.end() ? std::string() : name->second);
+            std::optional<std::string> name = copyOf(object.objectName);
+            const auto registered = owner.object_names.find({object.objectType, object.objectHandle});
+            if (!name && registered != owner.object_names.end()) name = registered->second;
+            message.objects.emplace_back(object, std::move(name));
         }
         queueForAll(message);
         return XR_SUCCESS;

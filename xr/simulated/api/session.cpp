@@ -45,6 +45,21 @@ GraphicsBinding graphicsOf(const Instance& instance, const XrGraphicsBindingVulk
             binding.queueIndex};
 }
 
+// LOCAL_FLOOR goes where LOCAL goes.
+void announceRecentring(const Session& session, XrTime change_time) {
+    std::vector<XrReferenceSpaceType> moved{XR_REFERENCE_SPACE_TYPE_LOCAL};
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) moved.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+    for (const XrReferenceSpaceType type : moved) {
+        session.instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+                                                                            nullptr,
+                                                                            handleOf(session),
+                                                                            type,
+                                                                            change_time,
+                                                                            XR_FALSE,
+                                                                            {{0, 0, 0, 1}, {0, 0, 0}}});
+    }
+}
+
 }  // namespace
 
 Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(owner), device(std::move(graphics)) {
@@ -93,6 +108,7 @@ void Session::settle() {
 }
 
 void Session::passHeadlessFrame() {
+    if (frames.are_used) return;
     Clock& clock = instance.simulation->clock;
     if (!clock.isReal()) clock.nextFrame();
     meetEvents(clock.now());
@@ -120,14 +136,7 @@ void Session::meetEvents(XrTime display_time) {
                 wants_exit = true;
                 break;
             case ScriptEvent::Kind::kRecentre:
-                instance.events.push(
-                    XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
-                                                           nullptr,
-                                                           handleOf(*this),
-                                                           XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                                           simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds),
-                                                           XR_FALSE,
-                                                           {{0, 0, 0, 1}, {0, 0, 0}}});
+                announceRecentring(*this, simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds));
                 break;
             case ScriptEvent::Kind::kLoseSession:
                 loss_announced = display_time;
@@ -221,7 +230,8 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
     return answer(__func__, [&] {
         Session& begun = getSession(session);
         const XrSessionBeginInfo& info = checked(beginInfo, XR_TYPE_SESSION_BEGIN_INFO);
-        checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
+        // XR_MND_headless: whatever it says is ignored.
+        if (!begun.isHeadless()) checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
         require(!begun.is_running, XR_ERROR_SESSION_RUNNING, "the session runs already");
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not READY");
         begun.is_running = true;

@@ -22,6 +22,7 @@ struct FrameLoop {
     std::int64_t missed = 0;       // periods that the frame ended last took beyond its own
     std::optional<double> gpu_ms;  // what the script says it took
     bool should_render = false;    // as the frame that was waited for last was told
+    bool are_used = false;         // a frame was waited for since the session began
 };
 
 struct Session : Object {
@@ -54,7 +55,8 @@ struct Session : Object {
     void enter(XrSessionState next);
     // After an xrEndFrame whose frame shows the headset in this state.
     void step(const State& wanted);
-    // A headless session has no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time.
+    // A headless session needs no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time. If the
+    // program waits for frames all the same, time and states go by them, as in any other session.
     [[nodiscard]] bool isHeadless() const { return device == nullptr; }
     void settle();
     void passHeadlessFrame();

@@ -14,9 +14,6 @@ constexpr XrSpaceLocationFlags kPoseKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_
                                             XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
 constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
 
-// A millisecond to either side: short against any motion, long against rounding.
-constexpr XrDuration kDifference = 1'000'000;
-
 bool hasStage(const Session& session) { return session.instance.simulation->script.has_stage; }
 
 std::vector<XrReferenceSpaceType> referenceSpacesOf(const Session& session) {
@@ -33,10 +30,17 @@ bool isKnown(const Session& session, XrReferenceSpaceType type) {
 
 bool isGaze(const Space& space) { return !space.reference && isOfGaze(space.session, space.action, space.subaction_path); }
 
+// Spaces of one pose action stand on one thing and never move against each other, though nobody may know where that thing is.
+bool areOnOneThing(const Space& space, const Space& base) {
+    return !space.reference && !base.reference && space.action == base.action && space.subaction_path == base.subaction_path &&
+           isLocatable(space.session, space.action, space.subaction_path);
+}
+
 // A head that is not tracked has no place but relative to itself; where only its turn is known, its place is given and not tracked. A gaze
 // is on the head, and tracked whole or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
+    if (areOnOneThing(space, base)) return kPoseKnown;
     const bool gaze = isGaze(space), base_gaze = isGaze(base);
     const bool is_poor = (gaze || base_gaze) && !state.gaze_is_good;
     const bool on_head = gaze || space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
@@ -48,6 +52,7 @@ XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, cons
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
+    if (areOnOneThing(space, base)) return compose(inverse(base.origin_from_space), space.origin_from_space);
     const State state = space.session.at(time);
     const std::optional<Pose> stage_from_space = stageFromSpace(space, state), stage_from_base = stageFromSpace(base, state);
     if (!stage_from_space || !stage_from_base) return std::nullopt;
@@ -70,18 +75,13 @@ template <class Velocity>
 void differentiate(const Space& space, const Space& base, XrTime time, Velocity& velocity) {
     velocity.velocityFlags = 0;
     velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
-    const std::optional<Pose> before = baseFromSpace(space, base, time - kDifference),
-                              after = baseFromSpace(space, base, time + kDifference);
+    const std::optional<Pose> before = baseFromSpace(space, base, time - kMotionStep),
+                              after = baseFromSpace(space, base, time + kMotionStep);
     if (!before || !after) return;
-    constexpr double kSeconds = 2e-9 * kDifference;
-    const glm::dvec3 linear = (after->position - before->position) / kSeconds;
-    glm::dquat turn = after->orientation * glm::conjugate(before->orientation);
-    if (turn.w < 0) turn = -turn;
-    // Small turns: the vector part is half the angle along the axis.
-    const glm::dvec3 angular = glm::dvec3(turn.x, turn.y, turn.z) * (2 / kSeconds);
+    const Motion motion = motionOf(*before, *after);
     velocity.velocityFlags = kVelocityKnown;
-    velocity.linearVelocity = {static_cast<float>(linear.x), static_cast<float>(linear.y), static_cast<float>(linear.z)};
-    velocity.angularVelocity = {static_cast<float>(angular.x), static_cast<float>(angular.y), static_cast<float>(angular.z)};
+    velocity.linearVelocity = motion.linear_m_s;
+    velocity.angularVelocity = motion.angular_rad_s;
 }
 
 }  // namespace
@@ -228,9 +228,10 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
         const XrBaseInStructure* const sample = has_samples ? findInChain(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT) : nullptr;
         // The script knows the gaze of any time; 0 stands for no sample.
-        if (sample != nullptr)
-            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time =
-                flags != 0 && isGaze(located) ? time : 0;
+        if (sample != nullptr) {
+            const bool is_seen = flags != 0 && isGaze(located) && stageFromSpace(located, located.session.at(time));
+            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time = is_seen ? time : 0;
+        }
         return successOf(located.session);
     });
 }

@@ -183,8 +183,8 @@ XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitI
         const XrSwapchainImageWaitInfo& info = checked(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
         require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
         require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
-        // Slow images are late for every wait that has an end.
-        if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION) {
+        // Slow images are late for every wait that has an end. While a loss is pending no result could say so, and the wait succeeds.
+        if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION && !owner.session.loss_announced) {
             --owner.session.slow_images;
             return successOf(owner.session, XR_TIMEOUT_EXPIRED);
         }

@@ -108,17 +108,25 @@ bool isShownTo(Side side, Visibility visibility) {
     return visibility == Visibility::kBoth || (visibility == Visibility::kLeft) == (side == kLeft);
 }
 
+// Of an empty rectangle there is nothing to see.
+bool isEmpty(const Rect& rect) { return rect.extent.x == 0 || rect.extent.y == 0; }
+
 std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Layer> layers) {
     std::vector<SeenLayer> seen;
     for (const Layer& layer : layers) {
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
-            seen.push_back({SeenView(eye, projection->views[side]), projection->blending});
+            const ProjectionView& view = projection->views[side];
+            if (!isEmpty(view.rect)) { seen.push_back({SeenView(eye, view), projection->blending}); }
         } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
-            if (isShownTo(side, quad->visibility)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
+            if (isShownTo(side, quad->visibility) && !isEmpty(quad->rect)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
         } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {
-            if (isShownTo(side, cylinder->visibility)) { seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending}); }
+            if (isShownTo(side, cylinder->visibility) && !isEmpty(cylinder->rect)) {
+                seen.push_back({SeenCylinder(eye, *cylinder), cylinder->blending});
+            }
         } else if (const auto* sphere = std::get_if<SphereLayer>(&layer)) {
-            if (isShownTo(side, sphere->visibility)) { seen.push_back({SeenSphere(eye, *sphere), sphere->blending}); }
+            if (isShownTo(side, sphere->visibility) && !isEmpty(sphere->rect)) {
+                seen.push_back({SeenSphere(eye, *sphere), sphere->blending});
+            }
         } else if (const auto& cube = std::get<CubeLayer>(layer); isShownTo(side, cube.visibility)) {
             seen.push_back({SeenCube(eye, cube), cube.blending});
         }

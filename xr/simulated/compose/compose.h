@@ -31,7 +31,8 @@ struct Picture {
 };
 [[nodiscard]] std::size_t bytesPerTexel(Texels texels);
 
-// A rectangle of a picture in pixels from its top left corner; it must lie inside the picture.
+// A rectangle of a picture in pixels from its top left corner; it must lie inside the picture. An empty one shows
+// nothing.
 struct Rect {
     glm::uvec2 offset{0, 0};
     glm::uvec2 extent{0, 0};

@@ -25,10 +25,18 @@ void addStep(Words& words, Steps<Value>& steps, double time_s, const Value& valu
     if (!steps.add(time_s, value)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
 }
 
+void addRecentring(Script& script, double time_s) {
+    script.recentres_s.push_back(time_s);
+    // The program is told before.
+    const double told_s = time_s - ScriptEvent::kNoticeSeconds;
+    script.events.insert(std::ranges::upper_bound(script.events, told_s, {}, &ScriptEvent::time_s),
+                         {told_s, ScriptEvent::Kind::kRecentre, 1});
+}
+
 }  // namespace
 
 void Parser::parseAt(Words& words) {
-    double time_s = words.time();
+    const double time_s = words.time();
     if (last_at_s_ && time_s < *last_at_s_) {
         words.fail("the time is {}, must not be before the `at` before, at {}", time_s, *last_at_s_);
     }
@@ -69,12 +77,7 @@ void Parser::parseAt(Words& words) {
             return addStep(words, script_.head_place_known, time_s, known == 0);
         }
         case 11:
-            script_.recentres_s.push_back(time_s);
-            // The program is told before.
-            time_s -= ScriptEvent::kNoticeSeconds;
-            script_.events.insert(std::ranges::upper_bound(script_.events, time_s, {}, &ScriptEvent::time_s),
-                                  {time_s, ScriptEvent::Kind::kRecentre, 1});
-            return;
+            return addRecentring(script_, time_s);
         case 12:
             return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
         case 13:
