@@ -329,6 +329,7 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
                      .image = &image,
                      .background = glm::vec3(settings.background),
                      .kept = {.depth = image.depths.bytes() > 0, .half_floats = settings.half_floats},
+                     .square_boxes = settings.square_boxes,
                      .shown = shown_[eye].mask()};
     if (eye != dominant_) { return target; }
     target.kept.moments = settings.keep_moments;

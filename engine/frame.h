@@ -39,6 +39,7 @@ struct FrameSettings {
     bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
     bool keep_classes = false;      // what made each pixel of the affiliated eye, for readPixelClasses and the report's counters
+    bool square_boxes = true;       // the report says how many pairs the customary square bound would make
     // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
     // pairs and take no part in the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};

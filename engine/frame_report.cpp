@@ -27,8 +27,10 @@ FrameResult StereoFrame::collect(const Flight& flight) const {
         const glm::uvec2 tiles = tilesOf(eyes[e].size_px);
         counters["splats_visible" + suffix] = state_.visible[listOf(static_cast<int>(e))].count;
         counters["tile_pairs" + suffix] = state_.pairs[e].count;
-        counters["square_box_tile_pairs" + suffix] =
-            (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
+        if (settings.square_boxes) {
+            counters["square_box_tile_pairs" + suffix] =
+                (std::uint64_t{state_.counters[e].square_box_pairs_high} << 32) | state_.counters[e].square_box_pairs_low;
+        }
         counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
         if (shown_[e].hideAny()) { counters["tiles_hidden" + suffix] = shown_[e].hiddenCount(); }
         counters["pixels" + suffix] = std::uint64_t{eyes[e].size_px.x} * eyes[e].size_px.y;

@@ -12,6 +12,7 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
+layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the customary bound are counted; not under a mask
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -86,7 +87,7 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
     if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
-    square_tiles = kMasked ? 0 : squareBoxTiles(splat, eye);
+    square_tiles = kSquareBoxes ? squareBoxTiles(splat, eye) : 0;
     uint small;
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
@@ -124,7 +125,7 @@ void main() {
         }
         rank += kGroupSize;
     } while (rank < end);
-    if (!kMasked) { addSquareTiles(own_square_tiles); }
+    if (kSquareBoxes) { addSquareTiles(own_square_tiles); }
     const uint subgroup_tiles = subgroupAdd(own_tiles);
     if (subgroupElect()) { atomicAdd(group_tiles, subgroup_tiles); }
     barrier();

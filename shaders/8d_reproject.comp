@@ -20,6 +20,8 @@ layout(constant_id = 2) const bool kForward = false;      // colours are going t
 
 #include "lib/reproject.glsl"
 
+bool hidesTiles() { return kHiddenTiles; }
+
 void put(StereoView stereo, ivec2 at, uint arrival) {
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(stereo.size_px)))) { return; }
     atomicMax(pass.arrivals.at[uint(at.y) * stereo.row_words + uint(at.x)], arrival);

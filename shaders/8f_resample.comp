@@ -7,6 +7,7 @@
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
@@ -27,7 +28,6 @@ layout(constant_id = 5) const uint kRowSteps = 1;
 layout(constant_id = 6) const bool kHalfColours = false;
 layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
 layout(constant_id = 8) const bool kMovesRow = false;
-layout(constant_id = 9) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered; for kMovesRow
 
 #include "lib/picture.glsl"
 #include "lib/reproject.glsl"
@@ -43,6 +43,8 @@ shared uint moved_count;
 shared uint hidden_count;
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
+
+bool hidesTiles() { return any(notEqual(uvec2(pass.shown_mask), uvec2(0))); }
 
 void put(StereoView stereo, ivec2 at, uint arrival) {
     if (at.x >= 0 && at.x < int(stereo.size_px.x)) { atomicMax(row_arrivals[at.x], arrival); }

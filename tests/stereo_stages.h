@@ -134,7 +134,7 @@ public:
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8f_resample",
                  {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
-                  parts.moves_row, parts.hidden_tiles},
+                  parts.moves_row},
                  gpu::ResamplePass{.stereo = view(),
                                    .dominant = colours_.address<gpu::vec4>(),
                                    .half_dominant = colours_.address<gpu::uvec2>(),
@@ -148,7 +148,7 @@ public:
                                    .pixel_classes = words(classes_),
                                    .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
                                    .counters = counters(),
-                                   .shown_mask = words(shown_mask_),
+                                   .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
                                    .background = parts.background},
                  {view_.size_px.y, 1});
     }

@@ -72,6 +72,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
             settings.half_floats = true;
             settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
             settings.keep_classes = ahead.tint;
+            settings.square_boxes = false;
             // One eye's picture for both is seen through either lens.
             if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
             makeKernelsOf(small, settings, eyes);

@@ -57,6 +57,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.keep_depth = frame.keep_both_depths = stay.images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
+    frame.square_boxes = false;
     frame.gazes = views.gazes;
     frame.mark = governed_count_;
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }

@@ -4,6 +4,7 @@
 #include "engine/gpu/context.h"
 #include "shaders/shared/language.h"
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -31,6 +32,7 @@ public:
     // The address of an array of T that begins `offset_bytes` into the buffer.
     template <typename T>
     [[nodiscard]] gpu::DeviceAddress<T> address(std::uint64_t offset_bytes = 0) const {
+        assert(address_ == 0 || offset_bytes % gpu::kArrayAlignment<T> == 0);
         return {address_ + offset_bytes};
     }
     // Host view of an upload or read-back buffer.

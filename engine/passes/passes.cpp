@@ -23,8 +23,12 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     KernelTable table = everyVariant("1_cull", sizeof(gpu::CullPass), {{"kSplatKind", 2}});
     append(table, everyVariant("2_compact", sizeof(gpu::CompactPass), {{"kByDistance", 2}}));
     append(table, sortKernels(context));
-    append(table,
-           everyVariant("4_project", sizeof(gpu::ProjectPass), {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}, {"kSplatKind", 3}}));
+    for (const KernelVariant& variant :
+         everyVariant("4_project", sizeof(gpu::ProjectPass),
+                      {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}, {"kSplatKind", 3}, {"kSquareBoxes", 2}})) {
+        const std::vector<std::uint32_t> values = variant.values();
+        if (values[1] == 0 || values[3] == 0) { table.push_back(variant); }
+    }
     append(table, everyVariant("5_bin", sizeof(gpu::BinPass)));
     append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}, {"kSplatKind", 2}}));
     append(table, everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass)));
@@ -198,7 +202,8 @@ void Passes::recordProjected(const EyePart& part) {
                                    .eye = part.eye(),
                                    .capacity = part.target.pairs.capacity};
     part.commands.dispatchIndirect(kernels_.get("4_project", sizeof(project),
-                                                {static_cast<std::uint32_t>(part.scene.shDegree()), part.masked(), part.scene.splatKind()}),
+                                                {static_cast<std::uint32_t>(part.scene.shDegree()), part.masked(), part.scene.splatKind(),
+                                                 part.masked() == 0 && part.target.square_boxes ? 1u : 0u}),
                                    project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
 }
 

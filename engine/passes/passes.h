@@ -43,6 +43,7 @@ struct EyeTarget {
     const EyeImage* image = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
+    bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, where all tiles are shown
     gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
     gpu::uint row_words = 0;                                   // of these two

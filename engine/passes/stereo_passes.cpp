@@ -62,15 +62,12 @@ KernelTable stereoKernels() {
                                                       {"kRowSteps", gpu::kMostRowSteps + 1},
                                                       {"kHalfColours", 2},
                                                       {"kForward", 2},
-                                                      {"kMovesRow", 2},
-                                                      {"kHiddenTiles", 2}})) {
+                                                      {"kMovesRow", 2}})) {
         // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they can be.
         const std::vector<std::uint32_t> values = variant.values();
         const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
         const bool can_move = values[0] == 1 && values[5] > 0;
-        if (groups && (values[1] == 0 || values[7] == 0) && (values[8] == 1) == can_move && values[9] <= values[8]) {
-            table.push_back(variant);
-        }
+        if (groups && (values[1] == 0 || values[7] == 0) && (values[8] == 1) == can_move) { table.push_back(variant); }
     }
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
     append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
@@ -220,7 +217,7 @@ void StereoRecorder::resample() {
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
     const Kernel& resample_kernel = kernel("8f_resample", pass,
                                            {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
-                                            halfFloats(), copiesColours(), movesRows(), movesRows() & hidesDominant()});
+                                            halfFloats(), copiesColours(), movesRows()});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
 

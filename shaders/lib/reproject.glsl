@@ -1,7 +1,8 @@
 // A dominant pixel on its way to where the affiliated eye sees it: 8d, and 8f where it takes the way itself. For shaders that know
-// pass.moving, pass.shown_mask, kHiddenTiles and kForward, include lib/stereo.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say
-// where pixels arrive.
+// pass.moving, pass.shown_mask and kForward, include lib/stereo.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say
+// whether parts of the dominant picture were not rendered, and where pixels arrive.
 
+bool hidesTiles();
 void put(StereoView stereo, ivec2 at, uint arrival);
 
 struct Moved {
@@ -23,7 +24,7 @@ Moved moveDominant(StereoView stereo, uvec2 pixel) {
     const uint moving = pass.moving.at[pixel.y * stereo.row_words + pixel.x];
     const float inverse_depth = moving == 0 ? 0 : inverseDepthOf(moving);
     const vec3 moved = movePixel(stereo.affiliated_from_dominant, vec2(pixel) + 0.5, inverse_depth);
-    const bool seen = !kHiddenTiles || !isNearHidden(stereo, pixel);
+    const bool seen = !hidesTiles() || !isNearHidden(stereo, pixel);
     const uint spread = kForward ? parityOf(pixel) : moving & kSpreadBits;
     return Moved(moved.xy, inverse_depth / moved.z, spread, seen && moving != 0 && moved.z > 0);
 }

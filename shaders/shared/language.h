@@ -19,6 +19,16 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
+// What the address of an array of T must be a multiple of: see BINOSPLAT_ALIGNED_ARRAY_OF.
+template <typename T>
+inline constexpr std::uint64_t kArrayAlignment = 4;
+template <>
+inline constexpr std::uint64_t kArrayAlignment<vec2> = 8;
+template <>
+inline constexpr std::uint64_t kArrayAlignment<uvec2> = 8;
+template <>
+inline constexpr std::uint64_t kArrayAlignment<vec4> = 16;
+
 // The address of an array of T in device memory. Eight bytes, like GLSL's buffer_reference.
 template <typename T>
 struct DeviceAddress {
@@ -45,7 +55,7 @@ struct DeviceAddress {
 #define BINOSPLAT_END_SHARED
 // In a shader `name.at[i]` is element i.
 #define BINOSPLAT_ARRAY_OF(Element, Name) BINOSPLAT_ALIGNED_ARRAY_OF(Element, 4, Name)
-// Of elements that begin at a multiple of `align` bytes, so that one access takes a whole one.
+// Of elements that begin at a multiple of `align` bytes, so that one access takes a whole one also where a device wants it to lie so.
 #define BINOSPLAT_ALIGNED_ARRAY_OF(Element, align, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = align) buffer Name { Element at[]; }
 // Where workgroups read what others of the same dispatch have written; see lib/last_group.glsl.

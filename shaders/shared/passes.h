@@ -171,7 +171,7 @@ struct ResamplePass {
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
     StereoCounterss counters;
-    Uints shown_mask;  // where the dominant eye has hidden tiles and rows are moved here: the others
+    Uints shown_mask;  // where the dominant eye has hidden tiles: the others; null where it has none
     vec3 background;   // of tiles that are hidden
 };
 

@@ -9,10 +9,10 @@ BINOSPLAT_BEGIN_SHARED
 BINOSPLAT_ARRAY_OF(uint, Uints);
 BINOSPLAT_COHERENT_ARRAY_OF(uint, CoherentUints);
 BINOSPLAT_ARRAY_OF(float, Floats);
-BINOSPLAT_ARRAY_OF(uvec2, UVec2s);
-BINOSPLAT_ARRAY_OF(vec2, Vec2s);
+BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, UVec2s);
+BINOSPLAT_ALIGNED_ARRAY_OF(vec2, 8, Vec2s);
 BINOSPLAT_ARRAY_OF(vec3, Vec3s);
-BINOSPLAT_ARRAY_OF(vec4, Vec4s);
+BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, Vec4s);
 
 // A picture, rows top to bottom: rgb = sum w c + T background, a = sum w. As floats, or where nobody asks for these as four half floats.
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
