@@ -2,6 +2,7 @@
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
 #include "tests/panel_sketch.h"
+#include "tests/view_panel.h"
 #include "tests/view_runs.h"
 
 #include <dlfcn.h>
@@ -464,6 +465,24 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     CHECK(compare(eyeInWindow(screen, seen.size_px), seen).psnrDb() > 35.0);
     // Beside it, the panel.
     CHECK(coloursOfPanel(screen) > 10);
+}
+
+TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:fence --load-first";
+    const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", scene), 8);
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    const XConnection stays(screen);  // a server whom everybody left begins anew, with its mouse in the middle
+    handsOn(screen, Viewer::moveTo({900.0, 650.0}));
+    const ViewRun run = runView(work, "hand", small + clickOn(panel, {placeOf("Quit"), {0.9, 0.95}}), scene,
+                                "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 DISPLAY=" + screen.name);
+    INFO(run.outcome.output);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.output.find("VUID") == std::string::npos);
+    CHECK(run.outcome.output.find("no window") == std::string::npos);
+    CHECK(run.frames.size() < 50);  // the script's end comes later
 }
 
 TEST_CASE("Escape, and the window's cross, end it while the headset is off or not looked at") {

@@ -60,7 +60,8 @@ private:
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
-    glm::dvec2 cursor_{0.0};
+    glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
+    bool was_down_ = false;
     std::vector<int> pressed_;  // GLFW's keys, since the last poll
     std::string dropped_;       // likewise
     double wheel_ = 0.0;        // likewise

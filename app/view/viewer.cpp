@@ -279,7 +279,10 @@ void Viewer::layOutPanel(bool hung) {
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
     canvas_.bringLetters(namesOn(pages_, status_));
-    canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
+    // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
+    const CanvasPointer& hand = panel_.pointer();
+    mouse_points_ = hung && hand.place_px ? window_input_.uses_panel && !hand.pressed : mouse_points_ || window_input_.uses_panel;
+    canvas_.begin(mouse_points_ ? window_input_.pointer : hand, stay_->session.stepSeconds());
     obey(drawOverlay(kPanelPx, settings_, pages_, status_));
 }
 

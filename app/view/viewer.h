@@ -72,7 +72,8 @@ private:
     Canvas canvas_;
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
-    vk::Image panel_now_;  // of this frame, where the panel is shown
+    bool mouse_points_ = false;  // on the panel, and not a hand
+    vk::Image panel_now_;        // of this frame, where the panel is shown
     OverlayPanel panel_;
     WearerControls controls_;
     Vignette vignette_;
