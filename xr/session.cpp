@@ -179,9 +179,11 @@ void Session::pollEvents() {
 }
 
 void Session::changeState(XrSessionState state) {
-    state_ = state;
     pace_.interrupt();
     switch (state) {
+        case XR_SESSION_STATE_FOCUSED:
+            ++times_focused_;
+            break;
         case XR_SESSION_STATE_READY: {
             auto info = structure<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
             info.primaryViewConfigurationType = kStereo;
