@@ -510,6 +510,22 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off or no
     }
 }
 
+TEST_CASE("a lost device ends the viewer with three, also beside a window") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:fence --load-first",
+                                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:30:lost DISPLAY=" +
+                                    screen.name);
+    INFO(run.outcome.output);
+    INFO(run.outcome.errors);
+    CHECK(run.outcome.exit_code == 3);
+    CHECK(run.outcome.output.find("no window") == std::string::npos);
+    CHECK(run.outcome.errors.find("DeviceLost") != std::string::npos);
+}
+
 TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
     if (!haveScreen()) { return; }
     for (const bool by_cross : {false, true}) {

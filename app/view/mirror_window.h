@@ -55,7 +55,7 @@ private:
 
     const Context& context_;
     const Canvas& canvas_;
-    GLFWwindow* window_ = nullptr;
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
     std::unique_ptr<WindowPictures> pictures_;
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
