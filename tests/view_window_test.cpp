@@ -1,4 +1,6 @@
 // Facts about the window beside the headset, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
+#include "app/view/mirror_window.h"
+#include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
 #include "tests/panel_sketch.h"
@@ -524,6 +526,36 @@ TEST_CASE("a lost device ends the viewer with three, also beside a window") {
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.output.find("no window") == std::string::npos);
     CHECK(run.outcome.errors.find("DeviceLost") != std::string::npos);
+}
+
+TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    setenv("DISPLAY", screen.name.c_str(), 1);
+    unsetenv("WAYLAND_DISPLAY");
+    const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
+    REQUIRE(windows != nullptr);
+    const std::vector<const char*> pictures{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    const std::string see_window = "DISPLAY=" + screen.name + " xdotool search --name '^binosplat$' > /dev/null";
+    {
+        const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
+        const Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+        MirrorWindow window(context, canvas);
+        window.acquire();
+        const vk::Semaphore first = window.drawn();
+        CHECK(first);
+        for (int given_up = 0; given_up < 10; ++given_up) {
+            window.acquire();
+            CHECK(window.drawn() == first);
+        }
+        CHECK(std::system(see_window.c_str()) == 0);
+    }
+    const Context without_windows({.device = {}, .device_extensions = pictures});
+    const Canvas canvas(without_windows, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+    CHECK_THROWS_AS(MirrorWindow(without_windows, canvas), Error);
+    CHECK(std::system(see_window.c_str()) != 0);
 }
 
 TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
