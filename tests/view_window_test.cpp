@@ -487,9 +487,9 @@ TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     CHECK(run.frames.size() < 50);  // the script's end comes later
 }
 
-TEST_CASE("Escape, and the window's cross, end it while the headset is off or not looked at") {
+TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone") {
     if (!haveScreen()) { return; }
-    for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n"}) {
+    for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n", "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n"}) {
         for (const bool by_cross : {false, true}) {
             CAPTURE(lines);
             CAPTURE(by_cross);

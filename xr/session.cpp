@@ -158,7 +158,7 @@ void Session::pollEvents() {
                 break;
             }
             case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
-                throw InstanceLost(ExitCode::kNoDevice, "the OpenXR runtime is going away");
+                throw InstanceLost(ExitCode::kNoDevice, kGoingAway);
             case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
                 const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
                 if (change.session == session_ && change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) {

@@ -153,6 +153,7 @@ public:
     bool has_stage = true;                          // whether there is a reference space STAGE
     enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
     std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
+    std::uint32_t calls_after_loss = 0;       // likewise, each time after a session was lost
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
     enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1
