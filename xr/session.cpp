@@ -137,8 +137,10 @@ std::string Session::askForRate(double rate_hz) {
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
     const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)));
-    return {};
+    const XrResult result = request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found));
+    if (XR_SUCCEEDED(result)) { return {}; }
+    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
+    return fmt::format("refresh-rate is {:g}, this headset refuses it now ({})", rate_hz, nameOf(result));
 }
 
 void Session::requestExit() {
