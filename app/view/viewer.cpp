@@ -377,7 +377,10 @@ void Viewer::reloadShaders() {
 void Viewer::takePicture() {
     if (renderer_.lastFrame().counters.empty()) { return; }
     try {
-        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), std::filesystem::current_path()));
+        std::error_code error;
+        const std::filesystem::path folder = std::filesystem::current_path(error);
+        check(!error, "the picture cannot be written: the working directory is gone");
+        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), folder));
     } catch (const Error& error) { say(error.what()); }
 }
 
