@@ -138,6 +138,7 @@ public:
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
     double rate_hz = 90.0;
+    bool rate_is_fixed = false;     // what programs ask for is refused
     double irregularity = 0.0;      // of periods, as a share of them
     bool stretches_period = false;  // a frame that missed displays is followed by a stated period of as many as it took
     std::uint32_t images = 3;       // of a swapchain
