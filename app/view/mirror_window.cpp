@@ -127,9 +127,9 @@ WindowInput MirrorWindow::poll() {
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
     const glm::dvec2 size(canvas_.sizePx());
     const double wheel = std::exchange(wheel_, 0.0);
+    const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
     // Where another window lies above this one, the mouse is that one's.
-    const bool is_over = down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE;
-    if (is_over && glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size))) {
+    if (is_over && (down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE)) {
         input.pointer = {place, down, wheel};
         input.uses_panel = cursor != cursor_ || down || was_down_ || wheel != 0.0;
     } else {
