@@ -107,6 +107,13 @@ TEST_CASE("settings of a scene lie in the user's folder, by the file's place and
     CHECK(fileOf("elsewhere/a.ply", "one") != first);
     CHECK(viewSettingsFile((folder / "elsewhere/../a.ply").string()) == fileOf("a.ply", "longer"));
     CHECK(viewSettingsFile((folder / "elsewhere/").string()) == viewSettingsFile((folder / "elsewhere").string()));
+    // Long names are cut between letters: 248 bytes of which each letter has two, and one more before them.
+    std::string letters = "a";
+    for (int i = 0; i < 124; ++i) { letters += "\xc3\xa4"; }
+    const std::string cut = fileOf(letters + ".ply", "one").filename().string();
+    CHECK(cut.size() == 254);
+    CHECK(cut.starts_with(letters.substr(0, 227) + "-"));
+    CHECK(fileOf(letters + ".spz", "one").filename() != cut);
     CHECK(viewSettingsFile("builtin:fence") == "/somewhere/binosplat/scenes/fence.view.toml");
     unsetenv("XDG_CONFIG_HOME");
     setenv("HOME", "/home/of", 1);

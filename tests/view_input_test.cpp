@@ -1,7 +1,8 @@
 // Facts about controllers of several makers: what their buttons do, and what hands feel.
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
-#include "tests/view_runs.h"
+#include "tests/panel_sketch.h"
+#include "tests/view_panel.h"
 
 #include <doctest/doctest.h>
 
@@ -109,6 +110,23 @@ TEST_CASE("bare hands click on the panel and carry it, by either way to tell the
         CHECK(panelPlace(run, 18).y - panelPlace(look, 18).y == doctest::Approx(0.2).epsilon(0.1));
         CHECK(pulses(run) == 0);
         CHECK(run.frames.size() < 55);
+    }
+}
+
+TEST_CASE("what was pressed while the input went elsewhere counts once it was let go") {
+    const Workplace work;
+    const ViewRun look = runWith(work, "oculus/touch_controller", "");
+    const Panel panel = panelOf(look, 10);
+    const std::string at_quit = pointAt(panel, placeOf("Quit"), 0.0), again = "press right trigger 0.4 0.45\n";
+    const auto run = [&](const std::string& lines) { return runWith(work, "oculus/touch_controller", at_quit + lines, "", "none"); };
+    // Another program had the input, or another session of this one.
+    for (const std::string elsewhere : {"at 0.1 focused off\nat 0.2 focused on\n", "at 0.1 lose-session\n"}) {
+        CAPTURE(elsewhere);
+        const std::string held = elsewhere + "press right trigger 0.11 0.35\n";
+        CHECK(run(held).frames.size() > 55);
+        CHECK(run(held + again).frames.size() < 55);
+        CHECK(run(elsewhere + "press right b 0.11 0.35\n").panels(33).size() == 1);
+        CHECK(run(elsewhere + "press right b 0.11 0.35\npress right b 0.4 0.45\n").panels(48).empty());
     }
 }
 

@@ -146,6 +146,18 @@ TEST_CASE("a rate chosen on the panel is the headset's from then on") {
     CHECK(run.frames.back().at("period_ns").get<std::int64_t>() == 8'333'333);
 }
 
+TEST_CASE("a rate that the headset refuses is said, and is no end") {
+    const Workplace work;
+    const ViewRun run = runView(
+        work, "fixed",
+        "rate 90 fixed\n" + kSmall.substr(kSmall.find('\n') + 1) + clickOn(startPanel(work), {placeOf("120 Hz", true), {0.9, 0.95}}),
+        kScene);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.output.find("VUID") == std::string::npos);
+    CHECK(says(run, "refresh-rate is 120, this headset refuses it now (XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB)"));
+    CHECK(run.frames.back().at("period_ns").get<std::int64_t>() > 9'000'000);
+}
+
 TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
     const Workplace work;
     const Panel panel = startPanel(work);

@@ -117,6 +117,19 @@ TEST_CASE("a picture of both eyes is a file that is not overwritten") {
     }
 }
 
+TEST_CASE("a working directory that was deleted takes no picture, and is no end") {
+    const Workplace work;
+    const std::string script = kSmall + clickOn(startPanel(work), {placeOf("Picture"), kBeside});
+    std::ofstream(work.path / "gone.script") << script;
+    const Outcome outcome = work.runCommand(
+        fmt::format("mkdir gone && cd gone && rmdir ../gone && DISPLAY= WAYLAND_DISPLAY= XDG_CONFIG_HOME='{0}/config' '" BINOSPLAT_PROGRAM
+                    "' view builtin:fence --load-first --simulate '{0}/gone.script' --out '{0}/seen'",
+                    work.path.string()));
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.errors == "");
+    CHECK(outcome.output.find("the picture cannot be written: the working directory is gone") != std::string::npos);
+}
+
 TEST_CASE("the wearer recentres by the panel's button") {
     const Workplace work;
     const Panel panel = startPanel(work);

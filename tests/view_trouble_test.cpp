@@ -92,6 +92,20 @@ TEST_CASE("a headset that is not there yet is waited for, with one line") {
     CHECK(outcome.exit_code == 0);
 }
 
+TEST_CASE("a headset that is unplugged is waited for, and the scene goes on with it") {
+    const Workplace work;
+    const ViewRun run = runTrouble(work, "no-headset-for 2 after-loss\nat 0.1 lose-session\nat 0.4 exit\n");
+    CHECK(run.outcome.output.find("the headset is gone: waiting for it") != std::string::npos);
+    CHECK(run.outcome.output.find("the headset is there again") != std::string::npos);
+    CHECK(run.layers(run.frames.size() - 4, "projection").size() == 1);
+    // Ctrl-C ends this wait, too.
+    std::ofstream(work.path / "gone.script") << kSmall << "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
+    const Outcome outcome = work.run(
+        "view builtin:fence --simulate gone.script --out gone > said & child=$!; "
+        "until grep -q 'waiting for it' said || ! kill -0 $child; do :; done; kill -INT $child; wait $child; cat said");
+    CHECK(outcome.exit_code == 0);
+}
+
 TEST_CASE("depth that the runtime offers and refuses is left out, once it is known") {
     const Workplace work;
     for (const char* what : {"images", "layers"}) {

@@ -1,7 +1,10 @@
 // Facts about the window beside the headset, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
+#include "app/view/mirror_window.h"
+#include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
 #include "tests/panel_sketch.h"
+#include "tests/view_panel.h"
 #include "tests/view_runs.h"
 
 #include <dlfcn.h>
@@ -181,30 +184,37 @@ public:
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
         constexpr unsigned long kResourceManager = 23, kString = 31;
-        const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
-            display_, root, kResourceManager, kString, 8, 0, resources.c_str(), static_cast<int>(resources.size()));
+        setText(root(), kResourceManager, kString, resources);
         find<int (*)(void*, int)>("XSync")(display_, 0);
     }
     // What a window manager does when somebody clicks on the cross: a message that the window may obey.
-    void clickCross(unsigned long window) const {
-        // Xlib's XClientMessageEvent, within its XEvent of 24 longs.
-        struct {
-            int type = 33;
-            unsigned long serial = 0;
-            int is_sent = 1;
-            void* display = nullptr;
-            unsigned long window = 0, kind = 0;
-            int format = 32;
-            std::array<long, 17> data{};
-        } message;
-        const auto atomOf = find<unsigned long (*)(void*, const char*, int)>("XInternAtom");
-        message.display = display_;
-        message.window = window;
-        message.kind = atomOf(display_, "WM_PROTOCOLS", 0);
-        message.data[0] = static_cast<long>(atomOf(display_, "WM_DELETE_WINDOW", 0));
-        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, &message) != 0);
-        find<int (*)(void*, int)>("XSync")(display_, 0);
+    void clickCross(unsigned long window) const { send(window, messageTo(window, "WM_PROTOCOLS", {atomOf("WM_DELETE_WINDOW")})); }
+    // What a file manager does when somebody lets a file fall on the window (XDND, version 5). Whether the window took it.
+    [[nodiscard]] bool drop(unsigned long window, const std::string& address) const {
+        const unsigned long source =
+            find<unsigned long (*)(void*, unsigned long, int, int, unsigned, unsigned, unsigned, unsigned long, unsigned long)>(
+                "XCreateSimpleWindow")(display_, root(), 0, 0, 1, 1, 0, 0, 0);
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long)>("XSetSelectionOwner")(display_, atomOf("XdndSelection"), source,
+                                                                                                0);
+        send(window, messageTo(window, "XdndEnter", {source, 5UL << 24, atomOf("text/uri-list")}));
+        send(window, messageTo(window, "XdndPosition", {source, 0, 0, 0, atomOf("XdndActionCopy")}));
+        for (Event event; receive(event);) {
+            if (event.type == Event::kSelectionRequest) {
+                const unsigned long asker = event.words[1], selection = event.words[2], format = event.words[3], property = event.words[4];
+                setText(asker, property, format, address + "\r\n");
+                Event answer;
+                answer.type = Event::kSelectionNotify;
+                answer.display = display_;
+                answer.words = {asker, selection, format, property, event.words[5]};
+                send(asker, answer);
+            } else if (event.words[1] == atomOf("XdndStatus")) {
+                if ((event.words[4] & 1) == 0) { return false; }
+                send(window, messageTo(window, "XdndDrop", {source}));
+            } else if (event.words[1] == atomOf("XdndFinished")) {
+                return (event.words[4] & 1) != 0;
+            }
+        }
+        return false;
     }
     // What the window tells a window manager: whether its size may change, and whether its shape stays.
     [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
@@ -220,6 +230,46 @@ public:
     }
 
 private:
+    // Xlib's XEvent, of 24 longs, which all begin alike.
+    struct Event {
+        static constexpr int kSelectionRequest = 30, kSelectionNotify = 31, kClientMessage = 33;
+        int type = 0;
+        unsigned long serial = 0;
+        int is_sent = 1;
+        void* display = nullptr;
+        std::array<unsigned long, 20> words{};  // of messages: to which window, kind, bits of a number, numbers
+    };
+
+    [[nodiscard]] unsigned long atomOf(const char* name) const {
+        return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
+    }
+    [[nodiscard]] unsigned long root() const { return find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_); }
+    void setText(unsigned long window, unsigned long property, unsigned long format, const std::string& text) const {
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
+            display_, window, property, format, 8, 0, text.c_str(), static_cast<int>(text.size()));
+    }
+    [[nodiscard]] Event messageTo(unsigned long window, const char* kind, std::initializer_list<unsigned long> numbers) const {
+        Event message;
+        message.type = Event::kClientMessage;
+        message.display = display_;
+        message.words = {window, atomOf(kind), 32};
+        std::ranges::copy(numbers, message.words.begin() + 3);
+        return message;
+    }
+    void send(unsigned long window, Event event) const {
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, &event) != 0);
+        find<int (*)(void*, int)>("XSync")(display_, 0);
+    }
+    // The next event; false if none comes.
+    bool receive(Event& event) const {
+        pollfd waits{find<int (*)(void*)>("XConnectionNumber")(display_), POLLIN, 0};
+        while (find<int (*)(void*)>("XPending")(display_) == 0) {
+            if (::poll(&waits, 1, kPatienceMs) != 1) { return false; }
+        }
+        find<int (*)(void*, void*)>("XNextEvent")(display_, &event);
+        return true;
+    }
+
     template <typename Function>
     Function find(const char* name) const {
         const auto function = reinterpret_cast<Function>(dlsym(library_, name));
@@ -466,9 +516,27 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     CHECK(coloursOfPanel(screen) > 10);
 }
 
-TEST_CASE("Escape, and the window's cross, end it while the headset is off or not looked at") {
+TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     if (!haveScreen()) { return; }
-    for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n"}) {
+    const Workplace work;
+    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:fence --load-first";
+    const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", scene), 8);
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    const XConnection stays(screen);  // a server whom everybody left begins anew, with its mouse in the middle
+    handsOn(screen, Viewer::moveTo({900.0, 650.0}));
+    const ViewRun run = runView(work, "hand", small + clickOn(panel, {placeOf("Quit"), {0.9, 0.95}}), scene,
+                                "XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 DISPLAY=" + screen.name);
+    INFO(run.outcome.output);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.output.find("VUID") == std::string::npos);
+    CHECK(run.outcome.output.find("no window") == std::string::npos);
+    CHECK(run.frames.size() < 50);  // the script's end comes later
+}
+
+TEST_CASE("Escape, and the window's cross, end it while the headset is off, not looked at or gone") {
+    if (!haveScreen()) { return; }
+    for (const char* lines : {"at -1 worn off\n", "at -1 visible off\n", "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n"}) {
         for (const bool by_cross : {false, true}) {
             CAPTURE(lines);
             CAPTURE(by_cross);
@@ -489,6 +557,66 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off or no
             CHECK(viewer.program().said().find("VUID") == std::string::npos);
         }
     }
+}
+
+TEST_CASE("a scene that is let fall on the window is shown") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    REQUIRE(work.run("scene step-edge --out 'a room.ply'").exit_code == 0);
+    std::ofstream(work.path / "rest.script") << "rate 90\nsize 96 96\nframes none\n";
+    Viewer viewer(work, "--simulate rest.script --out seen");
+    const unsigned long window = numberOfWindow(viewer.screen(), "^binosplat$", "WINDOW");
+    CHECK(viewer.connection().drop(window, "file://" + work.path.string() + "/a%20room.ply"));
+    CHECK(viewer.program().waitFor("shows " + work.path.string() + "/a room.ply") != "");
+    viewer.hands("key Escape");
+    CHECK(viewer.program().exitCode() == 0);
+    CHECK(viewer.program().said().find("VUID") == std::string::npos);
+}
+
+TEST_CASE("a lost device ends the viewer with three, also beside a window") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:fence --load-first",
+                                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:30:lost DISPLAY=" +
+                                    screen.name);
+    INFO(run.outcome.output);
+    INFO(run.outcome.errors);
+    CHECK(run.outcome.exit_code == 3);
+    CHECK(run.outcome.output.find("no window") == std::string::npos);
+    CHECK(run.outcome.errors.find("DeviceLost") != std::string::npos);
+}
+
+TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    setenv("DISPLAY", screen.name.c_str(), 1);
+    unsetenv("WAYLAND_DISPLAY");
+    const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
+    REQUIRE(windows != nullptr);
+    const std::vector<const char*> pictures{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    const std::string see_window = "DISPLAY=" + screen.name + " xdotool search --name '^binosplat$' > /dev/null";
+    {
+        const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
+        const Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+        MirrorWindow window(context, canvas);
+        window.acquire();
+        const vk::Semaphore first = window.drawn();
+        CHECK(first);
+        for (int given_up = 0; given_up < 10; ++given_up) {
+            window.acquire();
+            CHECK(window.drawn() == first);
+        }
+        CHECK(std::system(see_window.c_str()) == 0);
+    }
+    const Context without_windows({.device = {}, .device_extensions = pictures});
+    const Canvas canvas(without_windows, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+    CHECK_THROWS_AS(MirrorWindow(without_windows, canvas), Error);
+    CHECK(std::system(see_window.c_str()) != 0);
 }
 
 TEST_CASE("Escape, and the window's cross, end the wait for a headset") {

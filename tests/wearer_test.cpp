@@ -199,6 +199,44 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
     CHECK(glm::distance(scene_from_room.position, before.position) > 1.0);
 }
 
+TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
+    OverlayPanel panel({800, 400}, 0.8);
+    WearerControls controls;
+    ViewSettings settings;
+    settings.panel = false;
+    WearerNow now;
+    // Turns by 30 degrees since the last one.
+    const auto turns = [&](const glm::dvec2& stick) {
+        Similarity scene_from_room;
+        now.hands[kRight].stick = stick;
+        controls.update(now, panel, settings, scene_from_room);
+        return std::lround(2.0 * std::atan2(scene_from_room.orientation.y, scene_from_room.orientation.w) / 0.5235987755982988);
+    };
+    CHECK(turns({0.9, 0.0}) == 1);
+    CHECK(turns({0.6, 0.7}) == 0);  // rises and sinks here
+    CHECK(turns({0.9, 0.0}) == 0);
+    CHECK(turns({0.3, 0.7}) == 0);
+    CHECK(turns({0.9, 0.0}) == 1);
+    CHECK(turns({0.0, 0.0}) == 0);
+    CHECK(turns({-0.9, 0.0}) == -1);
+}
+
+TEST_CASE("a trigger that was pressed while nobody looked counts once it was let go") {
+    xr::Hold hold;
+    for (const double value : {1.0, 0.4}) { CHECK_FALSE(hold.update(value)); }
+    CHECK_FALSE(hold.update(0.2));
+    for (const double value : {0.6, 0.4}) { CHECK(hold.update(value)); }
+    CHECK_FALSE(hold.update(0.2));
+    CHECK(hold.update(0.6));
+    // Nor what the controller did that could not be seen.
+    CHECK_FALSE(hold.update(std::nullopt));
+    CHECK_FALSE(hold.update(0.6));
+    CHECK_FALSE(hold.update(0.0));
+    CHECK(hold.update(0.6));
+    hold.forget();
+    CHECK_FALSE(hold.update(0.6));
+}
+
 TEST_CASE("the vignette closes while the wearer moves, covers all that the eyes see, and is gone afterwards") {
     Vignette vignette;
     for (const float angle_rad : {0.6f, 0.8f, 1.1f}) {

@@ -7,7 +7,7 @@
 
 namespace binosplat::xr {
 
-// The session is gone; the runtime may give another one.
+// The session is gone, or the headset; the runtime may give another one.
 class Lost : public Error {
 public:
     using Error::Error;
@@ -21,6 +21,8 @@ public:
 
 // "XR_ERROR_SESSION_LOST", or the number of a result that this build does not know.
 std::string nameOf(XrResult result);
+
+inline constexpr const char* kGoingAway = "the OpenXR runtime is going away";
 
 // Returns `result` if it is a success of any kind. Throws Lost or InstanceLost where that is so, Error (exit code 3, of memory 1)
 // otherwise, with the name of the function in `call`.

@@ -5,6 +5,7 @@
 #include "xr/convert.h"
 
 #include <cstring>
+#include <utility>
 
 namespace binosplat::xr {
 namespace {
@@ -118,7 +119,16 @@ std::array<Hand, 2> Input::read() {
     auto sync = structure<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
     sync.countActiveActionSets = 1;
     sync.activeActionSets = &active;
-    if (BINOSPLAT_XR(xrSyncActions(session_.handle(), &sync)) == XR_SESSION_NOT_FOCUSED) { return hands; }
+    const bool is_focused = BINOSPLAT_XR(xrSyncActions(session_.handle(), &sync)) != XR_SESSION_NOT_FOCUSED;
+    const bool was_at_rest = std::exchange(is_at_rest_, !is_focused);
+    const bool is_new = std::exchange(times_focused_, session_.timesFocused()) != session_.timesFocused();
+    if (!is_focused || is_new) {
+        for (auto* holds : {&clicks_, &grabs_, &menus_}) {
+            for (Hold& hold : *holds) { hold.forget(); }
+        }
+    }
+    // Where the focus went and came back between two frames, hands rest in one all the same, so that nothing is let go in its place.
+    if (!is_focused || (is_new && !was_at_rest)) { return hands; }
     for (std::size_t h = 0; h < 2; ++h) {
         hands[h].aim = locate(aim_, hands_[h], aim_spaces_[h], kKnown);
         hands[h].grip = locate(grip_, hands_[h], grip_spaces_[h], kKnown);
@@ -127,7 +137,8 @@ std::array<Hand, 2> Input::read() {
         hands[h].grabs = grabs_[h].update(readNumber(squeeze_, hands_[h]));
         // A pad that only feels the thumb is at rest.
         if (readButton(stick_click_, hands_[h]).value_or(true)) { hands[h].stick = readStick(hands_[h]); }
-        hands[h].menu = readButton(menu_, hands_[h]).value_or(false);
+        const std::optional<bool> menu = readButton(menu_, hands_[h]);
+        hands[h].menu = menus_[h].update(menu ? std::optional(*menu ? 1.0 : 0.0) : std::nullopt);
     }
     return hands;
 }
@@ -169,13 +180,14 @@ glm::dvec2 Input::readStick(XrPath hand) const {
     return state.isActive == XR_TRUE ? glm::dvec2(glm::vec2(state.currentState.x, state.currentState.y)) : glm::dvec2(0.0);
 }
 
-double Input::readNumber(XrAction action, XrPath hand) const {
+std::optional<double> Input::readNumber(XrAction action, XrPath hand) const {
     auto get = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
     get.action = action;
     get.subactionPath = hand;
     auto state = structure<XrActionStateFloat>(XR_TYPE_ACTION_STATE_FLOAT);
     BINOSPLAT_XR(xrGetActionStateFloat(session_.handle(), &get, &state));
-    return state.isActive == XR_TRUE ? static_cast<double>(state.currentState) : 0.0;
+    if (state.isActive != XR_TRUE) { return std::nullopt; }
+    return static_cast<double>(state.currentState);
 }
 
 std::optional<Pose> Input::locate(XrAction action, XrPath hand, XrSpace space, XrSpaceLocationFlags needed) const {

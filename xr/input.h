@@ -19,14 +19,21 @@ struct Hand {
     bool menu = false;
 };
 
-// Whether a trigger or a grip is pressed, which shivers about any limit: on from more than it goes off below.
+// Whether a trigger or a grip is pressed, which shivers about any limit: on from more than it goes off below. Who was not looked at may
+// have been pressed for something else: that counts once it has been seen released.
 class Hold {
 public:
-    bool update(double value) { return held_ = value > (held_ ? kUntil : kFrom); }
+    // Empty: nobody can tell.
+    bool update(std::optional<double> value) {
+        if (!value) { forget(); }
+        was_released_ = was_released_ || (value && *value <= kUntil);
+        return held_ = was_released_ && *value > (held_ ? kUntil : kFrom);
+    }
+    void forget() { held_ = was_released_ = false; }
 
 private:
     static constexpr double kFrom = 0.5, kUntil = 0.3;
-    bool held_ = false;
+    bool held_ = false, was_released_ = false;
 };
 
 class Input {
@@ -50,8 +57,9 @@ private:
     [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;
     void suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
-    [[nodiscard]] double readNumber(XrAction action, XrPath hand) const;
-    [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;  // empty: there is none
+    // Empty: there is none.
+    [[nodiscard]] std::optional<double> readNumber(XrAction action, XrPath hand) const;
+    [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;
     [[nodiscard]] glm::dvec2 readStick(XrPath hand) const;
     // Empty unless the location has all of `needed`.
     [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, XrSpace space, XrSpaceLocationFlags needed) const;
@@ -65,7 +73,9 @@ private:
     XrSpace gaze_space_ = XR_NULL_HANDLE;
     std::array<XrPath, 2> hands_{};
     std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
-    std::array<Hold, 2> clicks_, grabs_;
+    std::array<Hold, 2> clicks_, grabs_, menus_;
+    int times_focused_ = 0;    // of the session, as of the last read()
+    bool is_at_rest_ = false;  // likewise
 };
 
 }  // namespace binosplat::xr

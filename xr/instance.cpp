@@ -38,6 +38,12 @@ std::vector<XrExtensionProperties> listExtensions() {
     return extensions;
 }
 
+XrResult getSystem(XrInstance instance, XrSystemId& system) {
+    auto wanted = structure<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
+    wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+    return xrGetSystem(instance, &wanted, &system);
+}
+
 }  // namespace
 
 Instance::Instance(const InstanceOptions& options) {
@@ -46,6 +52,7 @@ Instance::Instance(const InstanceOptions& options) {
     create(options);
     try {
         findSystem(options);
+        readSystem();
         readViews();
     } catch (...) {
         xrDestroyInstance(instance_);
@@ -66,15 +73,15 @@ void Instance::create(const InstanceOptions& options) {
     takes_depth_ = has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     has_visibility_mask_ = options.visibility_mask && has(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     has_local_floor_ = has(kLocalFloorExtension);
-    tracks_hands_ = has(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
-    tracks_eyes_ = options.eye_tracking && has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    knows_hands_ = has(XR_EXT_HAND_TRACKING_EXTENSION_NAME);
+    knows_eyes_ = options.eye_tracking && has(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
     has_refresh_rates_ = has(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME);
     std::vector<const char*> extensions{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
     if (takes_depth_) { extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
     if (has_local_floor_) { extensions.push_back(kLocalFloorExtension); }
     if (has_refresh_rates_) { extensions.push_back(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME); }
-    if (tracks_hands_) { extensions.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME); }
-    if (tracks_eyes_) { extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
+    if (knows_hands_) { extensions.push_back(XR_EXT_HAND_TRACKING_EXTENSION_NAME); }
+    if (knows_eyes_) { extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME); }
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension == nullptr || !has(profile.extension)) { continue; }
         if (controller_extensions_.insert(profile.extension).second) { extensions.push_back(profile.extension); }
@@ -95,25 +102,46 @@ void Instance::create(const InstanceOptions& options) {
 void Instance::findSystem(const InstanceOptions& options) {
     auto runtime = structure<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
     BINOSPLAT_XR(xrGetInstanceProperties(instance_, &runtime));
-    auto wanted = structure<XrSystemGetInfo>(XR_TYPE_SYSTEM_GET_INFO);
-    wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-    XrResult result = xrGetSystem(instance_, &wanted, &system_);
+    runtime_name_ = runtime.runtimeName;
+    XrResult result = getSystem(instance_, system_);
     while (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE && options.wait_for_headset) {
-        options.wait_for_headset(runtime.runtimeName);
-        result = xrGetSystem(instance_, &wanted, &system_);
+        options.wait_for_headset(runtime_name_);
+        result = getSystem(instance_, system_);
     }
-    if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime.runtimeName), result); }
+    if (XR_FAILED(result)) { refuse(fmt::format("no headset: the OpenXR runtime {} offers none", runtime_name_), result); }
+}
+
+bool Instance::findHeadset(const Context& context) {
+    // Nobody is left for whom they were, but that the runtime itself goes away.
+    for (;;) {
+        auto event = structure<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
+        if (BINOSPLAT_XR(xrPollEvent(instance_, &event)) == XR_EVENT_UNAVAILABLE) { break; }
+        if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) { throw InstanceLost(ExitCode::kNoDevice, kGoingAway); }
+    }
+    const XrResult result = getSystem(instance_, system_);
+    if (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE) { return false; }
+    checkResult(result, "xrGetSystem");
+    readSystem();
+    readViews();
+    static_cast<void>(leastVulkan());
+    if (vk::PhysicalDevice(graphicsDevice(*context.instance())) != *context.physicalDevice()) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{} is on another graphics device than before: start anew", description_));
+    }
+    return true;
+}
+
+void Instance::readSystem() {
     auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
     auto hands = structure<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
     auto eyes = structure<XrSystemEyeGazeInteractionPropertiesEXT>(XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT);
     // One after the other: OpenXR's own validation layer refuses a chain of two.
-    for (const auto& [has, chained] : {std::pair<bool, void*>(tracks_hands_, &hands), std::pair<bool, void*>(tracks_eyes_, &eyes)}) {
+    for (const auto& [has, chained] : {std::pair<bool, void*>(knows_hands_, &hands), std::pair<bool, void*>(knows_eyes_, &eyes)}) {
         properties.next = has ? chained : nullptr;
         BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
     }
-    tracks_hands_ = tracks_hands_ && hands.supportsHandTracking == XR_TRUE;
-    tracks_eyes_ = tracks_eyes_ && eyes.supportsEyeGazeInteraction == XR_TRUE;
-    description_ = fmt::format("{}: {}", runtime.runtimeName, properties.systemName);
+    tracks_hands_ = knows_hands_ && hands.supportsHandTracking == XR_TRUE;
+    tracks_eyes_ = knows_eyes_ && eyes.supportsEyeGazeInteraction == XR_TRUE;
+    description_ = fmt::format("{}: {}", runtime_name_, properties.systemName);
 }
 
 void Instance::readViews() {
@@ -123,6 +151,7 @@ void Instance::readViews() {
     if (XR_FAILED(result)) { refuse(fmt::format("{} does not show two eyes", description_), result); }
     std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
     BINOSPLAT_XR(xrEnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()));
+    recommended_size_px_ = glm::uvec2(0);
     max_size_px_ = glm::uvec2(UINT32_MAX);
     for (const XrViewConfigurationView& view : views) {
         recommended_size_px_ = glm::max(recommended_size_px_, glm::uvec2(view.recommendedImageRectWidth, view.recommendedImageRectHeight));
@@ -132,10 +161,26 @@ void Instance::readViews() {
     std::vector<XrEnvironmentBlendMode> modes(count);
     BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()));
     const auto has = [&](XrEnvironmentBlendMode mode) { return std::ranges::find(modes, mode) != modes.end(); };
-    if (!has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) && !modes.empty()) { blend_mode_ = modes.front(); }
+    blend_mode_ = has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) || modes.empty() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
+    see_through_.reset();
     for (const XrEnvironmentBlendMode mode : {XR_ENVIRONMENT_BLEND_MODE_ADDITIVE, XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND}) {
         if (has(mode)) { see_through_ = mode; }
     }
+}
+
+XrVersion Instance::leastVulkan() const {
+    auto needs = structure<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
+    BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR")(instance_, system_, &needs));
+    return needs.minApiVersionSupported;
+}
+
+VkPhysicalDevice Instance::graphicsDevice(VkInstance vulkan_instance) const {
+    auto info = structure<XrVulkanGraphicsDeviceGetInfoKHR>(XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
+    info.systemId = system_;
+    info.vulkanInstance = vulkan_instance;
+    VkPhysicalDevice chosen = VK_NULL_HANDLE;
+    BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsDevice2KHR>("xrGetVulkanGraphicsDevice2KHR")(instance_, &info, &chosen));
+    return chosen;
 }
 
 DeviceMaker Instance::deviceMaker() const {
@@ -145,15 +190,13 @@ DeviceMaker Instance::deviceMaker() const {
     };
     DeviceMaker maker;
     maker.create_instance = [this, refuseVulkan](PFN_vkGetInstanceProcAddr get_address, const VkInstanceCreateInfo& vulkan_info) {
-        auto needs = structure<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
-        BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR")(instance_, system_, &needs));
+        const XrVersion least = leastVulkan();
         const std::uint32_t wanted = vulkan_info.pApplicationInfo->apiVersion;
         const XrVersion version = XR_MAKE_VERSION(VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted), 0);
-        if (version < needs.minApiVersionSupported) {
+        if (version < least) {
             throw Error(ExitCode::kNoDevice,
-                        fmt::format("{} needs Vulkan {}.{} or newer, this program uses {}.{}", description_,
-                                    XR_VERSION_MAJOR(needs.minApiVersionSupported), XR_VERSION_MINOR(needs.minApiVersionSupported),
-                                    VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted)));
+                        fmt::format("{} needs Vulkan {}.{} or newer, this program uses {}.{}", description_, XR_VERSION_MAJOR(least),
+                                    XR_VERSION_MINOR(least), VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted)));
         }
         auto info = structure<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
         info.systemId = system_;
@@ -165,14 +208,7 @@ DeviceMaker Instance::deviceMaker() const {
         refuseVulkan(result, "xrCreateVulkanInstanceKHR");
         return created;
     };
-    maker.choose_device = [this](VkInstance vulkan_instance) {
-        auto info = structure<XrVulkanGraphicsDeviceGetInfoKHR>(XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
-        info.systemId = system_;
-        info.vulkanInstance = vulkan_instance;
-        VkPhysicalDevice chosen = VK_NULL_HANDLE;
-        BINOSPLAT_XR(function<PFN_xrGetVulkanGraphicsDevice2KHR>("xrGetVulkanGraphicsDevice2KHR")(instance_, &info, &chosen));
-        return chosen;
-    };
+    maker.choose_device = [this](VkInstance vulkan_instance) { return graphicsDevice(vulkan_instance); };
     maker.create_device = [this, refuseVulkan](PFN_vkGetInstanceProcAddr get_address, VkPhysicalDevice physical_device,
                                                const VkDeviceCreateInfo& vulkan_info) {
         auto info = structure<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);

@@ -35,6 +35,10 @@ public:
     // Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset, and what
     // `wait_for_headset` throws.
     explicit Instance(const InstanceOptions& options = {});
+    // After a session is lost, which may mean that the headset was unplugged: finds it anew, or another one in its place, for a session on
+    // `context`. False while there is none. Throws Lost, InstanceLost, and Error (exit code 3) where the headset is on another graphics
+    // device now.
+    bool findHeadset(const Context& context);
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
     ~Instance();
@@ -78,11 +82,17 @@ public:
 private:
     void create(const InstanceOptions& options);
     void findSystem(const InstanceOptions& options);
+    // What the headset of system_ has.
+    void readSystem();
     void readViews();
+    // What the runtime wants to be asked of Vulkan, for each headset.
+    [[nodiscard]] XrVersion leastVulkan() const;
+    [[nodiscard]] VkPhysicalDevice graphicsDevice(VkInstance vulkan_instance) const;
 
     XrInstance instance_ = XR_NULL_HANDLE;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
-    std::string description_;
+    std::string runtime_name_, description_;
+    bool knows_hands_ = false, knows_eyes_ = false;  // the runtime, with some headset or other
     bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false, tracks_hands_ = false,
          tracks_eyes_ = false;
     std::set<std::string> controller_extensions_;

@@ -137,8 +137,10 @@ std::string Session::askForRate(double rate_hz) {
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
     const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    BINOSPLAT_XR(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)));
-    return {};
+    const XrResult result = request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found));
+    if (XR_SUCCEEDED(result)) { return {}; }
+    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
+    return fmt::format("refresh-rate is {:g}, this headset refuses it now ({})", rate_hz, nameOf(result));
 }
 
 void Session::requestExit() {
@@ -158,7 +160,7 @@ void Session::pollEvents() {
                 break;
             }
             case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
-                throw InstanceLost(ExitCode::kNoDevice, "the OpenXR runtime is going away");
+                throw InstanceLost(ExitCode::kNoDevice, kGoingAway);
             case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING: {
                 const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
                 if (change.session == session_ && change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL) {
@@ -179,9 +181,11 @@ void Session::pollEvents() {
 }
 
 void Session::changeState(XrSessionState state) {
-    state_ = state;
     pace_.interrupt();
     switch (state) {
+        case XR_SESSION_STATE_FOCUSED:
+            ++times_focused_;
+            break;
         case XR_SESSION_STATE_READY: {
             auto info = structure<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
             info.primaryViewConfigurationType = kStereo;

@@ -75,8 +75,8 @@ public:
     // How far below the room's origin the floor lies, in metres; empty where the runtime does not know.
     [[nodiscard]] std::optional<double> floorBelowMetres() const;
 
-    // Whether input comes to this program.
-    [[nodiscard]] bool isFocused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
+    // How often input has begun to come to this program.
+    [[nodiscard]] int timesFocused() const { return times_focused_; }
     [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
 
     [[nodiscard]] XrSession handle() const { return session_; }
@@ -112,7 +112,7 @@ private:
     XrSession session_ = XR_NULL_HANDLE;
     XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE;
     XrSpace floor_ = XR_NULL_HANDLE;  // on the floor, somewhere; null: the runtime has none
-    XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
+    int times_focused_ = 0;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;

@@ -1,6 +1,7 @@
 // Dear ImGui's Vulkan backend, set up for one picture.
 #include "app/view/canvas.h"
 
+#include "app/view/panel_font.h"
 #include "app/view/panel_style.h"
 #include "engine/error.h"
 
@@ -35,6 +36,8 @@ Canvas::~Canvas() {
     ImGui_ImplVulkan_Shutdown();
     ImGui::DestroyContext();
 }
+
+const std::string& Canvas::fontComplaint() const { return font_->complaint(); }
 
 void Canvas::makeImage(vk::Format format) {
     using Usage = vk::ImageUsageFlagBits;

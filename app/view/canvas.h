@@ -2,7 +2,6 @@
 // copies are raw: an sRGB image shows them as they are.
 #pragma once
 
-#include "app/view/panel_font.h"
 #include "engine/gpu/commands.h"
 
 #include <glm/glm.hpp>
@@ -13,6 +12,8 @@
 #include <string_view>
 
 namespace binosplat {
+
+class PanelFont;
 
 // What points at the canvas.
 struct CanvasPointer {
@@ -39,7 +40,7 @@ public:
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // Why the small built-in font is used; empty: it is not.
-    [[nodiscard]] const std::string& fontComplaint() const { return font_->complaint(); }
+    [[nodiscard]] const std::string& fontComplaint() const;
     [[nodiscard]] vk::Image image() const { return *image_; }
 
 private:

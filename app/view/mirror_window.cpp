@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -62,45 +63,47 @@ std::vector<const char*> WindowSystem::instanceExtensions() {
     return names == nullptr ? std::vector<const char*>{} : std::vector<const char*>(names, names + count);
 }
 
-MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas) : context_(context), canvas_(canvas) {
+MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas)
+    : context_(context), canvas_(canvas), window_(nullptr, glfwDestroyWindow) {
     check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr);
+    window_.reset(glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr));
     check(window_ != nullptr, "the window does not open");
-    glfwSetWindowAspectRatio(window_, widthOf(canvas), kHeightPx);
+    glfwSetWindowAspectRatio(window_.get(), widthOf(canvas), kHeightPx);
     // What was let go before the next frame still counts once.
-    glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
-    glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
-    glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    glfwSetInputMode(window_.get(), GLFW_STICKY_KEYS, GLFW_TRUE);
+    glfwSetInputMode(window_.get(), GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+    glfwSetWindowUserPointer(window_.get(), this);
+    glfwSetKeyCallback(window_.get(), [](GLFWwindow* window, int key, int, int action, int) {
         if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
     });
-    glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double steps) {
+    glfwSetScrollCallback(window_.get(), [](GLFWwindow* window, double, double steps) {
         static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->wheel_ += steps;
     });
-    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    glfwSetDropCallback(window_.get(), [](GLFWwindow* window, int count, const char** paths) {
         if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
     });
     VkSurfaceKHR surface = VK_NULL_HANDLE;
-    const VkResult result = glfwCreateWindowSurface(*context.instance(), window_, nullptr, &surface);
+    const VkResult result = glfwCreateWindowSurface(*context.instance(), window_.get(), nullptr, &surface);
     check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
     pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), surface), [this] {
         int width = 0, height = 0;
-        glfwGetFramebufferSize(window_, &width, &height);
+        glfwGetFramebufferSize(window_.get(), &width, &height);
         return glm::uvec2(width, height);
     });
 }
 
 MirrorWindow::~MirrorWindow() {
-    context_.device().waitIdle();
-    pictures_.reset();
-    glfwDestroyWindow(window_);
+    const std::lock_guard lock(context_.queueMutex());
+    try {
+        context_.device().waitIdle();
+    } catch (const vk::SystemError&) {}  // a device that is lost draws nothing more
 }
 
 WindowInput MirrorWindow::poll() {
     glfwPollEvents();
-    const auto pressed = [&](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
+    const auto pressed = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
     WindowInput input;
     for (const int key : std::exchange(pressed_, {})) {
         input.toggle_panel ^= key == GLFW_KEY_TAB;
@@ -109,32 +112,36 @@ WindowInput MirrorWindow::poll() {
         input.quit |= key == GLFW_KEY_ESCAPE;
     }
     input.dropped = std::exchange(dropped_, {});
-    input.quit |= glfwWindowShouldClose(window_) == GLFW_TRUE;
+    input.quit |= glfwWindowShouldClose(window_.get()) == GLFW_TRUE;
     input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
                   pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
     input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
     glm::dvec2 cursor;
-    glfwGetCursorPos(window_, &cursor.x, &cursor.y);
+    glfwGetCursorPos(window_.get(), &cursor.x, &cursor.y);
     // A compositor may make the window another size than was asked for.
     int width = 0, height = 0;
-    glfwGetWindowSize(window_, &width, &height);
+    glfwGetWindowSize(window_.get(), &width, &height);
     cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
-    const bool down = glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const bool down = glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
     const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
     const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
     const glm::dvec2 size(canvas_.sizePx());
     const double wheel = std::exchange(wheel_, 0.0);
-    if (glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size))) {
+    const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
+    // Where another window lies above this one, the mouse is that one's.
+    if (is_over && (down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE)) {
         input.pointer = {place, down, wheel};
+        input.uses_panel = cursor != cursor_ || down || was_down_ || wheel != 0.0;
     } else {
         input.wheel = wheel;
         // The picture follows the mouse.
         if (down) { input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x); }
-        if (glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+        if (glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
             input.tilt_rad = kRadiansPerPixel * glm::dvec2(cursor.x - cursor_.x, cursor_.y - cursor.y);
         }
     }
     cursor_ = cursor;
+    was_down_ = down;
     return input;
 }
 

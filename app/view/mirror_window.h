@@ -55,12 +55,13 @@ private:
 
     const Context& context_;
     const Canvas& canvas_;
-    GLFWwindow* window_ = nullptr;
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
     std::unique_ptr<WindowPictures> pictures_;
     vk::raii::DeviceMemory eye_memory_{nullptr};
     vk::raii::Image eye_{nullptr};
     glm::uvec2 eye_px_{0, 0};
-    glm::dvec2 cursor_{0.0};
+    glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
+    bool was_down_ = false;
     std::vector<int> pressed_;  // GLFW's keys, since the last poll
     std::string dropped_;       // likewise
     double wheel_ = 0.0;        // likewise

@@ -27,7 +27,8 @@ Image besideOneAnother(const Image& left, const Image& right) {
 std::string freePictureName(const std::filesystem::path& folder) {
     for (int number = 1;; ++number) {
         const std::string name = fmt::format("binosplat-{:04}", number);
-        if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)))) { return name; }
+        std::error_code ignored;  // what cannot be looked at is not written either, and that says why
+        if (!std::filesystem::exists(folder / (name + extensionOf(PictureKind::kDisplay)), ignored)) { return name; }
     }
 }
 

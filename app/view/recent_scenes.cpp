@@ -43,7 +43,9 @@ std::vector<std::string> recentScenes() {
 }
 
 void rememberScene(const std::string& scene) {
-    const std::string whole = isBuiltin(scene) ? scene : fs::absolute(scene).lexically_normal().string();
+    std::error_code error;
+    const std::string whole = isBuiltin(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
+    check(!error, "{}: not remembered, the working directory is gone", scene);
     if (whole.find('\n') != std::string::npos) { return; }  // it would be two
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);
     if (after == before) { return; }

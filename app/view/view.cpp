@@ -42,7 +42,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
     if (window->wait(kBetweenLooks)) { throw Interrupted{SIGINT}; }
 }
 
-void showScene(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance) {
+void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance) {
     ContextOptions context_options = contextOptions(options.run);
     context_options.maker = instance.deviceMaker();
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();

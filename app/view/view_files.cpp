@@ -7,6 +7,8 @@
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 
+#include <algorithm>
+
 namespace binosplat {
 
 namespace {
@@ -20,6 +22,14 @@ std::uint64_t fingerprint(const std::string& text) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3; }
     return hash;
+}
+
+// Names of files have at most 255 bytes. Cut between letters (UTF-8); scenes whose names begin alike differ in their fingerprints.
+std::string withRoomFor(std::size_t more_bytes, std::string name) {
+    std::size_t bytes = std::min(name.size(), std::size_t{255} - more_bytes);
+    while (bytes > 0 && bytes < name.size() && (static_cast<std::uint8_t>(name[bytes]) & 0xc0) == 0x80) { --bytes; }
+    name.resize(bytes);
+    return name;
 }
 
 std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) {
@@ -44,8 +54,8 @@ fs::path viewSettingsFile(const std::string& scene) {
     fs::path place = fs::weakly_canonical(scene, ignored);
     if (!place.has_filename()) { place = place.parent_path(); }
     const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
-    return configFolder() /
-           fmt::format("{}-{:016x}.view.toml", place.stem().string(), fingerprint(fmt::format("{}:{}", place.string(), bytes)));
+    const std::string tail = fmt::format("-{:016x}.view.toml", fingerprint(fmt::format("{}:{}", place.string(), bytes)));
+    return configFolder() / (withRoomFor(tail.size(), place.stem().string()) + tail);
 }
 
 std::optional<Similarity> rememberedPlacement(const std::string& scene) {

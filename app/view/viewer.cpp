@@ -23,11 +23,12 @@ constexpr std::size_t kPlottedFrames = 120;
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
 // So many sessions lost in a row before one has shown a frame are too many.
 constexpr int kMostLosses = 3;
+// How often to look whether an unplugged headset is there again.
+constexpr std::chrono::milliseconds kBetweenSearches(200);
 
 }  // namespace
 
-Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance, const Context& context,
-               bool mirrored)
+Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, bool mirrored)
     : options_(options),
       instance_(instance),
       context_(context),
@@ -53,17 +54,17 @@ void Viewer::run() {
         for (bool goes_on = true; goes_on;) {
             if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
-                goes_on = step();
+                goes_on = stay_ ? step() : comeBack();
             } catch (const xr::Lost& lost) {
                 if (leaving_) { break; }
-                renewStay(lost.what());
+                loseStay(lost.what());
             }
         }
     } catch (const xr::InstanceLost& lost) {
         fmt::print("{} frames; {}\n", log_.frame, lost.what());
         throw;
     }
-    const std::string& why = stay_->session.whyEnded();
+    const std::string why = stay_ ? stay_->session.whyEnded() : "stopped while there was no headset";
     fmt::print("{} frames; {}\n", log_.frame, why.empty() ? "the session was lost as it ended" : why);
 }
 
@@ -89,21 +90,41 @@ bool Viewer::step() {
 }
 
 void Viewer::leave() {
-    leaving_ = true;
-    stay_->session.requestExit();
+    if (std::exchange(leaving_, true)) { return; }
+    if (stay_) { stay_->session.requestExit(); }
 }
 
-void Viewer::renewStay(const std::string& why) {
+void Viewer::loseStay(const std::string& why) {
     if (++losses_ > kMostLosses) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
     }
-    say(why + "; another one begins");
+    why_lost_ = why;
+    is_gone_ = false;
+    next_search_ = {};
     waitForQueue();
     panel_now_ = nullptr;
     stay_.reset();
+}
+
+bool Viewer::comeBack() {
+    if (leaving_) { return false; }
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_search_) {
+        drawWindowAlone("The headset is gone: plug it in");
+        std::this_thread::sleep_for(kIdle);
+        return true;
+    }
+    next_search_ = now + kBetweenSearches;
+    if (!instance_.findHeadset(context_)) {
+        if (!std::exchange(is_gone_, true)) { say(why_lost_ + "; the headset is gone: waiting for it"); }
+        std::fflush(stdout);
+        return true;
+    }
+    say((is_gone_ ? "the headset is there again" : why_lost_) + "; another one begins");
     stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
-    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why + ": the next one has other formats of images"); }
+    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
     renderer_.fitImages(*stay_, settings_);
+    return true;
 }
 
 void Viewer::settle() {
@@ -140,7 +161,7 @@ void Viewer::drawFrame() {
     obeyWindow(step_seconds);
     if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     status_.state.clear();
-    if (settings_.panel || window_) { layOutPanel(settings_.panel); }
+    if (settings_.panel || window_) { layOutPanel(settings_.panel, step_seconds); }
     // Last, since the panel and the window may change what is wished for.
     renderer_.govern(*stay_, settings_);
     if (window_) { window_->acquire(); }
@@ -214,7 +235,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     const ViewSettings before = settings_;
     obeyWindow(step_seconds);
     status_.state = why;
-    layOutPanel(false);
+    layOutPanel(false, step_seconds);
     window_->acquire();
     waitForQueue();  // what the panel is drawn from is that of the last frame
     commands_.begin();
@@ -267,24 +288,27 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
 }
 
-void Viewer::layOutPanel(bool hung) {
+void Viewer::layOutPanel(bool hung, double step_seconds) {
     const FrameResult& last = renderer_.lastFrame();
     status_.scene = scenes_.name();
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
     status_.can_pass_through = instance_.canSeeThrough();
-    status_.refresh_rates = stay_->refresh_rates;
+    if (stay_) { status_.refresh_rates = stay_->refresh_rates; }
     if (status_.has_scene) { status_.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
     status_.governor = renderer_.governorSentence();
     status_.frame = last.counters.empty() ? nullptr : &last;
     if (hung) { panel_now_ = stay_->panel_images.acquire(); }
     canvas_.bringLetters(namesOn(pages_, status_));
-    canvas_.begin(window_input_.pointer.place_px ? window_input_.pointer : panel_.pointer(), stay_->session.stepSeconds());
+    // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
+    const CanvasPointer& hand = panel_.pointer();
+    mouse_points_ = hung && hand.place_px ? window_input_.uses_panel && !hand.pressed : mouse_points_ || window_input_.uses_panel;
+    canvas_.begin(mouse_points_ ? window_input_.pointer : hand, step_seconds);
     obey(drawOverlay(kPanelPx, settings_, pages_, status_));
 }
 
 void Viewer::recordPanel(Commands& commands) {
-    stay_->things.record(commands);
+    if (stay_) { stay_->things.record(commands); }
     if (!panel_now_ && !window_) { return; }
     commands.beginPass("panel");
     canvas_.record(commands);
@@ -353,7 +377,10 @@ void Viewer::reloadShaders() {
 void Viewer::takePicture() {
     if (renderer_.lastFrame().counters.empty()) { return; }
     try {
-        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), std::filesystem::current_path()));
+        std::error_code error;
+        const std::filesystem::path folder = std::filesystem::current_path(error);
+        check(!error, "the picture cannot be written: the working directory is gone");
+        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), folder));
     } catch (const Error& error) { say(error.what()); }
 }
 

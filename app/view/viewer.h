@@ -20,18 +20,19 @@ namespace binosplat {
 class Viewer {
 public:
     // `instance` and `context` outlive the viewer. Begins to load the scene. With a window beside the headset where `mirrored`.
-    Viewer(const ViewOptions& options, const ViewSettings& settings, const xr::Instance& instance, const Context& context, bool mirrored);
+    Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance, const Context& context, bool mirrored);
 
     // Until the runtime, the wearer, Ctrl-C or --frames ends it. Says on stdout what was changed in which frame, and why it ended.
-    // A lost session is followed by another one, with the scene as it is. Throws what went wrong with the scene or the device, and
-    // Error (exit code 3) where the runtime is lost.
+    // A lost session is followed by another one, with the scene as it is, once there is a headset. Throws what went wrong with the scene or
+    // the device, and Error (exit code 3) where the runtime is lost.
     void run();
 
 private:
     // One turn of the loop; false at its end.
     bool step();
-    // Another session in place of one that was lost.
-    void renewStay(const std::string& why);
+    void loseStay(const std::string& why);
+    // Another session in place of one that was lost, if there is a headset; false at the end.
+    bool comeBack();
     void drawFrame();
     // The window's own life while no frame is drawn for the headset.
     void drawWindowAlone(const std::string& why);
@@ -48,7 +49,7 @@ private:
     void showFrame(const FrameViews& views);
     void addEyes(xr::Layers& layers, const FrameViews& views) const;
     // The widgets; takes the panel's image where it is `hung`.
-    void layOutPanel(bool hung);
+    void layOutPanel(bool hung, double step_seconds);
     void keepFrameTime();
     void obeyWindow(double step_seconds);
     void obey(const OverlayActions& actions);
@@ -62,17 +63,18 @@ private:
     void waitForQueue() const;
 
     ViewOptions options_;
-    const xr::Instance& instance_;
+    xr::Instance& instance_;
     const Context& context_;
     ViewSettings settings_;
     FrameLog log_;
-    std::unique_ptr<HeadsetStay> stay_;
-    vk::Format format_;  // of every session's images
+    std::unique_ptr<HeadsetStay> stay_;  // null while there is no session
+    vk::Format format_;                  // of every session's images
     SceneRenderer renderer_;
     Canvas canvas_;
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
-    vk::Image panel_now_;  // of this frame, where the panel is shown
+    bool mouse_points_ = false;  // on the panel, and not a hand
+    vk::Image panel_now_;        // of this frame, where the panel is shown
     OverlayPanel panel_;
     WearerControls controls_;
     Vignette vignette_;
@@ -83,7 +85,9 @@ private:
     Pose room_from_head_;  // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
     int losses_ = 0;  // since a frame was shown
-    std::chrono::steady_clock::time_point last_end_{}, last_alone_{};
+    std::string why_lost_;
+    bool is_gone_ = false;  // the headset, since then
+    std::chrono::steady_clock::time_point last_end_{}, last_alone_{}, next_search_{};
     ShownScene scenes_;  // last: the loading thread ends first
 };
 

@@ -76,11 +76,12 @@ void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, S
 }
 
 void WearerControls::turn(const WearerNow& now, Similarity& scene_from_room) {
-    const double turn = dominantAxis(now.hands[kRight].stick).x;
+    const glm::dvec2& stick = now.hands[kRight].stick;
+    const double turn = dominantAxis(stick).x;
     if (std::abs(turn) > kStickTurns && !turned_) {
         scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), now.room_from_head.position);
         turned_ = true;
-    } else if (std::abs(turn) < kStickRests) {
+    } else if (std::abs(stick.x) < kStickRests) {  // however far it is pushed ahead
         turned_ = false;
     }
 }

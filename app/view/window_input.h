@@ -11,6 +11,7 @@ namespace binosplat {
 // What came from mouse and keyboard since the last time.
 struct WindowInput {
     CanvasPointer pointer;     // on the panel
+    bool uses_panel = false;   // the mouse was moved, pressed, let go or turned there
     glm::dvec3 walk{0.0};      // right, down, forward; -1 to 1
     double turn_rad = 0.0;     // to the right
     double turn_rate = 0.0;    // by keys, -1 to 1

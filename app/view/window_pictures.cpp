@@ -10,12 +10,25 @@
 
 namespace binosplat {
 
+namespace {
+
+constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that has gone away
+
+}  // namespace
+
 WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px)
     : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)) {
     check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
           context.deviceName());
     acquired_fence_ = context.device().createFence({});
     make();
+}
+
+WindowPictures::~WindowPictures() {
+    if (hold_ != Hold::kPromised) { return; }
+    try {
+        static_cast<void>(context_.device().waitForFences(*acquired_fence_, VK_TRUE, kLongestWaitNs));
+    } catch (const vk::SystemError&) {}
 }
 
 void WindowPictures::make() {
@@ -30,8 +43,8 @@ void WindowPictures::make() {
     }
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
     check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
-    const glm::uvec2 window_px = window_size_px_();
-    const auto extent = windowExtent(able, {window_px.x, window_px.y});
+    window_px_ = window_size_px_();
+    const auto extent = windowExtent(able, {window_px_.x, window_px_.y});
     is_stale_ = !extent;
     if (!extent) { return; }
     size_px_ = {extent->width, extent->height};
@@ -51,32 +64,42 @@ void WindowPictures::make() {
     }
 }
 
+bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::Result::eSuccess; }
+
 void WindowPictures::acquire() {
-    acquired_ = false;
-    // What was presented is not written to again.
+    // A promise is waited for before anything else is asked for, but not by the headset.
+    if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
+    if (hold_ == Hold::kPromised) { return; }
+    // Not every display says that its window has another size (Wayland does not).
+    is_stale_ = is_stale_ || window_px_ != window_size_px_();
     if (is_stale_) {
+        hold_ = Hold::kNone;
+        // What was presented is not written to again.
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
         make();
     }
-    if (is_stale_) { return; }  // put away
+    if (is_stale_ || hold_ == Hold::kOurs) { return; }  // put away; or of a frame that was given up
     try {
         const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
-        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free: the headset does not wait
+        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free
         index_ = index;
+        hold_ = Hold::kPromised;
     } catch (const vk::OutOfDateKHRError&) {
         is_stale_ = true;
         return;
     }
-    const auto waited = context_.device().waitForFences(*acquired_fence_, VK_TRUE, UINT64_MAX);
-    check(waited == vk::Result::eSuccess, "the window's picture does not come free: {}", vk::to_string(waited));
+    if (isFree()) { takePromised(); }
+}
+
+void WindowPictures::takePromised() {
     context_.device().resetFences(*acquired_fence_);
-    acquired_ = true;
+    hold_ = Hold::kOurs;
 }
 
 void WindowPictures::show() {
-    if (!acquired_) { return; }
-    acquired_ = false;
+    if (hold_ != Hold::kOurs) { return; }
+    hold_ = Hold::kNone;
     const vk::SwapchainKHR swapchain = *swapchain_;
     const vk::Semaphore drawn = *drawn_[index_];
     try {

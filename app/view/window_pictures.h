@@ -15,18 +15,25 @@ public:
     // `window_size_px` says how large the window is now. Throws Error if the device cannot show on the surface.
     WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px);
 
-    // Before anything is recorded: a picture to draw on, if one is free.
+    WindowPictures(const WindowPictures&) = delete;
+    WindowPictures& operator=(const WindowPictures&) = delete;
+    ~WindowPictures();
+
+    // Before anything is recorded: a picture to draw on, if one is free; that of a frame that was given up, if there is one.
     void acquire();
     // That picture; null if none was free.
-    [[nodiscard]] vk::Image current() const { return acquired_ ? images_[index_] : vk::Image(); }
+    [[nodiscard]] vk::Image current() const { return hold_ == Hold::kOurs ? images_[index_] : vk::Image(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // What the submission that draws on it signals; null if none was free.
-    [[nodiscard]] vk::Semaphore drawn() const { return acquired_ ? *drawn_.at(index_) : vk::Semaphore(); }
+    [[nodiscard]] vk::Semaphore drawn() const { return hold_ == Hold::kOurs ? *drawn_.at(index_) : vk::Semaphore(); }
     // Once the submission is under way: shows the picture when it is drawn.
     void show();
 
 private:
     void make();
+    // Whether the picture that was acquired is free to draw on by now.
+    [[nodiscard]] bool isFree() const;
+    void takePromised();
 
     const Context& context_;
     vk::raii::SurfaceKHR surface_;
@@ -34,9 +41,10 @@ private:
     vk::raii::SwapchainKHR swapchain_{nullptr};
     vk::raii::Fence acquired_fence_{nullptr};
     std::vector<vk::Image> images_;
-    std::vector<vk::raii::Semaphore> drawn_;  // by picture: free again when it is
-    glm::uvec2 size_px_{0, 0};
-    bool acquired_ = false;
+    std::vector<vk::raii::Semaphore> drawn_;      // by picture: free again when it is
+    glm::uvec2 size_px_{0, 0}, window_px_{0, 0};  // of the pictures, and of the window when they were made
+    // Of the picture index_: none; promised, while the display may still read it; ours to draw on.
+    enum class Hold { kNone, kPromised, kOurs } hold_ = Hold::kNone;
     bool is_stale_ = false;  // the pictures are not as the display wants them any more
     std::uint32_t index_ = 0;
 };

@@ -1,6 +1,7 @@
 // A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
 // BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait or allocate, N from 1, and FAULT lost, no-device-memory, no-host-memory, SIGINT or
-// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. BINOSPLAT_FAULT_TICKS=N: timestamps are
+// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. Of a lost device no wait until it is
+// idle succeeds. BINOSPLAT_FAULT_TICKS=N: timestamps are
 // N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
 // BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
@@ -45,6 +46,9 @@ VkInstance g_instance = VK_NULL_HANDLE;
 PFN_vkGetDeviceProcAddr g_device_next = nullptr;
 PFN_vkQueueSubmit g_submit = nullptr;
 PFN_vkWaitForFences g_wait = nullptr;
+PFN_vkDeviceWaitIdle g_wait_device = nullptr;
+PFN_vkQueueWaitIdle g_wait_queue = nullptr;
+std::atomic<bool> g_is_lost{false};
 PFN_vkAllocateMemory g_allocate = nullptr;
 PFN_vkGetQueryPoolResults g_results = nullptr;
 
@@ -55,7 +59,10 @@ VkResult strike(const char* call) {
     if (plan.call != call) { return VK_SUCCESS; }
     const int number = ++calls;
     if (number < plan.number) { return VK_SUCCESS; }
-    if (plan.fault == "lost") { return VK_ERROR_DEVICE_LOST; }
+    if (plan.fault == "lost") {
+        g_is_lost = true;
+        return VK_ERROR_DEVICE_LOST;
+    }
     if (plan.fault == "no-device-memory") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
     if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
     if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
@@ -85,6 +92,16 @@ VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const 
     const VkResult waited = g_wait(device, count, fences, all, timeout);
     const VkResult result = strike("wait");
     return result != VK_SUCCESS ? result : waited;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL waitForDevice(VkDevice device) {
+    const VkResult waited = g_wait_device(device);
+    return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
+    const VkResult waited = g_wait_queue(queue);
+    return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL allocate(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
@@ -144,6 +161,8 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     if (result != VK_SUCCESS) { return result; }
     g_submit = reinterpret_cast<PFN_vkQueueSubmit>(g_device_next(*device, "vkQueueSubmit"));
     g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
+    g_wait_device = reinterpret_cast<PFN_vkDeviceWaitIdle>(g_device_next(*device, "vkDeviceWaitIdle"));
+    g_wait_queue = reinterpret_cast<PFN_vkQueueWaitIdle>(g_device_next(*device, "vkQueueWaitIdle"));
     g_allocate = reinterpret_cast<PFN_vkAllocateMemory>(g_device_next(*device, "vkAllocateMemory"));
     g_results = reinterpret_cast<PFN_vkGetQueryPoolResults>(g_device_next(*device, "vkGetQueryPoolResults"));
     faults::beginCounting(g_device_next, *device);
@@ -165,6 +184,8 @@ PFN_vkVoidFunction asVoid(Function* function) {
 PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
     if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
+    if (std::strcmp(name, "vkDeviceWaitIdle") == 0) { return asVoid(waitForDevice); }
+    if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
     if (std::strcmp(name, "vkAllocateMemory") == 0) { return asVoid(allocate); }
     if (std::strcmp(name, "vkGetQueryPoolResults") == 0) { return asVoid(results); }
     if (std::strcmp(name, "vkGetDeviceProcAddr") == 0) { return asVoid(getDeviceProcAddr); }

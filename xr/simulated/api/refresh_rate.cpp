@@ -58,6 +58,7 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 "a rate that was not enumerated");
         if (wanted == before) return successOf(owner);
+        require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB, "the script says that the rate is fixed");
         changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);
         return successOf(owner);
     });

@@ -69,6 +69,12 @@ Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(o
 Session::~Session() {
     wakeFrameWaiters();
     instance.session = nullptr;
+    // It was unplugged: a program asks again for everything.
+    if (const std::uint32_t calls = instance.simulation->script.calls_after_loss; loss_announced && calls > 0) {
+        instance.simulation->calls_until_plugged = calls;
+        instance.has_asked_requirements = false;
+        instance.graphics_device = VK_NULL_HANDLE;
+    }
     instance.events.forget(handleOf(*this));
 }
 
@@ -208,6 +214,7 @@ XrResult xrCreateSession(XrInstance instance, const XrSessionCreateInfo* createI
         XrSession& output = checkedOutput(session);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no session creation flags are known");
         checkSystem(info.systemId);
+        require(owner.simulation->calls_until_plugged == 0, XR_ERROR_SYSTEM_INVALID, "the headset is not there any more");
         const XrGraphicsBindingVulkan2KHR* const binding = checkedBinding(owner, info);
         require(owner.session == nullptr, XR_ERROR_LIMIT_REACHED, "one session at a time");
         auto device = binding == nullptr ? nullptr : std::make_unique<Device>(graphicsOf(owner, *binding));

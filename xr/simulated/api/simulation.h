@@ -34,6 +34,8 @@ struct Simulation {
     double rate_hz = 90;
     std::uint64_t frames_shown = 0;
     std::uint32_t calls_without_headset = 0;
+    // Of xrGetSystem, until the headset is plugged in again.
+    std::uint32_t calls_until_plugged = 0;
     double events_until_s = -std::numeric_limits<double>::infinity();
     // Something was lost: time goes on for the instance that comes after, so that the same loss does not come again.
     bool survives = false;

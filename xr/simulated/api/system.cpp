@@ -43,6 +43,11 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
             ++calls;
             throw Refusal{XR_ERROR_FORM_FACTOR_UNAVAILABLE, "the headset is not there yet"};
         }
+        std::uint32_t& calls_left = owner.simulation->calls_until_plugged;
+        if (calls_left > 0) {
+            --calls_left;
+            throw Refusal{XR_ERROR_FORM_FACTOR_UNAVAILABLE, "the headset is not there again yet"};
+        }
         output = kSystemId;
         return XR_SUCCESS;
     });

@@ -138,6 +138,7 @@ public:
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
     double rate_hz = 90.0;
+    bool rate_is_fixed = false;     // what programs ask for is refused
     double irregularity = 0.0;      // of periods, as a share of them
     bool stretches_period = false;  // a frame that missed displays is followed by a stated period of as many as it took
     std::uint32_t images = 3;       // of a swapchain
@@ -153,6 +154,7 @@ public:
     bool has_stage = true;                          // whether there is a reference space STAGE
     enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
     std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
+    std::uint32_t calls_after_loss = 0;       // likewise, each time after a session was lost
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
     enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1

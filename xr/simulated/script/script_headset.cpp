@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 void Parser::parseRate(Words& words) {
     requireFirst(words, "rate");
     script_.rate_hz = words.number(kRateMeaning, kLeastRate, kMostRate);
+    script_.rate_is_fixed = words.takeIf("fixed");
 }
 
 void Parser::parseIrregular(Words& words) {

@@ -55,8 +55,10 @@ void Parser::parseVulkanAdditions(Words& words) {
 }
 
 void Parser::parseNoHeadset(Words& words) {
-    requireFirst(words, "no-headset-for");
-    script_.calls_without_headset = static_cast<std::uint32_t>(words.count("the number of calls", 1, 1000000));
+    const auto calls = static_cast<std::uint32_t>(words.count("the number of calls", 1, 1000000));
+    const bool after_loss = words.takeIf("after-loss");
+    requireFirst(words, after_loss ? "no-headset-for ... after-loss" : "no-headset-for");
+    (after_loss ? script_.calls_after_loss : script_.calls_without_headset) = calls;
 }
 
 void Parser::parseRefusedDepth(Words& words) {
