@@ -12,7 +12,7 @@ layout(constant_id = 0) const uint kThreads = 128;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-const uint kBlocksPerStep = 32;  // loaded at a time, since each load takes as long as all of them
+const uint kBlocksPerStep = 16;  // loaded at a time, since each load takes as long as all of them
 
 shared uint digit_counts[kMaxDigits];
 
