@@ -1,5 +1,6 @@
 // 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
-// Where pixels move along their row alone and a row fits into shared memory (kMovesRow), they arrive there, as 8d has it otherwise.
+// Where pixels move along their row alone and a row fits into shared memory (kMovesRow), this pass moves them there itself; otherwise 8d
+// has done so.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
@@ -22,8 +23,8 @@ layout(constant_id = 1) const bool kPredictErrors = false;
 layout(constant_id = 2) const bool kDepth = false;
 layout(constant_id = 3) const bool kClasses = false;     // somebody asks for the class of each pixel
 layout(constant_id = 4) const bool kComponents = false;  // holes are going to be grouped
-// A whole row of arrivals in shared memory, whose place in device memory colours may then take. 0: rows are too long, and arrivals lie
-// elsewhere.
+// A whole row of arrivals is kept in shared memory, so that colours may overwrite it in device memory. 0: rows are too long, and arrivals
+// lie elsewhere.
 layout(constant_id = 5) const uint kRowSteps = 1;
 layout(constant_id = 6) const bool kHalfColours = false;
 layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
@@ -337,6 +338,7 @@ void main() {
         barrier();
     }
     if (items > 0) { loadRow(row, width); }
+    memoryBarrierBuffer();  // colours may take the place of what was read
     barrier();
 
     uvec3 classes = uvec3(0);

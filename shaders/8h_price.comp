@@ -26,7 +26,7 @@ void main() {
     const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
     const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
     if (tile >= size_tiles.x * size_tiles.y) { return; }
-    // Where sums stop growing (8e), the order of threads decides by how much they went beyond.
+    // Sums stop growing there (8e); 8f adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     uint price = 0;
     if (pass.tile_kinds.at[tile] == 0 && error > 0) {

@@ -279,7 +279,8 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample makes holes their own parents where they are
 TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px apart for a unit of inverse depth.
     for (const std::uint32_t width :
-         {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kLongestSharedRow, gpu::kLongestSharedRow + 1, 5000u}) {
+         {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
+          gpu::kLongestSharedRow - 1, gpu::kLongestSharedRow, gpu::kLongestSharedRow + 1, 5000u}) {
         const glm::uvec2 size_px(width, 2);
         const auto eyes = stereoPair({Pose{}, {200.0, 200.0, 0.5 * width, 1.0}, size_px}, 0.1);
         StereoCase c{"ramp", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
@@ -293,14 +294,14 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones t
         }
         test::roundToWords(c.dominant, c.settings);
         CAPTURE(width);
-        for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
-            if (rows == Rows::kShared && width > gpu::kLongestSharedRow) { continue; }
+        for (const auto& [rows, moves_row] : {std::pair(Rows::kOwn, false), std::pair(Rows::kOwn, true), std::pair(Rows::kShared, true)}) {
+            if (moves_row && width > gpu::kLongestSharedRow) { continue; }
             const Arrived arrived(c);
             const auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
             StereoOnDevice device = toDevice(*this, c, rows);
             const std::vector<TileKind> kinds(device.tileCount(), TileKind::kNone);
-            device.writeArrivals(arrived.words);
-            device.resample({.errors = true, .classes = true});
+            if (!moves_row) { device.writeArrivals(arrived.words); }
+            device.resample({.errors = true, .classes = true, .moves_row = moves_row});
             const auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes);
             const auto colours = device.readAffiliated();
             const auto classes = device.readClasses();

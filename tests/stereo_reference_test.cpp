@@ -379,6 +379,12 @@ TEST_CASE("a newcomer stands in front of the farthest that its tile shows, and w
     CHECK(found(44.5, 3.9, TileKind::kNone).first == 1);
     CHECK(found(44.5, 3.97, TileKind::kNone).first == 0);
     CHECK(found(20.5, 100.0, TileKind::kCheap) == std::pair(std::size_t{1}, 0.0));
+    // What is infinitely far has arrived, too, before or after what is near.
+    arrivals[9] = {Arrival::kLanded, 0.0, 0};
+    CHECK(found(8.5, 100.0, TileKind::kNone).first == 1);
+    arrivals[9] = {};
+    arrivals[7] = {Arrival::kLanded, 0.0, 0};
+    CHECK(found(8.5, 100.0, TileKind::kNone).first == 1);
     arrivals.assign(48, {});
     CHECK(found(20.5, 100.0, TileKind::kNone).first == 1);
 }

@@ -3,6 +3,7 @@
 
 #include "app/interrupt.h"
 #include "app/options/modes.h"
+#include "app/report/report.h"
 #include "engine/reference/reference.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ struct Runner {
     void count(const FrameResult& result) {
         last = result;
         total_ms.push_back(result.gpu_total_ms);
-        for (const auto& [name, ms] : result.gpu_ms) { pass_ms[name].push_back(ms); }
+        for (const auto& [name, ms] : addUp(result.gpu_ms)) { pass_ms[name].push_back(ms); }
     }
 };
 
@@ -42,7 +43,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.method = runner.method.name;
     if (!runner.is_twin) { result.mode = runner.method.stereo.mode; }
     result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
-    for (const auto& [name, ms] : runner.last.gpu_ms) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
+    for (const auto& [name, ms] : addUp(runner.last.gpu_ms)) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
     result.total_ms = median(runner.total_ms);
     result.least_ms = std::ranges::min(runner.total_ms);
     result.most_ms = std::ranges::max(runner.total_ms);

@@ -101,7 +101,7 @@ std::string namePoint(const BenchResult& result) {
 }
 
 NamedTimes byPass(const BenchResult& result) {
-    std::map<std::string, double> sums;  // the number in front of a pass's name makes this the order of the frame
+    std::map<std::string, double> sums;  // by the number in front of a pass's name, nearly the order of the frame
     for (const auto& [name, ms] : result.pass_ms) { sums[bareName(name)] += ms; }
     return {sums.begin(), sums.end()};
 }

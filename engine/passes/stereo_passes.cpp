@@ -273,7 +273,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
         passes.weigh();
         if (!in.may_move) { return; }
     } else {
-        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8f_resample");
+        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
         passes.clearTiles();
     }
     if (passes.followsPaper()) {

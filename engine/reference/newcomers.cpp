@@ -3,6 +3,8 @@
 #include "engine/reference/stereo.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace binosplat::reference {
@@ -20,16 +22,16 @@ double squareCoverage(const ProjectedSplat& splat) {
     return low_pass + std::numbers::pi / jacobian;
 }
 
-// By tile, the farthest that arrived, as an inverse depth: pixels of every other row are asked. 0 where nothing did.
+// By tile, the farthest that arrived, as an inverse depth: pixels of every other row are asked. Infinite where nothing did.
 std::vector<double> farthestByTile(std::span<const Arrival> arrivals, glm::uvec2 size_px, std::size_t tiles) {
-    std::vector<double> farthest(tiles, 0.0);
+    std::vector<double> farthest(tiles, std::numeric_limits<double>::infinity());
     const std::size_t columns = (size_px.x + kTileSize - 1) / kTileSize;
     for (std::size_t y = 0; y < size_px.y; y += 2) {
         for (std::size_t x = 0; x < size_px.x; ++x) {
             const Arrival& arrival = arrivals[y * size_px.x + x];
             if (arrival.way == Arrival::kNone) { continue; }
             double& of_tile = farthest[y / kTileSize * columns + x / kTileSize];
-            of_tile = of_tile == 0.0 ? arrival.inverse_depth : std::min(of_tile, arrival.inverse_depth);
+            of_tile = std::min(of_tile, arrival.inverse_depth);
         }
     }
     return farthest;
@@ -51,7 +53,7 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
     const auto standsInFront = [&](const ProjectedSplat& splat) {
         const glm::uvec2 at(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0));
         const std::size_t tile = at.y / kTileSize * ((size_px.x + kTileSize - 1) / kTileSize) + at.x / kTileSize;
-        return kinds[tile] != TileKind::kNone || 1.0 / splat.depth > kInFrontRatio * farthest[tile];
+        return kinds[tile] != TileKind::kNone || std::isinf(farthest[tile]) || 1.0 / splat.depth > kInFrontRatio * farthest[tile];
     };
     const std::vector<std::uint32_t> in_target = countTiles(target_pairs, target_splats.size()),
                                      in_source = countTiles(source_pairs, target_splats.size());

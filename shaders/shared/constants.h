@@ -100,7 +100,8 @@ BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
 // What a tile costs to render beside its pairs, in pairs: a workgroup starts and 256 pixels are written.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
-// Moving costs something even where tiles are not moved, since 7, 8d and 8f go over all pixels: this part of what moving all tiles costs.
+// Moving costs something even where tiles are not moved, since 7 and 8f, or 8d and 8f, go over all pixels: this part of what moving all
+// tiles costs.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
 
 // The price list of 8h: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
@@ -121,8 +122,8 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again, and
-// pixels come there by 8d.
+// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again. 8d
+// brings pixels there, as it does for canted eyes whatever the length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
 BINOSPLAT_CONSTANT uint kLongestSharedRow = kMostRowSteps * kArrivalsStep;

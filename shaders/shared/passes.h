@@ -1,4 +1,5 @@
-// The passes of a frame, in frame order: for each the struct of its push constants, i.e. what it reads and writes.
+// The passes of a frame, in frame order but for 8e, which follows 8f: for each the struct of its push constants, i.e. what it reads and
+// writes.
 #ifndef BINOSPLAT_SHADERS_SHARED_PASSES_H
 #define BINOSPLAT_SHADERS_SHARED_PASSES_H
 
@@ -89,7 +90,7 @@ struct RasterizePass {
     Floats depths;            // out where asked for: D = sum w z
     Vec2s moments;            // out where asked for: I = sum w/z and J = sum w/z^2
     Uints moving;             // out where the picture is going to be moved: lib/moving_pixel.glsl
-    Uints arrivals;           // likewise, if it is not null: of the other eye's pixel, that nothing has reached yet
+    Uints arrivals;           // likewise, unless it is null: 0, since nothing has arrived in the other eye yet
     Uints tile_list;          // under a mask: the tiles to render
     ListStates masked_tiles;  // likewise: how many
     vec3 background;
@@ -161,7 +162,7 @@ struct ResamplePass {
     StereoViews stereo;
     FloatColours dominant;
     HalfColours half_dominant;
-    Uints moving;             // the dominant eye's, or of this eye what 8d left: lib/moving_pixel.glsl
+    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left
     FloatColours affiliated;  // out; `moving` may lie in the same row
     HalfColours half_affiliated;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
