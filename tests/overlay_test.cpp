@@ -76,6 +76,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     CHECK_FALSE(isThere(0xe000));
     CHECK(isThere('A'));
     CHECK_FALSE(sketch.font->add(sketch.status.message));  // once
+    CHECK_FALSE(sketch.font->add("\xff\xef\xbf\xbd plain"));
     // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     write(work.path / chinese);
@@ -149,6 +150,23 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     nameless.replace(nameless.find("cmap"), 4, "xxxx");
     CHECK_FALSE(isFont(nameless));
     CHECK_FALSE(isFont("ttcf" + whole.substr(4)));
+    // A collection: the same tables, each 16 bytes farther from the file's beginning.
+    const auto number = [](std::uint32_t value) {
+        std::string bytes;
+        for (const int shift : {24, 16, 8, 0}) { bytes += static_cast<char>(value >> shift); }
+        return bytes;
+    };
+    std::string moved = whole;
+    const auto byteAt = [&](std::size_t at) { return static_cast<unsigned char>(moved[at]); };
+    for (std::size_t record = 12; record < 12 + 16 * (256u * byteAt(4) + byteAt(5)); record += 16) {
+        std::uint32_t offset = 0;
+        for (std::size_t i = 8; i < 12; ++i) { offset = offset << 8 | byteAt(record + i); }
+        moved.replace(record + 8, 4, number(offset + 16));
+    }
+    CHECK(isFont("ttcf" + number(0x00010000) + number(1) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00030000) + number(1) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(0) + number(16) + moved));
+    CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(1) + number(0x7fffffff) + moved));
 }
 
 TEST_CASE("every widget lies on the panel, none on another, on each page") {

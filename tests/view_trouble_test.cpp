@@ -88,7 +88,7 @@ TEST_CASE("a headset that is not there yet is waited for, with one line") {
     std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
     const Outcome outcome = work.run(
         "view builtin:fence --simulate never.script --frames 5 > said & child=$!; "
-        "until grep -q 'no headset yet' said || ! kill -0 $child; do :; done; kill -INT $child; wait $child");
+        "until grep -q 'no headset yet' said || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child");
     CHECK(outcome.exit_code == 0);
 }
 
@@ -101,8 +101,8 @@ TEST_CASE("a headset that is unplugged is waited for, and the scene goes on with
     // Ctrl-C ends this wait, too.
     std::ofstream(work.path / "gone.script") << kSmall << "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
     const Outcome outcome = work.run(
-        "view builtin:fence --simulate gone.script --out gone > said & child=$!; "
-        "until grep -q 'waiting for it' said || ! kill -0 $child; do :; done; kill -INT $child; wait $child; cat said");
+        "view builtin:fence --simulate gone.script --frames 2000 --out gone > said & child=$!; "
+        "until grep -q 'waiting for it' said || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child; cat said");
     CHECK(outcome.exit_code == 0);
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("whoever leaves while the headset is off need not put it on") {
     std::ofstream(work.path / "desk.script") << kSmall << "at -1 worn off\n";
     const Outcome outcome = work.run(
         "view builtin:fence --simulate desk.script --out seen & child=$!; "
-        "until [ -e seen/frames.jsonl ] || ! kill -0 $child; do :; done; kill -INT $child; wait $child");
+        "until [ -e seen/frames.jsonl ] || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child");
     CHECK(outcome.exit_code == 0);
 }
 

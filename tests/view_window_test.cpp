@@ -602,9 +602,16 @@ TEST_CASE("a picture of a frame that was given up is drawn in the next, and a wi
     const std::string see_window = "DISPLAY=" + screen.name + " xdotool search --name '^binosplat$' > /dev/null";
     {
         const Context context({.device = {}, .instance_extensions = WindowSystem::instanceExtensions(), .device_extensions = pictures});
-        const Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+        Canvas canvas(context, kPanelPx, vk::Format::eR8G8B8A8Unorm);
+        // Of the panel, too: its letters may change before it is drawn again.
+        canvas.begin({}, 0.01);
+        canvas.giveUp();
+        canvas.bringLetters("\xd7\x90");
+        canvas.begin({}, 0.01);
+        canvas.giveUp();
         MirrorWindow window(context, canvas);
-        window.acquire();
+        // The display may still be reading it.
+        for (int asked = 0; !window.drawn() && asked < 100'000; ++asked) { window.acquire(); }
         const vk::Semaphore first = window.drawn();
         CHECK(first);
         for (int given_up = 0; given_up < 10; ++given_up) {

@@ -25,6 +25,16 @@ Input::Input(const Session& session) : session_(session), tracking_(session) {
     std::strcpy(info.actionSetName, "viewer");
     std::strcpy(info.localizedActionSetName, "Viewer");
     BINOSPLAT_XR(xrCreateActionSet(instance.handle(), &info, &set_));
+    try {
+        attachActions();
+    } catch (...) {
+        xrDestroyActionSet(set_);  // it is the instance's, and the next session's has the same name
+        throw;
+    }
+}
+
+void Input::attachActions() {
+    const Instance& instance = session_.instance();
     aim_ = makeAction("aim", "Point at the panel", XR_ACTION_TYPE_POSE_INPUT);
     grip_ = makeAction("grip", "Hold the scene", XR_ACTION_TYPE_POSE_INPUT);
     trigger_ = makeAction("trigger", "Click", XR_ACTION_TYPE_FLOAT_INPUT);
@@ -38,21 +48,21 @@ Input::Input(const Session& session) : session_(session), tracking_(session) {
     auto attach = structure<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
     attach.countActionSets = 1;
     attach.actionSets = &set_;
-    BINOSPLAT_XR(xrAttachSessionActionSets(session.handle(), &attach));
+    BINOSPLAT_XR(xrAttachSessionActionSets(session_.handle(), &attach));
     for (std::size_t h = 0; h < 2; ++h) {
         auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
         space.subactionPath = hands_[h];
         space.poseInActionSpace.orientation.w = 1.0f;
         space.action = aim_;
-        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &aim_spaces_[h]));
+        BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &aim_spaces_[h]));
         space.action = grip_;
-        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &grip_spaces_[h]));
+        BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &grip_spaces_[h]));
     }
     if (gaze_ != XR_NULL_HANDLE) {
         auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
         space.poseInActionSpace.orientation.w = 1.0f;
         space.action = gaze_;
-        BINOSPLAT_XR(xrCreateActionSpace(session.handle(), &space, &gaze_space_));
+        BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &gaze_space_));
     }
 }
 

@@ -53,6 +53,7 @@ public:
     void pulse(int hand) const;
 
 private:
+    void attachActions();
     // By hand, unless there is one of it.
     [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;

@@ -119,7 +119,8 @@ bool Instance::findHeadset(const Context& context) {
         if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) { throw InstanceLost(ExitCode::kNoDevice, kGoingAway); }
     }
     const XrResult result = getSystem(instance_, system_);
-    if (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE) { return false; }
+    // Some runtimes have no better word for it.
+    if (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE || result == XR_ERROR_RUNTIME_FAILURE) { return false; }
     checkResult(result, "xrGetSystem");
     readSystem();
     readViews();
@@ -148,6 +149,7 @@ void Instance::readViews() {
     constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
     std::uint32_t count = 0;
     const XrResult result = xrEnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr);
+    if (result == XR_ERROR_SYSTEM_INVALID) { checkResult(result, "xrEnumerateViewConfigurationViews"); }  // unplugged
     if (XR_FAILED(result)) { refuse(fmt::format("{} does not show two eyes", description_), result); }
     std::vector<XrViewConfigurationView> views(count, {XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
     BINOSPLAT_XR(xrEnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()));

@@ -140,7 +140,7 @@ std::string Session::askForRate(double rate_hz) {
     const XrResult result = request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found));
     if (XR_SUCCEEDED(result)) { return {}; }
     if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
-    return fmt::format("refresh-rate is {:g}, this headset refuses it now ({})", rate_hz, nameOf(result));
+    return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, nameOf(result));
 }
 
 void Session::requestExit() {

@@ -11,6 +11,7 @@
 
 #include <limits>
 #include <mutex>
+#include <utility>
 
 namespace binosplat {
 
@@ -124,10 +125,16 @@ void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {
     io.DeltaTime = std::max(static_cast<float>(step_seconds), 1e-4f);
     ImGui_ImplVulkan_NewFrame();
     ImGui::NewFrame();
+    is_begun_ = true;
+}
+
+void Canvas::giveUp() {
+    if (std::exchange(is_begun_, false)) { ImGui::EndFrame(); }
 }
 
 void Canvas::record(Commands& commands) {
     ImGui::Render();
+    is_begun_ = false;
     const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();
     buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_, vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),

@@ -33,8 +33,9 @@ public:
 
     // Before begin(): `text` can be written, in as far as a font has its letters. What is new waits for the queue.
     void bringLetters(std::string_view text);
-    // Widgets are drawn between this and record().
+    // Widgets are drawn between this and record(), or giveUp() where nothing comes of them.
     void begin(const CanvasPointer& pointer, double step_seconds);
+    void giveUp();
     // Draws; then the canvas may be copied from.
     void record(Commands& commands);
 
@@ -51,6 +52,7 @@ private:
 
     const Context& context_;
     glm::uvec2 size_px_;
+    bool is_begun_ = false;
     std::unique_ptr<PanelFont> font_;  // once there is an ImGui context
     vk::raii::DeviceMemory memory_{nullptr};
     vk::raii::Image image_{nullptr};

@@ -51,7 +51,7 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 }
 
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
-bool buildAtlas(const std::vector<std::string>& fonts, const std::set<ImWchar>& added) {
+bool buildAtlas(std::span<const std::string> fonts, const std::set<ImWchar>& added) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
     std::vector<ImWchar> ranges;
@@ -104,6 +104,8 @@ bool looksLikeFont(std::span<const unsigned char> bytes) {
     constexpr std::size_t kHeader = 12, kRecord = 16, kFirstOfCollection = 12;
     std::size_t header = 0;
     if (bytes.size() >= kFirstOfCollection + 4 && numberAt(bytes, 0, 4) == 0x74746366) {  // ttcf
+        const std::uint64_t version = numberAt(bytes, 4, 4);
+        if ((version != 0x00010000 && version != 0x00020000) || numberAt(bytes, 8, 4) == 0) { return false; }
         header = numberAt(bytes, kFirstOfCollection, 4);
     }
     if (bytes.size() < header + kHeader) { return false; }
@@ -123,13 +125,13 @@ bool looksLikeFont(std::span<const unsigned char> bytes) {
 
 PanelFont::PanelFont() {
     for (const fs::path& file : fontFiles()) {
-        bytes_ = readFont(file, complaint_);
-        if (!bytes_.empty() && buildAtlas({bytes_}, {})) {
+        fonts_ = {readFont(file, complaint_)};
+        if (!fonts_[0].empty() && buildAtlas(fonts_, {})) {
             complaint_.clear();
             return;
         }
     }
-    bytes_.clear();
+    fonts_.clear();
     complaint_ = fmt::format("the panel is written in a small built-in font: {}", complaint_);
     ImFontConfig font;
     font.SizePixels = kFontPx;
@@ -137,25 +139,27 @@ PanelFont::PanelFont() {
 }
 
 bool PanelFont::add(std::string_view text) {
-    if (bytes_.empty()) { return false; }
+    if (fonts_.empty()) { return false; }
     std::set<ImWchar> brought;
     for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
         unsigned int letter = 0;
         at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
-        if (letter <= IM_UNICODE_CODEPOINT_MAX && !isThereFromTheBeginning(static_cast<ImWchar>(letter))) {
-            brought.insert(static_cast<ImWchar>(letter));
-        }
+        const auto wanted = static_cast<ImWchar>(letter);
+        const bool is_letter = letter <= IM_UNICODE_CODEPOINT_MAX && letter != IM_UNICODE_CODEPOINT_INVALID;
+        const bool is_there = isThereFromTheBeginning(wanted) && ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
+        if (is_letter && !is_there) { brought.insert(wanted); }
     }
     if (brought.size() > kMostAdded || std::ranges::includes(added_, brought)) { return false; }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
     added_.merge(brought);
-    // Of letters that several fonts have the first font's are taken.
-    std::vector<std::string> fonts{bytes_};
-    for (const fs::path& file : furtherFontFiles()) {
-        std::string complaint, bytes = fs::exists(file) ? readFont(file, complaint) : std::string();
-        if (!bytes.empty()) { fonts.push_back(std::move(bytes)); }
+    // They are large, and only now needed.
+    if (fonts_.size() == 1) {
+        for (const fs::path& file : furtherFontFiles()) {
+            std::string complaint, bytes = readFont(file, complaint);
+            if (!bytes.empty()) { fonts_.push_back(std::move(bytes)); }
+        }
     }
-    return buildAtlas(fonts, added_) || buildAtlas({bytes_}, {});
+    return buildAtlas(fonts_, added_) || buildAtlas(std::span(fonts_).first(1), {});
 }
 
 }  // namespace binosplat

@@ -37,7 +37,8 @@ public:
     [[nodiscard]] bool add(std::string_view text);
 
 private:
-    std::string bytes_, complaint_;
+    std::vector<std::string> fonts_;  // their bytes, the chosen one first, the further ones once a letter is not in it; none: ImGui's own
+    std::string complaint_;
     std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
 };
 

@@ -3,6 +3,8 @@
 
 #include "app/view/shown_text.h"
 
+#include <algorithm>
+
 namespace binosplat {
 
 bool PanelWidgets::button(const char* name) {
@@ -57,10 +59,17 @@ void PanelWidgets::noteBox(const char* name) {
 }
 
 void writeWrapped(std::string_view text) {
-    const std::string shown = asShown(text);
-    ImGui::PushTextWrapPos(0.0f);
+    // Lines first: what is read from right to left begins on the first of them.
+    const std::string clean = withoutControls(text);
+    const float width = ImGui::GetContentRegionAvail().x;
+    std::string shown;
+    for (const char *at = clean.data(), *const end = at + clean.size(); at < end;) {
+        const char* const stop = std::max(ImGui::GetFont()->CalcWordWrapPositionA(1.0f, at, end, width), at + 1);
+        if (!shown.empty()) { shown += '\n'; }
+        shown += asShown({at, stop});
+        for (at = stop; at < end && *at == ' ';) { ++at; }
+    }
     ImGui::TextUnformatted(shown.data(), shown.data() + shown.size());
-    ImGui::PopTextWrapPos();
 }
 
 }  // namespace binosplat

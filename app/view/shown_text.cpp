@@ -12,16 +12,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD, which no font of ours has
-
-std::string withoutControls(std::string_view text) {
-    std::string clean;
-    for (const char letter : text) {
-        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
-        clean += control ? kReplacement : std::string_view(&letter, 1);
-    }
-    return clean;
-}
+constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD, which is shown as a box
 
 // Hebrew, U+0590, begins the letters that are read from right to left.
 bool mayTurnRound(std::string_view text) {
@@ -52,6 +43,15 @@ std::string turnedRound(const std::string& text) {
 }
 
 }  // namespace
+
+std::string withoutControls(std::string_view text) {
+    std::string clean;
+    for (const char letter : text) {
+        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+        clean += control ? kReplacement : std::string_view(&letter, 1);
+    }
+    return clean;
+}
 
 std::string asShown(std::string_view text) {
     std::string shown = withoutControls(text);

@@ -103,6 +103,7 @@ void Viewer::loseStay(const std::string& why) {
     next_search_ = {};
     waitForQueue();
     panel_now_ = nullptr;
+    canvas_.giveUp();
     stay_.reset();
 }
 
@@ -120,7 +121,7 @@ bool Viewer::comeBack() {
         std::fflush(stdout);
         return true;
     }
-    say((is_gone_ ? "the headset is there again" : why_lost_) + "; another one begins");
+    say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
     stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
     if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
     renderer_.fitImages(*stay_, settings_);
@@ -302,8 +303,11 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     canvas_.bringLetters(namesOn(pages_, status_));
     // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
     const CanvasPointer& hand = panel_.pointer();
+    const bool mouse_pointed = mouse_points_;
     mouse_points_ = hung && hand.place_px ? window_input_.uses_panel && !hand.pressed : mouse_points_ || window_input_.uses_panel;
-    canvas_.begin(mouse_points_ ? window_input_.pointer : hand, step_seconds);
+    CanvasPointer pointer = mouse_points_ ? window_input_.pointer : hand;
+    if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
+    canvas_.begin(pointer, step_seconds);
     obey(drawOverlay(kPanelPx, settings_, pages_, status_));
 }
 

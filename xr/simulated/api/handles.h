@@ -23,6 +23,11 @@ struct Object {
     virtual ~Object() = default;
 };
 
+// As destroyObject would, where the process ends with them.
+inline void endChildren(Object& object) {
+    for (; !object.children.empty(); object.children.pop_back()) { endChildren(*object.children.back()); }
+}
+
 // The only objects without an owner above them: the root, and the process's table of all of them.
 Object& root();
 Object* findObject(std::uint64_t number);

@@ -39,7 +39,10 @@ struct Instance : Object {
     std::map<VkInstance, PFN_vkGetInstanceProcAddr> vulkan_loaders;
     Session* session = nullptr;
 
-    ~Instance() override { Simulation::end(std::move(simulation)); }
+    ~Instance() override {
+        endChildren(*this);
+        Simulation::end(std::move(simulation));
+    }
 
     [[nodiscard]] bool has(const Profile& profile) const {
         const bool is_core = profile.since == Since::k1_0 || (profile.since == Since::k1_1 && is_1_1);
