@@ -78,7 +78,8 @@ TEST_CASE("where the wearer does not let the viewer see them, or the headset can
         const Chosen left = findChosen(run, 6), right = findChosen(run, 10);
         CHECK(left.pixels > 300);
         CHECK(left.middle == right.middle);
-        CHECK(left.middle > 0.4);
-        CHECK(left.middle < 0.65);
+        // Of a few tiles: beside those of a wearer who looks to the left or to the right, see above.
+        CHECK(left.middle > 0.35);
+        CHECK(left.middle < 0.75);
     }
 }
