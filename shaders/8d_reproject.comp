@@ -1,5 +1,5 @@
 // 8d: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
-// threads; the source's place follows from it again in 8f, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
+// threads; the source's place follows from it again in 8e, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
 // A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
 // already, since what lies behind would otherwise show through the cracks. Where colours are copied nothing is: in the paper pixels alone
 // move (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 3). It does not say which pixel a place

@@ -26,7 +26,7 @@ void main() {
     const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
     const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
     if (tile >= size_tiles.x * size_tiles.y) { return; }
-    // Sums stop growing there (8e); 8f adds far less than that.
+    // Sums stop growing there (8f); 8e adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     uint price = 0;
     if (pass.tile_kinds.at[tile] == 0 && error > 0) {

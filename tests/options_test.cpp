@@ -279,9 +279,9 @@ TEST_CASE("stagesAddUpPasses") {
                             {"dominant 7_rasterize", 8.0},
                             {"affiliated 8d_reproject", 16.0},
                             {"affiliated 8a_weigh", 32.0},
-                            {"affiliated 8e_newcomers", 64.0},
+                            {"affiliated 8f_newcomers", 64.0},
                             {"affiliated 8i_select", 128.0},
-                            {"affiliated 8f_resample", 256.0},
+                            {"affiliated 8e_resample", 256.0},
                             {"affiliated 7_rasterize", 512.0}};
     CHECK(stagesOf(Mode::kPredicted, passes) ==
           NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
@@ -290,7 +290,7 @@ TEST_CASE("stagesAddUpPasses") {
 
 TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
     BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0), shared = makeResult("a", Mode::kShared, 1, 10.0);
-    predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8e_newcomers", 5.0}, {"affiliated 8f_resample", 2.0}};
+    predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8f_newcomers", 5.0}, {"affiliated 8e_resample", 2.0}};
     predicted.counters = {{"tiles_weighed_as_moved", 300}};
     shared.pass_ms = {{"dominant 7_rasterize", 7.0}, {"affiliated 4_project", 1.5}, {"affiliated 7_rasterize", 2.5}};
     shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 7000}};

@@ -1,4 +1,4 @@
-// Facts about 8f: what a moved picture looks like, and the error that is expected of it, each started from what the twin's 8d left.
+// Facts about 8e: what a moved picture looks like, and the error that is expected of it, each started from what the twin's 8d left.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -34,7 +34,7 @@ double beyondRounding(const gpu::vec4& got, const glm::dvec4& expected, int chan
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample finds the twin's colours, depths and classes in tiles that are moved, and leaves the others alone") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample finds the twin's colours, depths and classes in tiles that are moved, and leaves the others alone") {
     const glm::vec3 background(0.25f, 0.5f, 0.75f);
     double worst = 0.0, worst_depth = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
@@ -107,7 +107,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample finds the twin's colours, depths and classes
     CHECK(worst_depth <= 1e-6);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample moves a row itself as 8d_reproject would, to the bit") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, to the bit") {
     std::size_t pictures = 0;
     for (StereoCase c : test::makeStereoCases()) {
         if (toDevice(*this, c).rectified() == 0) { continue; }
@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample moves a row itself as 8d_reproject would, to
     CHECK(pictures == 60);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are moved, and none of the others") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample expects the twin's errors of tiles that are moved, and none of the others") {
     std::size_t tiles = 0, other_tiles = 0;
     double worst = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
@@ -205,7 +205,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample expects the twin's errors of tiles that are 
     CHECK(worst <= 0.002);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
     // Nothing moves but by whole pixels: one at inverse depth 0.1 by 1 px to the left, one at 0.4 by 4 px. Colours are the columns'
     // squares.
     const glm::uvec2 size_px(16, 1);
@@ -238,7 +238,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample copies colours as they are, and mixes those 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample makes holes their own parents where they are going to be grouped") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample makes holes their own parents where they are going to be grouped") {
     for (StereoCase c : test::makeStereoCases()) {
         for (const bool forward : {false, true}) {
             CAPTURE(c.name);
@@ -275,7 +275,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample makes holes their own parents where they are
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones than it keeps at a time") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px apart for a unit of inverse depth.
     for (const std::uint32_t width :
          {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
@@ -333,7 +333,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_resample takes rows of any length, also longer ones t
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_resample moves nothing where nothing is worth moving, but paints what is hidden") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample moves nothing where nothing is worth moving, but paints what is hidden") {
     const StereoCase c = test::makeStereoCases().front();
     const Arrived arrived(c);
     StereoOnDevice device = toDevice(*this, c, Rows::kShared);

@@ -20,14 +20,14 @@ constexpr std::size_t kVisible = 12345;
 // Of a whole picture, so that a budget of any number of pairs is exact in single precision.
 constexpr gpu::uint kPictureCost = 1u << 24;
 
-// Tiles as 8f and 8a leave them.
+// Tiles as 8e and 8a leave them.
 struct Tiles {
     glm::uvec2 size{0, 0};
     std::vector<gpu::uint> kinds, errors, costs;
 
     explicit Tiles(glm::uvec2 size_tiles) : size(size_tiles), kinds(count(), 0), errors(count(), 0), costs(count(), 100) {}
     [[nodiscard]] std::size_t count() const { return std::size_t{size.x} * size.y; }
-    // Above this, 8e's sums stop growing.
+    // Above this, 8f's sums stop growing.
     [[nodiscard]] gpu::uint errorOf(std::size_t t) const { return kinds[t] == 0 ? std::min(errors[t], 0x7fffffffu) : 0; }
     // -1: none. Plainly as the device does it: a float's exponent and four bits.
     [[nodiscard]] int binOf(std::size_t t) const {

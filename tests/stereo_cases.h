@@ -176,7 +176,7 @@ inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
 
-// What 8f tells 8e of tiles that are moved: the farthest that arrived in every other row.
+// What 8e tells 8f of tiles that are moved: the farthest that arrived in every other row.
 inline std::vector<gpu::uint> depthsOf(const std::vector<gpu::uint>& arrivals, const std::vector<reference::TileKind>& kinds,
                                        glm::uvec2 size_px) {
     std::vector<gpu::uint> depths(kinds.size(), gpu::kNothingArrived);

@@ -1,4 +1,4 @@
-// Facts about the passes that make one eye's picture from the other's, 8d and 8e (8f: resample_test.cpp), each started from what the twin's
+// Facts about the passes that make one eye's picture from the other's, 8d and 8f (8e: resample_test.cpp), each started from what the twin's
 // pass before it left. Where a place lies on the border of a pixel, float32 may round to either side: such flips have a budget.
 #include "tests/pass_stages.h"
 #include "tests/stereo_cases.h"
@@ -171,7 +171,7 @@ TEST_CASE_FIXTURE(Gpu, "8d_reproject fills a stretch that begins beyond the bord
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_newcomers finds the twin's splats and adds the twin's errors") {
+TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's errors") {
     struct Setting {
         test::ViewedScene view;
         std::array<Eye, 2> eyes;
@@ -211,7 +211,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_newcomers finds the twin's splats and adds the twin's
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_newcomers holds a splat against the farthest that arrived in its tile, and against nothing where nothing did") {
+TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the farthest that arrived in its tile, and against nothing where nothing did") {
     // Small discs of inverse depth 1/3 along the middle row.
     const glm::uvec2 size_px(64, 16);
     const Eye eye = test::makeEye(size_px);

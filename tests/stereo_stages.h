@@ -109,7 +109,7 @@ public:
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
         const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
-        dispatch("8e_newcomers", {rectified(), scene.scene.splatKind()},
+        dispatch("8f_newcomers", {rectified(), scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
                                     .stereo = view(),
@@ -132,7 +132,7 @@ public:
     void resample(const ResampleParts& parts) {
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
-        dispatch("8f_resample",
+        dispatch("8e_resample",
                  {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
                   parts.moves_row},
                  gpu::ResamplePass{.stereo = view(),

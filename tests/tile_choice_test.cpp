@@ -82,7 +82,7 @@ void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_
     std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
     std::vector<Resolved> resolved;
     std::vector<std::uint8_t> classes;
-    // As 8f leaves them: holes are their own parents, and the rest are colours.
+    // As 8e leaves them: holes are their own parents, and the rest are colours.
     std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;

@@ -28,7 +28,7 @@ std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' 
 
 std::string stageOf(std::optional<Mode> mode, const std::string& pass) {
     const std::string bare = bareName(pass);
-    if (bare.starts_with("8d") || bare.starts_with("8f")) { return "reprojection"; }
+    if (bare.starts_with("8d") || bare.starts_with("8e")) { return "reprojection"; }
     if (bare.starts_with("8")) { return "ROI choice"; }
     if (bare < "4") { return "cull+sort"; }
     if (!pass.starts_with("affiliated ")) { return "dominant"; }

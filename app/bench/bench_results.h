@@ -62,7 +62,7 @@ std::string namePoint(const BenchResult& result);
 // The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".
 NamedTimes byPass(const BenchResult& result);
 
-// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8f), "ROI choice" (the rest of 8), and of the
+// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8e), "ROI choice" (the rest of 8), and of the
 // affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
 NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms);
 

@@ -15,7 +15,7 @@ struct StereoBufferNeeds {
 };
 
 // Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the affiliated
-// eye's colours come to lie, row by row, as long as 8f can keep a row of arrivals in shared memory; otherwise here.
+// eye's colours come to lie, row by row, as long as 8e can keep a row of arrivals in shared memory; otherwise here.
 class StereoBuffers {
 public:
     StereoBuffers() = default;
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
-    // Of a row in shared memory, see 8f; 0: it is none.
+    // Of a row in shared memory, see 8e; 0: it is none.
     [[nodiscard]] std::uint32_t rowSteps() const {
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }

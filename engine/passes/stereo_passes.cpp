@@ -52,8 +52,7 @@ KernelTable stereoKernels() {
     append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
     append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
     append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kForward", 2}}));
-    append(table, everyVariant("8e_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
-    for (const KernelVariant& variant : everyVariant("8f_resample", sizeof(gpu::ResamplePass),
+    for (const KernelVariant& variant : everyVariant("8e_resample", sizeof(gpu::ResamplePass),
                                                      {{"kRectified", 2},
                                                       {"kPredictErrors", 2},
                                                       {"kDepth", 2},
@@ -69,6 +68,7 @@ KernelTable stereoKernels() {
         const bool can_move = values[0] == 1 && values[5] > 0;
         if (groups && (values[1] == 0 || values[7] == 0) && (values[8] == 1) == can_move) { table.push_back(variant); }
     }
+    append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
     append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
     append(table, everyVariant("8i_select", sizeof(gpu::SelectPass), {{"kPredicted", 2}}));
@@ -92,8 +92,8 @@ public:
     void findDepthBounds();
     void findEdgeRois();
     void reproject();
-    void findNewcomers();
     void resample();
+    void findNewcomers();
     void groupHoles();
     void price();
     void select();
@@ -116,7 +116,7 @@ private:
     [[nodiscard]] std::uint32_t alongRows() const { return in_.rectified ? 1 : 0; }
     [[nodiscard]] std::uint32_t hidesDominant() const { return in_.dominant_shown.hideAny() ? 1 : 0; }
     [[nodiscard]] std::uint32_t halfFloats() const { return in_.dominant.half_floats ? 1 : 0; }
-    // Whether 8f moves the dominant eye's pixels itself.
+    // Whether 8e moves the dominant eye's pixels itself.
     [[nodiscard]] std::uint32_t movesRows() const { return binosplat::movesRows(in_.rectified, in_.stereo) ? 1 : 0; }
     [[nodiscard]] std::uint32_t copiesColours() const { return in_.settings.forward && !predicts() ? 1 : 0; }
     [[nodiscard]] gpu::uint tileGroups() const { return (in_.stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup; }
@@ -179,25 +179,8 @@ void StereoRecorder::reproject() {
                       offsetof(gpu::StereoCounters, per_pixel_block));
 }
 
-void StereoRecorder::findNewcomers() {
-    commands_.beginPass("affiliated 8e_newcomers");
-    const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
-                                  .eyes = in_.buffers.eyes(),
-                                  .stereo = view(),
-                                  .tile_depths = in_.stereo.tileDepths(),
-                                  .order = in_.buffers.visible.order().values,
-                                  .visible = visible(),
-                                  .dominant_counts = in_.buffers.visible.tileCounts(),
-                                  .tile_kinds = in_.stereo.tileKinds(),
-                                  .tile_errors = in_.stereo.tileErrors(),
-                                  .counters = counters(),
-                                  .chunk_bits = in_.scene.chunkBits(),
-                                  .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
-    dispatchByCounter(kernel("8e_newcomers", pass, {alongRows(), in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
-}
-
 void StereoRecorder::resample() {
-    commands_.beginPass("affiliated 8f_resample");
+    commands_.beginPass("affiliated 8e_resample");
     const gpu::ResamplePass pass{.stereo = view(),
                                  .dominant = in_.dominant.colours.address<gpu::vec4>(),
                                  .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
@@ -215,10 +198,27 @@ void StereoRecorder::resample() {
                                  .background = in_.background};
     const std::uint32_t keeps_classes = in_.stereo.needs().classes || groupsHoles() ? 1 : 0;
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
-    const Kernel& resample_kernel = kernel("8f_resample", pass,
+    const Kernel& resample_kernel = kernel("8e_resample", pass,
                                            {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
                                             halfFloats(), copiesColours(), movesRows()});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
+}
+
+void StereoRecorder::findNewcomers() {
+    commands_.beginPass("affiliated 8f_newcomers");
+    const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
+                                  .eyes = in_.buffers.eyes(),
+                                  .stereo = view(),
+                                  .tile_depths = in_.stereo.tileDepths(),
+                                  .order = in_.buffers.visible.order().values,
+                                  .visible = visible(),
+                                  .dominant_counts = in_.buffers.visible.tileCounts(),
+                                  .tile_kinds = in_.stereo.tileKinds(),
+                                  .tile_errors = in_.stereo.tileErrors(),
+                                  .counters = counters(),
+                                  .chunk_bits = in_.scene.chunkBits(),
+                                  .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
+    dispatchByCounter(kernel("8f_newcomers", pass, {alongRows(), in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
 }
 
 void StereoRecorder::groupHoles() {

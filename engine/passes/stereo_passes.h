@@ -3,9 +3,9 @@
 //   8a_weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
 //   8b_depth_bounds  paper: how deep the picture is
 //   8c_edge_rois     paper: the borders that the dominant eye does not see
-//   8d_reproject     the dominant eye's pixels go to where the affiliated eye sees them; 8f does so itself where that is in their row
-//   8f_resample      every pixel's place in the dominant picture, its colour, and the error to expect
-//   8e_newcomers     predicted: splats that only the affiliated eye sees, nearer than the farthest thing moved in their tile
+//   8d_reproject     the dominant eye's pixels go to where the affiliated eye sees them; 8e does so itself where that is in their row
+//   8e_resample      every pixel's place in the dominant picture, its colour, and the error to expect
+//   8f_newcomers     predicted: splats that only the affiliated eye sees, nearer than the farthest thing moved in their tile
 //   8g_components    paper, on request: connected holes inside the picture
 //   8h_price         predicted: what it costs to mend each tile's error
 //   8i_select        the tiles that are rendered
@@ -76,7 +76,7 @@ struct StereoPassInputs {
     std::optional<Gaze> affiliated_gaze;  // empty: all tiles are seen alike
 };
 
-// Whether 8f moves the dominant eye's pixels itself, row by row: then there is no 8d, and no arrivals in memory.
+// Whether 8e moves the dominant eye's pixels itself, row by row: then there is no 8d, and no arrivals in memory.
 inline bool movesRows(bool rectified, const StereoBuffers& stereo) { return rectified && stereo.sharesRows(); }
 
 // How `gaze` looks to the device.

@@ -34,10 +34,10 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     // A row of pixels reads its tiles' kinds, and adds to their errors; every other row to their depths.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 4 : 1));
     traffic.emplace_back(
-        "8f_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
+        "8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (predict) {
         // counts of tiles; what newcomers read besides is nothing beside it
-        traffic.emplace_back("8e_newcomers", any_moved * kWord * facts.visible / pixels);
+        traffic.emplace_back("8f_newcomers", any_moved * kWord * facts.visible / pixels);
     }
     if (components) { traffic.emplace_back("8g_components", 3 * pixel_class); }
     if (predict) {

@@ -17,7 +17,7 @@ using Traffic = std::vector<std::pair<std::string, double>>;
 struct StereoFrameFacts {
     StereoSettings settings;
     bool may_move = true;            // the dominant picture came with what moving needs
-    bool moves_rows = false;         // 8f does what 8d does otherwise
+    bool moves_rows = false;         // 8e does what 8d does otherwise
     bool half_floats = false;        // what pictures consist of
     bool affiliated_depth = false;   // its D is kept
     bool classes = false;            // of pixels are kept

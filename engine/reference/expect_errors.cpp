@@ -1,4 +1,4 @@
-// 8f: the error to expect of a tile whose pixels are moved.
+// 8e: the error to expect of a tile whose pixels are moved.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

@@ -102,13 +102,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
 // To 19 bits, which is how far the device tells inverse depths apart.
 double roundedDepth(double inverse_depth);
 
-// 8e: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than the farthest
-// that was reprojected in its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
-std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
-                         std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
-                         glm::uvec2 size_px, double newcomer_error);
-
-// 8f: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
+// 8e: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
 struct Resolved {
     PixelClass pixel_class;
     std::uint32_t column;
@@ -116,19 +110,25 @@ struct Resolved {
     std::uint32_t spread;  // a code; 0 where nothing arrived
 };
 std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
-// Likewise 8f: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
+// Likewise 8e: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise 8f where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
+// Likewise 8e where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
 // between two of a row what is linear between these.
 std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
                                     const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise 8f: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
+// Likewise 8e: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px);
-// Likewise 8f: the expected squared error of each unmarked tile: of holes, of pixels whose depth is uncertain, and of sampling.
+// Likewise 8e: the expected squared error of each unmarked tile: of holes, of pixels whose depth is uncertain, and of sampling.
 std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
                                  std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
+
+// 8f: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than the farthest
+// that was reprojected in its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
+std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
+                         std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
+                         glm::uvec2 size_px, double newcomer_error);
 
 // 8g: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
 // With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.

@@ -34,7 +34,7 @@ BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 
-// 8e_newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
+// 8f_newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
 BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;
 
 // A list holds no more: SPIR-V takes the index of an array as a signed number.
@@ -100,7 +100,7 @@ BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
 // What a tile costs to render beside its pairs, in pairs: a workgroup starts and 256 pixels are written.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
-// Moving costs something even where tiles are not moved, since 7 and 8f, or 8d and 8f, go over all pixels: this part of what moving all
+// Moving costs something even where tiles are not moved, since 7 and 8e, or 8d and 8e, go over all pixels: this part of what moving all
 // tiles costs.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
 
@@ -122,7 +122,7 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// 8f keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again. 8d
+// 8e keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again. 8d
 // brings pixels there, as it does for canted eyes whatever the length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;

@@ -1,5 +1,4 @@
-// The passes of a frame, in frame order but for 8e, which follows 8f: for each the struct of its push constants, i.e. what it reads and
-// writes.
+// The passes of a frame, in frame order: for each the struct of its push constants, i.e. what it reads and writes.
 #ifndef BINOSPLAT_SHADERS_SHARED_PASSES_H
 #define BINOSPLAT_SHADERS_SHARED_PASSES_H
 
@@ -141,7 +140,26 @@ struct ReprojectPass {
     Uints shown_mask;  // where the dominant eye has hidden tiles: the others
 };
 
-// 8e_newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
+// 8e_resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
+struct ResamplePass {
+    StereoViews stereo;
+    FloatColours dominant;
+    HalfColours half_dominant;
+    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left
+    FloatColours affiliated;  // out; `moving` may lie in the same row
+    HalfColours half_affiliated;
+    Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
+    Uints tile_kinds;
+    Uints tile_errors;                 // out, where errors are predicted
+    Uints tile_depths;                 // likewise: the farthest that arrived, see 8f_newcomers
+    Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
+    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
+    StereoCounterss counters;
+    Uints shown_mask;  // where the dominant eye has hidden tiles: the others; null where it has none
+    vec3 background;   // of tiles that are hidden
+};
+
+// 8f_newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -155,25 +173,6 @@ struct NewcomersPass {
     StereoCounterss counters;
     uint chunk_bits;
     uint eye;
-};
-
-// 8f_resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
-struct ResamplePass {
-    StereoViews stereo;
-    FloatColours dominant;
-    HalfColours half_dominant;
-    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left
-    FloatColours affiliated;  // out; `moving` may lie in the same row
-    HalfColours half_affiliated;
-    Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
-    Uints tile_kinds;
-    Uints tile_errors;                 // out, where errors are predicted
-    Uints tile_depths;                 // likewise: the farthest that arrived, see 8e_newcomers
-    Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
-    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
-    StereoCounterss counters;
-    Uints shown_mask;  // where the dominant eye has hidden tiles: the others; null where it has none
-    vec3 background;   // of tiles that are hidden
 };
 
 // 8g_components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.

@@ -63,7 +63,7 @@ VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUti
         const std::lock_guard lock(g_load_mutex);
         Recording& recording = g_recordings[commands];
         recording.is_in_present = std::strcmp(label->pLabelName, "10_present") == 0;
-        recording.reprojects = recording.reprojects || std::string(label->pLabelName).find("8f_resample") != std::string::npos;
+        recording.reprojects = recording.reprojects || std::string(label->pLabelName).find("8e_resample") != std::string::npos;
     }
     if (g_begin_label != nullptr) { g_begin_label(commands, label); }
 }

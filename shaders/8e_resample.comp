@@ -1,4 +1,4 @@
-// 8f: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
+// 8e: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
 // Where pixels move along their row alone and a row fits into shared memory (kMovesRow), this pass moves them there itself; otherwise 8d
 // has done so.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
@@ -290,7 +290,7 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
 }
 
 // Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which. The
-// farthest that arrived in a tile, of every other row, is what newcomers (8e) must stand in front of.
+// farthest that arrived in a tile, of every other row, is what newcomers (8f) must stand in front of.
 void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint arrival, uint lanes) {
     const uint slots = max(lanes / kTileSize, 1u), depth = arrival == 0 ? kNothingArrived : arrival >> 6;
     for (uint s = first_slot; s < first_slot + slots; ++s) {
