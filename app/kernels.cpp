@@ -1,6 +1,8 @@
 // `binosplat kernels`: what the driver makes of every kernel in every specialization that a mode uses. Makes pipelines and nothing else,
 // so that it runs on drivers of GPUs that are not there.
 #include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/stereo_passes.h"
@@ -40,7 +42,9 @@ void runKernels(const KernelsOptions& options) {
     const bool has_statistics = context.hasKernelStatistics();
     Json kernels = Json::array();
     std::string text;
-    for (const KernelVariant& variant : allKernels(context)) {
+    std::optional<ProgressLine> progress("kernels");
+    const KernelTable variants = allKernels(context);
+    for (const KernelVariant& variant : variants) {
         const Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
         Json constants = Json::object(), statistics = Json::object();
         for (const auto& [name, value] : variant.constants) { constants[name] = value; }
@@ -49,8 +53,11 @@ void runKernels(const KernelsOptions& options) {
         }
         text += textOf(variant, statistics);
         kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
+        progress->show(static_cast<double>(kernels.size()) / static_cast<double>(variants.size()));
     }
+    progress.reset();
     context.requireNoValidationMessages();
+    stopIfInterrupted();
     if (files) {
         const Json all{{"device", context.deviceName()}, {"kernels", kernels}};
         writeText(files->staging() / "kernels.json", all.dump(2) + "\n");

@@ -55,6 +55,14 @@ BenchResult makeResult(const std::string& scene, Mode mode, std::uint64_t splats
     return result;
 }
 
+template <typename Act>
+std::string errorOf(Act&& act) {
+    try {
+        act();
+    } catch (const Error& error) { return error.what(); }
+    return "";
+}
+
 }  // namespace
 
 TEST_CASE("defaultConfigSaysTheDefaults") {
@@ -293,7 +301,7 @@ TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye"
     predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8f_newcomers", 5.0}, {"affiliated 8e_resample", 2.0}};
     predicted.counters = {{"tiles_weighed_as_moved", 300}};
     shared.pass_ms = {{"dominant 7_rasterize", 7.0}, {"affiliated 4_project", 1.5}, {"affiliated 7_rasterize", 2.5}};
-    shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 7000}};
+    shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 8000}};
     // 10 us a tile, 0.5 us a pair.
     std::vector<BenchResult> results{predicted, shared};
     compareModes(results);
@@ -369,6 +377,61 @@ TEST_CASE("sizeAndRepeatsOfTheCommandLineTakeThePlaceOfTheConfigs") {
     writeText(config, "[bench]\nscenes = [\"builtin:fence\"]\nrepeats = 7\n");
     CHECK(planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", config})).repeats == 7);
     CHECK(planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", config, "--repeats", "3"})).repeats == 3);
+    // A config's own camera is what its series and views start from.
+    writeText(config,
+              "[camera]\nsize = \"256x256\"\neye = [0, 0, -1]\n[bench]\nscenes = [\"builtin:fence\"]\nheadsets = [\"quest2\", \"index\"]\n"
+              "[[series]]\nname = \"a\"\nsizes = \"64x48\"\n[[series]]\nname = \"b\"\n[[views]]\nname = \"near\"\nfov_x = 90\n");
+    const auto planOf = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"bench", "--out", "out", "--config", config});
+        return planBench(parse<BenchOptions>(arguments));
+    };
+    CHECK(sizesOf({}) == std::vector{glm::uvec2(64, 48)});
+    CHECK(planOf({}).series.at(1).sizes_px == std::vector{glm::uvec2(256, 256)});
+    CHECK(planOf({}).views.size() == 1);
+    CHECK(planOf({"--eye", "1,1,1"}).views.empty());
+    CHECK(planOf({}).headsets == std::vector<std::string>{"quest2", "index"});
+    CHECK(planOf({"--headset", "vive"}).headsets == std::vector<std::string>{""});
+}
+
+TEST_CASE("what a bench would measure twice under one name is refused") {
+    const Workplace work;
+    const auto messageOf = [&](const std::string& toml) {
+        writeText(work.path / "a.toml", toml);
+        return errorOf([&] { planBench(parse<BenchOptions>({"bench", "--out", "out", "--config", (work.path / "a.toml").string()})); });
+    };
+    const std::string scene = "[bench]\nscenes = [\"builtin:fence\", \"b.ply\"]\n";
+    CHECK(messageOf("[bench]\nscenes = [\"a\", \"a\"]\n") == "scene a is named twice, names must differ");
+    CHECK(messageOf(scene + "headsets = [\"index\", \"index\"]\n") == "headset index is named twice, names must differ");
+    CHECK(messageOf(scene + "[[series]]\nname = \"s\"\n[[series]]\nname = \"s\"\n") == "series s is named twice, names must differ");
+    CHECK(messageOf(scene + "[[methods]]\nname = \"m\"\nmode = \"paper\"\n[[methods]]\nname = \"m\"\nmode = \"mono\"\n") ==
+          "method m is named twice, names must differ");
+    CHECK(messageOf(scene + "[[views]]\nname = \"v\"\n[[views]]\nname = \"v\"\nscene = \"b.ply\"\n") ==
+          "view v is named twice, names must differ");
+    CHECK(messageOf(scene + "[[views]]\nname = \"v\"\nscene = \"builtin:fence\"\n[[views]]\nname = \"v\"\nscene = \"b.ply\"\n") == "");
+}
+
+TEST_CASE("scenes have their own names, or their paths where those are equal") {
+    BenchPlan plan;
+    plan.scenes = {"a/x.ply", "b/x.ply", "c/y/", "builtin:fence"};
+    CHECK(nameIn(plan, "a/x.ply") == "a/x.ply");
+    CHECK(nameIn(plan, "c/y/") == "y");
+    CHECK(nameIn(plan, "builtin:fence") == "builtin:fence");
+    plan.views = {{"whole", {"y"}, {}}};
+    CHECK(viewsOf(plan, "c/y/", {}).at(0).views.at(0).name == "whole");
+}
+
+TEST_CASE("a flag may be switched off by what stands after its =") {
+    CHECK(render({"--center-roi"}).stereo.center_roi);
+    CHECK_FALSE(render({"--center-roi=false"}).stereo.center_roi);
+    CHECK_THROWS_WITH_AS(render({"--center-roi=often"}), "--center-roi is often, must be true or false", Error);
+}
+
+TEST_CASE("a picture that holds what is no number is not called equal") {
+    CHECK(std::isnan(psnrOf(std::nan(""))));
+    CHECK(psnrOf(0.0) > 1e300);
+    BenchResult result = makeResult("a", Mode::kPaper, 1, 1.0);
+    result.quality = {{"all", 64, std::nan(""), {}, {}, {}}};
+    CHECK(benchTable({"GPU", "", {result}}).find("equal") == std::string::npos);
 }
 
 TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralWays") {

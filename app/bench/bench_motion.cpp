@@ -103,13 +103,13 @@ private:
 };
 
 // One view of a scene at every pose.
-void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion, const Scene& scene,
-              const GpuScene& gpu_scene, const BenchView& view, MotionRun& run) {
+void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion,
+              const std::string& source, const Scene& scene, const GpuScene& gpu_scene, const BenchView& view, MotionRun& run) {
     RunOptions view_run = view.run;
     const glm::uvec2 size_px = plan.series.front().sizes_px.front();
     if (size_px.x > 0) { view_run.camera.size_px = size_px; }
     const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
-    std::string name = std::filesystem::path(scene.name).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+    std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
     MotionPoint point(context, gpu_scene, view_run, plan, name);
     point.warmUp(start, plan.warm_up);
     ProgressLine progress(name);
@@ -134,7 +134,7 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
         for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
             const Scene scene = loadAs(drawn.run, source);
             const GpuScene gpu_scene(context, scene);
-            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, scene, gpu_scene, view, run); }
+            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, source, scene, gpu_scene, view, run); }
         }
     }
     writeText(files.staging() / "motion.csv", motionCsv(run));

@@ -200,7 +200,7 @@ void benchOrders(const BenchOptions& options, const BenchPlan& plan) {
                 RunOptions run = view.run;
                 if (series.sizes_px.front().x > 0) { run.camera.size_px = series.sizes_px.front(); }
                 const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-                const std::string name = std::filesystem::path(source).filename().string() + (view.name.empty() ? "" : ", " + view.name);
+                const std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
                 std::ranges::move(OrderPoint(scene, run, cameras).measure(name), std::back_inserter(results));
             }
         }

@@ -176,8 +176,8 @@ void benchPhotos(const BenchOptions& options, const BenchPlan& plan) {
                 const auto [result, frame] = frames.render(eyes, options.run.camera, method.stereo);
                 const Image picture = frame->readPicture(affiliated);
                 const PhotoScores scores = compareWithPhoto(picture, photo, plan.lpips ? &*plan.lpips : nullptr);
-                rows.push_back({fs::path(source).filename().string(), camera.name, method.name, method.stereo.mode, result.gpu_total_ms,
-                                scores.psnr_db, scores.ssim, compare(picture, full).mean_square, scores.lpips});
+                rows.push_back({nameIn(plan, source), camera.name, method.name, method.stereo.mode, result.gpu_total_ms, scores.psnr_db,
+                                scores.ssim, compare(picture, full).mean_square, scores.lpips});
             }
             progress.show(static_cast<double>(i + 1) / static_cast<double>(photos.size()));
         }

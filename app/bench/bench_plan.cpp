@@ -1,6 +1,7 @@
 // What `bench` measures.
 #include "app/bench/bench_plan.h"
 
+#include "app/bench/bench_results.h"
 #include "app/options/modes.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -108,10 +110,28 @@ void addReferences(BenchPlan& plan, const RunOptions& run) {
     plan.methods.insert(plan.methods.begin(), methods.begin(), methods.end());
     const bool mono = std::ranges::any_of(plan.methods, [](const BenchMethod& method) { return method.stereo.mode == Mode::kMono; });
     if (plan.twin && !mono) { plan.methods.push_back(plainMethod(Mode::kMono, run)); }
-    std::set<std::string> names;
-    for (const BenchMethod& method : plan.methods) {
-        check(names.insert(method.name).second, "method {} is named twice, names must differ", method.name);
+}
+
+bool belongsTo(const BenchView& view, const std::string& scene) {
+    return view.scenes.empty() || std::ranges::count(view.scenes, bareSceneName(scene)) > 0;
+}
+
+// What is measured twice under one name could not be told apart.
+void refuseTwins(const BenchPlan& plan) {
+    const auto refuse = [](const char* what, auto&& all, auto&& nameOf) {
+        std::set<std::string> names;
+        for (const auto& one : all) {
+            check(names.insert(nameOf(one)).second, "{} {} is named twice, names must differ", what, nameOf(one));
+        }
+    };
+    refuse("scene", plan.scenes, [](const std::string& scene) { return scene; });
+    refuse("headset", plan.headsets, [](const std::string& headset) { return headset; });
+    refuse("series", plan.series, [](const BenchSeries& series) { return series.name; });
+    for (const std::string& scene : plan.scenes) {
+        refuse("view", plan.views | std::views::filter([&](const BenchView& view) { return belongsTo(view, scene); }),
+               [](const BenchView& view) { return view.name; });
     }
+    refuse("method", plan.methods, [](const BenchMethod& method) { return method.name; });
 }
 
 }  // namespace
@@ -148,19 +168,28 @@ BenchPlan planBench(const BenchOptions& options) {
         plan.lpips.emplace(weights);
         plan.psnr = true;  // the command line asks for pictures to be compared, though the config may not
     }
-    const CameraOptions& camera = options.run.camera;
-    if (camera.size_px) {
-        for (BenchSeries& series : plan.series) { series.sizes_px = {*camera.size_px}; }
+    const CameraOptions& asked = options.asked;
+    if (asked.size_px) {
+        for (BenchSeries& series : plan.series) { series.sizes_px = {*asked.size_px}; }
     }
-    if (camera.eye || camera.look || !camera.cameras_file.empty()) { plan.views.clear(); }
+    if (asked.eye || asked.look || !asked.cameras_file.empty()) { plan.views.clear(); }
+    if (!asked.headset.empty() || !asked.cameras_file.empty()) { plan.headsets = {""}; }
+    check(plan.headsets.front().empty() || options.run.camera.cameras_file.empty(),
+          "{}: [bench] has headsets and [camera] has cameras, must be one of them", options.run.config);
+    refuseTwins(plan);
     return plan;
 }
 
+std::string nameIn(const BenchPlan& plan, const std::string& scene) {
+    const std::string bare = bareSceneName(scene);
+    const bool is_alone = std::ranges::count(plan.scenes, bare, bareSceneName) == 1;
+    return is_alone ? bare : scene;
+}
+
 std::vector<DrawnViews> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run) {
-    const std::string name = isBuiltin(scene) ? scene : std::filesystem::path(scene).filename().string();
     std::vector<DrawnViews> drawn;
     for (const BenchView& view : plan.views) {
-        if (!view.scenes.empty() && std::ranges::count(view.scenes, name) == 0) { continue; }
+        if (!belongsTo(view, scene)) { continue; }
         const auto same = std::ranges::find_if(drawn, [&](const DrawnViews& other) { return other.run.load == view.run.load; });
         (same != drawn.end() ? *same : drawn.emplace_back(DrawnViews{view.run, {}})).views.push_back(view);
     }

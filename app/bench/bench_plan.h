@@ -51,6 +51,9 @@ struct BenchPlan {
 // Throws Error with file and line; kUsage if no scene is named anywhere.
 BenchPlan planBench(const BenchOptions& options);
 
+// The scene's own name, or all of its path where another scene of the plan has the same name.
+std::string nameIn(const BenchPlan& plan, const std::string& scene);
+
 // The views of a scene by how they draw it; one without a name if the plan has none for it.
 std::vector<DrawnViews> viewsOf(const BenchPlan& plan, const std::string& scene, const RunOptions& run);
 

@@ -19,7 +19,7 @@ struct Runner {
     BenchMethod method;
     std::vector<double> total_ms;
     std::map<std::string, std::vector<double>> pass_ms;
-    FrameResult last;
+    FrameResult last, compared;
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;
     bool is_twin = false;
@@ -42,12 +42,14 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
     if (!runner.is_twin) { result.mode = runner.method.stereo.mode; }
+    result.dominant = runner.method.stereo.dominant;
     result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
     for (const auto& [name, ms] : addUp(runner.last.gpu_ms)) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
     result.total_ms = median(runner.total_ms);
     result.least_ms = std::ranges::min(runner.total_ms);
     result.most_ms = std::ranges::max(runner.total_ms);
     result.counters = runner.last.counters;
+    result.counters.insert(runner.compared.counters.begin(), runner.compared.counters.end());  // those that cost time
     result.peak_gpu_bytes = runner.peak_gpu_bytes;
     result.tiles_rendered = runner.last.tiles_rendered;
     result.work_rendered = runner.last.work_rendered;
@@ -82,9 +84,11 @@ Image renderFull(const StereoOptions& stereo, const BenchPoint& point, MethodFra
 
 // Memory and pictures of a method, before any of its frames count.
 Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPlan& plan, MethodFrames& frames, const Image& full) {
-    Runner runner{method, {}, {}, {}, 0, {}};
-    const auto [result, frame] = frames.renderAlone(point.cameras, point.run.camera, method.stereo);
-    runner.peak_gpu_bytes = result.peak_gpu_bytes;
+    Runner runner;
+    runner.method = method;
+    runner.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method.stereo);
+    const auto [result, frame] = frames.render(point.cameras, point.run.camera, method.stereo, true);
+    runner.compared = result;
     if (plan.psnr && reprojects(method.stereo.mode)) {
         const int affiliated = 1 - method.stereo.dominant;
         const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
@@ -94,30 +98,39 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
     return runner;
 }
 
+// Whether they do with the same buffers. A frame of `predicted` also remembers of the one before what that asked for.
+bool needSame(const StereoOptions& a, const StereoOptions& b) {
+    if (a.mode != b.mode) { return false; }
+    if (a.mode == Mode::kPredicted) { return a == b; }
+    return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == "inverse") == (b.depth == "inverse"));
+}
+
 }  // namespace
+
+StereoFrame& MethodFrames::frameFor(const StereoOptions& stereo) {
+    const auto there = std::ranges::find_if(frames_, [&](const Entry& entry) { return needSame(entry.first_asked, stereo); });
+    if (there != frames_.end()) { return *there->frame; }
+    return *frames_.emplace_back(Entry{stereo, std::make_unique<StereoFrame>(context_, scene_)}).frame;
+}
 
 MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo,
                                             bool compared) {
     stopIfInterrupted();
     FrameSettings settings = frameSettings(camera, stereo);
     settings.gazes = gazesOf(cameras, stereo);
-    settings.keep_classes = compared;
+    settings.keep_classes = settings.square_boxes = compared;
     settings.half_floats = !compared;  // as a viewer has it
     settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
-    const bool reprojected = reprojects(settings.mode);
-    const bool predicted = settings.mode == Mode::kPredicted;
-    auto& frame = frames_[{settings.mode, reprojected && stereo.depth != "inverse", reprojected && stereo.center_roi,
-                           predicted ? stereo.budget : 0.0, predicted ? stereo.move_cost : 0}];
-    if (frame == nullptr) { frame = std::make_unique<StereoFrame>(context_, scene_); }
+    StereoFrame& frame = frameFor(stereo);
     const std::span<const Eye> eyes = settings.mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-    return {frame->render(eyes, settings), frame.get()};
+    return {frame.render(eyes, settings), &frame};
 }
 
-MethodFrames::Rendered MethodFrames::renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
+std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo) {
     frames_.clear();
     MemoryUse& use = context_.memoryUse();
     use.peak_bytes = use.current_bytes.load();
-    return render(cameras, camera, stereo, true);
+    return render(cameras, camera, stereo).result.peak_gpu_bytes;
 }
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {

@@ -7,10 +7,8 @@
 #include "engine/frame.h"
 #include "engine/scene/scene.h"
 
-#include <map>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace binosplat {
@@ -25,18 +23,24 @@ public:
         FrameResult result;
         StereoFrame* frame;
     };
-    // `compared`: the pictures are read and compared, with what made each pixel; otherwise they are as a viewer has them.
+    // `compared`: the pictures are read and compared, with what made each pixel and with counters that cost time; otherwise they are as a
+    // viewer has them.
     Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false);
 
-    // The most memory that the program holds while nothing but this method's buffers are there. Lets go of all others.
-    Rendered renderAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
+    // The most memory, in bytes, that the program holds while nothing but this method's buffers are there, as a viewer has them. Lets go of
+    // all others.
+    std::uint64_t peakAlone(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo);
 
 private:
-    // Mode, whether D is read, whether holes are grouped; and what a frame of `predicted` remembers of the one before: what it asked for.
-    using Needs = std::tuple<Mode, bool, bool, double, std::uint32_t>;
+    struct Entry {
+        StereoOptions first_asked;
+        std::unique_ptr<StereoFrame> frame;
+    };
+    StereoFrame& frameFor(const StereoOptions& stereo);
+
     const Context& context_;
     const GpuScene& scene_;
-    std::map<Needs, std::unique_ptr<StereoFrame>> frames_;
+    std::vector<Entry> frames_;
 };
 
 struct BenchPoint {

@@ -49,7 +49,7 @@ double squareOf(const Image& a, const Image& b, std::size_t pixel) {
 
 }  // namespace
 
-double psnrOf(double mean_square) { return mean_square > 0.0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity(); }
+double psnrOf(double mean_square) { return mean_square == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * std::log10(mean_square); }
 
 double OriginScores::psnrDb() const { return psnrOf(mean_square); }
 

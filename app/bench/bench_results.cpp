@@ -1,6 +1,8 @@
 // What follows from what `bench` measured.
 #include "app/bench/bench_results.h"
 
+#include "engine/scene/procedural.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +52,7 @@ std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
 std::optional<double> moveCost(const BenchResult& predicted, const BenchResult* shared) {
     const std::uint64_t moved = counterOf(predicted, "tiles_weighed_as_moved");
     if (predicted.mode != Mode::kPredicted || shared == nullptr || moved == 0) { return std::nullopt; }
-    const double pairs = 0.5 * static_cast<double>(counterOf(*shared, "tile_pairs_left") + counterOf(*shared, "tile_pairs_right"));
+    const auto pairs = static_cast<double>(counterOf(*shared, shared->dominant == kLeft ? "tile_pairs_right" : "tile_pairs_left"));
     const double pair_ms = pairs > 0.0 ? sumOf(stagesOf(Mode::kShared, shared->pass_ms), "affiliated") / pairs : 0.0;
     if (!(pair_ms > 0.0)) { return std::nullopt; }
     return sumOf(stagesOf(Mode::kPredicted, predicted.pass_ms), "reprojection") / static_cast<double>(moved) / pair_ms;
@@ -66,6 +68,11 @@ std::optional<double> meanSquareOf(const BenchResult& result) {
 }
 
 }  // namespace
+
+std::string bareSceneName(const std::string& scene) {
+    const std::filesystem::path path(scene);
+    return isBuiltin(scene) ? scene : (path.has_filename() ? path : path.parent_path()).filename().string();
+}
 
 std::string modeNameOf(const BenchResult& result) { return result.mode ? std::string(nameOf(*result.mode)) : "twin"; }
 
@@ -93,7 +100,7 @@ bool samePoint(const BenchResult& a, const BenchResult& b) {
 }
 
 std::string namePoint(const BenchResult& result) {
-    std::string name = std::filesystem::path(result.scene).filename().string();
+    std::string name = bareSceneName(result.scene);
     for (const std::string& part : {result.view, result.headset}) {
         if (!part.empty()) { name += ", " + part; }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/bench/bench_quality.h"
+#include "engine/geometry.h"
 #include "engine/mode.h"
 
 #include <glm/glm.hpp>
@@ -26,7 +27,8 @@ using NamedTimes = std::vector<std::pair<std::string, double>>;
 struct BenchResult {
     std::string series, scene, view, headset, method;
     std::optional<Mode> mode;  // empty: the twin
-    std::string backbone;      // what the splats are drawn as: 2DGS or 3DGS
+    Side dominant = kLeft;
+    std::string backbone;  // what the splats are drawn as: 2DGS or 3DGS
     std::uint64_t splats = 0;
     glm::uvec2 size_px{0, 0};  // per eye
     std::uint32_t frames = 0;
@@ -56,6 +58,8 @@ double percentile(std::vector<double> values, double share);
 bool samePoint(const BenchResult& a, const BenchResult& b);
 // As the tables write it; "twin" where there is no mode.
 std::string modeNameOf(const BenchResult& result);
+// Of a file or folder its own name, whole of a built-in scene.
+std::string bareSceneName(const std::string& scene);
 // "atelier, near, quest2, 1000 splats (2DGS), 512x512 per eye".
 std::string namePoint(const BenchResult& result);
 

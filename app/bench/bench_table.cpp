@@ -15,7 +15,7 @@ std::string ratioText(const std::optional<double>& ratio) { return ratio ? fmt::
 
 std::string psnrText(const OriginScores* scores) {
     if (scores == nullptr) { return "-"; }
-    return scores->mean_square > 0.0 ? fmt::format("{:.2f}", scores->psnrDb()) : "equal";
+    return scores->mean_square == 0.0 ? "equal" : fmt::format("{:.2f}", scores->psnrDb());
 }
 
 std::string scoreText(const std::optional<double>& score) { return score ? fmt::format("{:.4f}", *score) : "-"; }

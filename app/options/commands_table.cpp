@@ -66,12 +66,15 @@ void requireBenchKind(const BenchOptions& bench) {
            "--motion and --lpips contradict each other: frames in motion are compared by PSNR alone");
     refuse(bench.orders && (!bench.motion_file.empty() || !bench.photos_folder.empty() || !bench.lpips_weights.empty()),
            "--orders and --motion, --photos or --lpips contradict each other: orders are compared with one of each pixel's own, by PSNR");
+    const bool measures_speed = bench.motion_file.empty() && bench.photos_folder.empty() && !bench.orders;
+    refuse(bench.repeats != 0 && !measures_speed, "--repeats and --motion, --photos or --orders contradict each other");
     refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
 }
 
 Options makeBench(const Settings& line) {
     BenchOptions bench;
     if (const auto scenes = line.find("SCENE"); scenes != line.end()) { bench.scenes = scenes->second.items; }
+    bench.asked = runOptions(line).camera;
     bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, &bench.tables);
     readRows(benchRows(), line, bench);
     requireBenchKind(bench);

@@ -68,8 +68,9 @@ Settings settingsOf(const CommandLine& line) {
         if (const auto words = line.words.find(key); words != line.words.end()) {
             settings.emplace(key, Setting{key, words->second});
         } else {
+            // A flag holds "true", or what is written after its =.
             const auto value = line.values.find(key);
-            settings.emplace(key, Setting{"--" + key, {value == line.values.end() ? "true" : value->second}});
+            settings.emplace(key, Setting{"--" + key, {value == line.values.end() ? option->results().back() : value->second}});
         }
     }
     return settings;

@@ -48,6 +48,7 @@ struct StereoOptions {
     double newcomer_error = 0.3;
     double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere
     std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: where the lenses are best
+    bool operator==(const StereoOptions&) const = default;
 };
 
 inline constexpr double kDefaultIpdMetres = 0.063;
@@ -85,6 +86,7 @@ struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
+    CameraOptions asked;                 // of `run.camera` what the command line says, and not the config
     std::vector<SettingsTable> tables;   // the config's tables that the bench alone reads, see bench_plan.h
     std::string motion_file;             // --motion: head poses to play, relative to the camera
     std::string motion_axes = "openxr";  // --motion-axes: of the recording

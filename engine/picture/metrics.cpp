@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-double Difference::psnrDb() const { return mean_square > 0.0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity(); }
+double Difference::psnrDb() const { return mean_square == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * std::log10(mean_square); }
 
 Difference compare(const Image& a, const Image& b, int channels, double threshold) {
     check(a.size_px == b.size_px, "cannot compare a picture of {}x{} pixels with one of {}x{}", a.size_px.x, a.size_px.y, b.size_px.x,
