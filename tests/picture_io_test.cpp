@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -117,6 +118,43 @@ TEST_CASE("failedWriteLeavesNothing") {
     CHECK(fs::is_empty(folder.path));
 }
 
+#ifdef BINOSPLAT_OPENIMAGEIO
+
+TEST_CASE("colours of a picture with alpha are read as they are stored") {
+    // One pixel: 200, 100, 50, and an alpha of 128.
+    constexpr unsigned char kPng[] = {0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+                                      0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00,
+                                      0x00, 0x1f, 0x15, 0xc4, 0x89, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                      0x9c, 0x63, 0x38, 0x91, 0x62, 0xd4, 0x00, 0x00, 0x05, 0x35, 0x01, 0xdf, 0x73, 0x62,
+                                      0xe3, 0xdb, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+    const Folder folder;
+    std::ofstream(folder.path / "a.png", std::ios::binary).write(reinterpret_cast<const char*>(kPng), sizeof kPng);
+    const Image image = readPicture(folder.path / "a.png");
+    REQUIRE(image.values.size() == 4);
+    CHECK(image.values[0] == doctest::Approx(200.0 / 255.0));
+    CHECK(image.values[1] == doctest::Approx(100.0 / 255.0));
+    CHECK(image.values[2] == doctest::Approx(50.0 / 255.0));
+}
+
+TEST_CASE("a volume is no picture") {
+    // DDS of 2x2x2 pixels of four bytes: size of the header, what it holds, height, width, bytes a row, depth, mips, 11 words that nobody
+    // uses, the kind of pixels (their header's size, RGB with alpha, no code, bits, masks), and that it is a volume.
+    constexpr std::array<std::uint32_t, 31> kHeader{124,  0x801007, 2,        2,          8,      2,        1, 0,  0,    0, 0,
+                                                    0,    0,        0,        0,          0,      0,        0, 32, 0x41, 0, 32,
+                                                    0xff, 0xff00,   0xff0000, 0xff000000, 0x1008, 0x200000, 0, 0,  0};
+    const Folder folder;
+    {
+        std::ofstream file(folder.path / "a.dds", std::ios::binary);
+        file.write("DDS ", 4).write(reinterpret_cast<const char*>(kHeader.data()), sizeof kHeader);
+        file << std::string(32, 'x');
+    }
+    const std::string message =
+        (folder.path / "a.dds").string() + ": has 2x2x2 pixels of 4 channels, must be a flat picture of up to 2^30 values";
+    CHECK_THROWS_WITH_AS(readPicture(folder.path / "a.dds"), message.c_str(), Error);
+}
+
+#endif
+
 TEST_CASE("truncatedAndForeignFilesAreErrors") {
     const Folder folder;
     writePfm(folder.path / "a.pfm", makeRamp({8, 8}, 3));
@@ -126,5 +164,12 @@ TEST_CASE("truncatedAndForeignFilesAreErrors") {
     CHECK_THROWS_AS(readPicture(folder.path / "b.pfm"), Error);
     std::ofstream(folder.path / "huge.ppm") << "P6\n4000000000 4000000000\n255\nx";
     CHECK_THROWS_AS(readPicture(folder.path / "huge.ppm"), Error);
+    // What a header promises is not reserved before the file is known to hold it.
+    for (const char* header : {"PF\n30000 30000\n-1\n", "P6\n30000 30000\n255\n"}) {
+        const fs::path path = folder.path / (header[1] == 'F' ? "promise.pfm" : "promise.ppm");
+        std::ofstream(path) << header << "xyz";
+        const std::string bytes = header[1] == 'F' ? "10800000000" : "2700000000";
+        CHECK_THROWS_WITH_AS(readPicture(path), (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(), Error);
+    }
     CHECK_THROWS_AS(readPicture(folder.path / "none.exr"), Error);
 }

@@ -29,6 +29,8 @@ fs::path withExtension(const fs::path& stem, const char* extension) { return ste
 
 #ifdef BINOSPLAT_OPENIMAGEIO
 
+constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 30;
+
 // The library's messages can span lines; ours are one.
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
@@ -66,9 +68,15 @@ void writePng(const fs::path& path, const Image& rgb) {
 }
 
 Image readWithLibrary(const fs::path& path) {
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
+    OIIO::ImageSpec as_stored;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);  // colours are not multiplied by alpha
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &as_stored);
     check(input != nullptr, "{}: cannot be read ({}), must be an image file", path.string(), oneLine(OIIO::geterror()));
     const OIIO::ImageSpec& spec = input->spec();
+    const bool is_flat = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && spec.nchannels > 0 && !spec.deep;
+    check(is_flat && spec.image_pixels() <= kMaxValues / static_cast<std::uint64_t>(spec.nchannels),
+          "{}: has {}x{}x{} pixels of {} channels{}, must be a flat picture of up to 2^30 values", path.string(), spec.width, spec.height,
+          spec.depth, spec.nchannels, spec.deep ? ", deep" : "");
     Image image{{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)}, spec.nchannels, {}};
     image.values.resize(image.pixelCount() * static_cast<std::size_t>(image.channels));
     const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data());

@@ -55,9 +55,19 @@ Header readHeader(std::ifstream& file, const fs::path& path) {
     return header;
 }
 
+// Before anything is reserved for what the header promises.
+void requireBytes(std::ifstream& file, const fs::path& path, std::uint64_t bytes) {
+    const std::streamoff begin = file.tellg();
+    file.seekg(0, std::ios::end);
+    const std::streamoff there = file.tellg() - begin;
+    file.seekg(begin);
+    check(file.good() && static_cast<std::uint64_t>(there) >= bytes, "{}: ends after {} of {} bytes of pixels", path.string(), there,
+          bytes);
+}
+
 void readBytes(std::ifstream& file, const fs::path& path, void* target, std::size_t bytes) {
     file.read(static_cast<char*>(target), static_cast<std::streamsize>(bytes));
-    check(static_cast<std::size_t>(file.gcount()) == bytes, "{}: ends after {} of {} bytes of pixels", path.string(), file.gcount(), bytes);
+    check(static_cast<std::size_t>(file.gcount()) == bytes, "{}: cannot be read", path.string());
 }
 
 }  // namespace
@@ -95,6 +105,7 @@ Image readPfm(const fs::path& path) {
     check((header.magic == "PF" || header.magic == "Pf") && header.last < 0.0, "{}: must be a little-endian PFM file", path.string());
     Image image{header.size_px, header.magic == "PF" ? 3 : 1, {}};
     const std::size_t row_values = std::size_t{image.size_px.x} * static_cast<std::size_t>(image.channels);
+    requireBytes(file, path, std::uint64_t{row_values} * image.size_px.y * sizeof(float));
     image.values.resize(row_values * image.size_px.y);
     for (std::size_t y = image.size_px.y; y-- > 0;) { readBytes(file, path, &image.values[y * row_values], row_values * sizeof(float)); }
     return image;
@@ -116,7 +127,9 @@ Image readPnm(const fs::path& path) {
     check((header.magic == "P6" || header.magic == "P5") && header.last == 255.0, "{}: must be a binary PPM or PGM file of 8 bits",
           path.string());
     Image image{header.size_px, header.magic == "P6" ? 3 : 1, {}};
-    std::vector<unsigned char> bytes(image.pixelCount() * static_cast<std::size_t>(image.channels));
+    const std::size_t count = image.pixelCount() * static_cast<std::size_t>(image.channels);
+    requireBytes(file, path, count);
+    std::vector<unsigned char> bytes(count);
     readBytes(file, path, bytes.data(), bytes.size());
     image.values.reserve(bytes.size());
     for (unsigned char byte : bytes) { image.values.push_back(static_cast<float>(byte) / 255.0f); }
