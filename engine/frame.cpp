@@ -144,11 +144,14 @@ std::uint64_t StereoFrame::renderAtMostTwice(std::span<const Eye> eyes, const Fr
                                              const std::function<void(Commands&)>& append) {
     renderOnce(eyes, settings, append);
     const bool guesses_affiliated = stereoSettingsOf(settings).patching != Patching::kNone && reprojects(settings.mode) && dominantIsVoid();
-    if (growIfNeeded()) { return 0; }
+    if (!growIfItFits()) {
+        first_frame_ = false;
+        return 0;
+    }
     if (guesses_affiliated) { makeRoomForPatches(); }
     renderOnce(eyes, settings, append);
     // What is still short has room the next time.
-    growIfNeeded();
+    if (!growIfItFits()) { first_frame_ = false; }
     return 1;
 }
 
@@ -176,9 +179,7 @@ void StereoFrame::makeRoomForVisible(std::span<const Eye> eyes, const FrameSetti
     flight.commands.copy(buffers_.state, flight.readback, sizeof(FrameState));
     flight.commands.submitAndWait();
     state_ = flight.readback.mapped<FrameState>()[0];
-    // Of pairs nothing is known yet.
-    const FrameCapacity wanted = roomFor(1.0);
-    if (wanted != buffers_.capacity()) { growFrameBuffers(context_, buffers_, wanted); }
+    growIfItFits();  // of pairs nothing is known yet
 }
 
 StereoFrame::Shape StereoFrame::shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) const {

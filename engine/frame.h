@@ -161,7 +161,8 @@ private:
     // Until the lists had room; how often it was done again.
     std::uint64_t renderUntilComplete(std::span<const Eye> eyes, const FrameSettings& settings,
                                       const std::function<void(Commands&)>& append);
-    // The same for who shows frames: once more at most. What has no room even then shows background, and has room the next time.
+    // The same for who shows frames: once more at most. What has no room even then shows background, and has room the next time if the
+    // device has that much memory.
     std::uint64_t renderAtMostTwice(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);
     void renderOnce(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);
     // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
@@ -189,9 +190,14 @@ private:
     [[nodiscard]] bool dominantIsVoid() const;
     // Whether the lists had room; if not, makes room.
     bool growIfNeeded();
-    // Of the lists, for `ahead` times what was needed.
-    [[nodiscard]] bool hasRoom(double ahead) const { return roomFor(ahead) == buffers_.capacity(); }
-    [[nodiscard]] FrameCapacity roomFor(double ahead) const;
+    // Whether it made room: with some to spare, or as much as is needed where that does not fit.
+    bool growIfItFits();
+    // False, and the lists as they were, where the device has not that much memory.
+    bool tryToGrow(const FrameCapacity& wanted);
+    // Of the lists, for `ahead` times what was needed; those that must grow have room for `spare` times that.
+    [[nodiscard]] bool hasRoom(double ahead) const { return roomFor(ahead, spareFor(ahead)) == buffers_.capacity(); }
+    [[nodiscard]] FrameCapacity roomFor(double ahead, double spare) const;
+    [[nodiscard]] double spareFor(double ahead) const;
     // Whether a list had no room at all.
     [[nodiscard]] bool isCutShort() const;
     [[nodiscard]] FrameResult collect(const Flight& flight) const;

@@ -80,12 +80,15 @@ bool StereoFrame::dominantIsVoid() const {
     return visible.needed != visible.count || state_.pairs[dominant_].needed != state_.pairs[dominant_].count;
 }
 
-FrameCapacity StereoFrame::roomFor(double ahead) const {
+double StereoFrame::spareFor(double ahead) const {
     // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
-    const double slack = ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
+    return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
+}
+
+FrameCapacity StereoFrame::roomFor(double ahead, double spare) const {
     const auto enough = [&](std::uint32_t needed, std::uint32_t capacity) {
         if (ahead * needed <= capacity) { return capacity; }
-        const double roomy = std::min(std::ceil(needed * slack / 1024.0) * 1024.0, 2147482624.0);
+        const double roomy = std::min(std::ceil(needed * spare / 1024.0) * 1024.0, 2147482624.0);
         return std::max(needed, static_cast<std::uint32_t>(roomy));
     };
     const FrameCapacity now = buffers_.capacity();
@@ -107,7 +110,7 @@ FrameCapacity StereoFrame::roomFor(double ahead) const {
 }
 
 bool StereoFrame::growIfNeeded() {
-    const FrameCapacity wanted = roomFor(1.0);
+    const FrameCapacity wanted = roomFor(1.0, spareFor(1.0));
     if (wanted == buffers_.capacity()) {
         first_frame_ = false;
         return true;
@@ -116,12 +119,32 @@ bool StereoFrame::growIfNeeded() {
     return false;
 }
 
+bool StereoFrame::tryToGrow(const FrameCapacity& wanted) {
+    const FrameCapacity before = buffers_.capacity();
+    try {
+        growFrameBuffers(context_, buffers_, wanted);
+        return true;
+    } catch (const Error&) {
+        growFrameBuffers(context_, buffers_, before);
+        return false;
+    }
+}
+
+bool StereoFrame::growIfItFits() {
+    for (const double spare : {spareFor(1.0), 1.0}) {
+        const FrameCapacity wanted = roomFor(1.0, spare);
+        if (wanted == buffers_.capacity()) { return false; }
+        if (tryToGrow(wanted)) { return true; }
+    }
+    return false;
+}
+
 void StereoFrame::makeRoomForPatches() {
     // Of the other eye's work: all, or the share that is cheap to render and the budget.
     const double share = may_move_ ? 0.5 : 1.0;
     FrameCapacity wanted = buffers_.capacity();
     wanted.pairs = std::max(wanted.pairs, static_cast<std::uint32_t>(share * std::min(state_.pairs[dominant_].needed, gpu::kMaxItems)));
-    if (wanted != buffers_.capacity()) { growFrameBuffers(context_, buffers_, lendWhatFits(wanted)); }
+    if (wanted != buffers_.capacity()) { tryToGrow(lendWhatFits(wanted)); }
 }
 
 bool StereoFrame::isCutShort() const {
@@ -130,16 +153,9 @@ bool StereoFrame::isCutShort() const {
 }
 
 void StereoFrame::makeRoomAhead() {
-    const FrameCapacity before = buffers_.capacity();
-    const FrameCapacity wanted = roomFor(kRoomAhead);
-    if (!room_ahead_fits_ || wanted == before) { return; }
-    try {
-        growFrameBuffers(context_, buffers_, wanted);
-    } catch (const Error&) {
-        // It goes without, as long as the lists themselves fit.
-        room_ahead_fits_ = false;
-        growFrameBuffers(context_, buffers_, before);
-    }
+    if (!room_ahead_fits_ || hasRoom(kRoomAhead)) { return; }
+    // It goes without, as long as the lists themselves fit.
+    room_ahead_fits_ = tryToGrow(roomFor(kRoomAhead, spareFor(kRoomAhead)));
 }
 
 }  // namespace binosplat

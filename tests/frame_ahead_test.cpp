@@ -180,6 +180,38 @@ TEST_CASE_FIXTURE(Gpu, "a frame that finds no room although its eyes did not jum
     CHECK(frame.readPicture(kRight).values == waited.readPicture(kRight).values);
 }
 
+TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture, not the session") {
+    const ViewedScene view = viewAtelier();
+    FrameSettings blind = makeSettings(Mode::kShared), seeing = makeSettings(Mode::kShared);
+    blind.near = 1e4;
+    const FrameOptions small{.first_capacity = {1, 1}, .threads_per_cell = 0};
+    const std::uint64_t before = context().memoryUse().current_bytes;
+    const GpuScene roomy_scene(context(), view.scene);
+    StereoFrame roomy(context(), roomy_scene, small);
+    roomy.render(eyesAt(view.eye, 0), blind);
+    const std::uint64_t least = context().memoryUse().current_bytes - before;
+    roomy.render(eyesAt(view.eye, 0), seeing);
+    const std::uint64_t most = context().memoryUse().current_bytes - before;
+
+    const Context tight({.device = {}, .validation = true, .memory_limit_bytes = (least + most) / 2});
+    const GpuScene scene(tight, view.scene);
+    StereoFrame frame(tight, scene, small);
+    for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, 0), blind); }
+    FrameResult last{};
+    for (int step = 0; step < 4; ++step) {
+        if (auto result = frame.renderAhead(eyesAt(view.eye, 0), seeing)) { last = std::move(*result); }
+    }
+    CHECK(count(last, "frames_cut_short") > 0);
+    CHECK(count(last, "tile_pairs_left") == 0);
+    // What fits is shown again.
+    const std::uint64_t cut_short = count(last, "frames_cut_short");
+    for (int step = 0; step < 4; ++step) {
+        if (auto result = frame.renderAhead(eyesAt(view.eye, 0), blind)) { last = std::move(*result); }
+    }
+    CHECK(count(last, "frames_cut_short") <= cut_short + 2);  // two were under way
+    CHECK(tight.validationMessages().empty());
+}
+
 TEST_CASE_FIXTURE(Gpu, "other sizes, modes and hidden tiles wait for the frames that are under way") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
