@@ -27,6 +27,7 @@ vec3 encode(vec3 light) { return mix(1.055 * pow(light, vec3(1 / 2.4)) - 0.055, 
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
+    if (kind == kTileHidden) { return colour; }  // nothing says what made its pixels
     const uint pixel_class = (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u;
     vec3 shade;
     if (kind == kTileEdge) {

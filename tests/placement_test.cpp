@@ -186,6 +186,15 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
     CHECK(roomFromEyes(views)[1].orientation != eyes[0].orientation);
     views[1].pose = {q, xr::toXr(right + glm::dvec3(0, 0.001, 0))};
     checkNear(roomFromEyes(views)[1].position, right + glm::dvec3(0, 0.001, 0), 1e-6);
+    // The same for their angles.
+    views[0].fov = {-0.9f, 0.8f, 0.85f, -0.95f};
+    views[1].fov = {-0.8f, 0.9f, std::nextafter(0.85f, 1.0f), std::nextafter(-0.95f, 0.0f)};
+    const std::array<xr::EyeView, 2> alike = withoutNoise(views);
+    CHECK(alike[1].fov.angleUp == 0.85f);
+    CHECK(alike[1].fov.angleDown == -0.95f);
+    CHECK(alike[1].fov.angleLeft == -0.8f);
+    views[1].fov.angleUp = 0.8501f;
+    CHECK(withoutNoise(views)[1].fov.angleUp == 0.8501f);
 }
 
 TEST_CASE("what the panel is set to survives its file") {

@@ -102,6 +102,27 @@ TEST_CASE_FIXTURE(Gpu, "pictures become the bytes of their twin, at every order 
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that no lens shows") {
+    const glm::uvec2 size_px(3 * gpu::kTileSize, gpu::kTileSize);
+    const std::vector<glm::vec4> colours(size_px.x * size_px.y, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    const Buffer in = upload("colours", colours), pixels = allocate<std::uint32_t>("pixels", colours.size());
+    const Buffer kinds = upload("kinds", std::vector<std::uint32_t>{gpu::kTileHidden, gpu::kTileEdge, 0});
+    const Buffer classes = upload("classes", std::vector<std::uint32_t>(3 * gpu::kTileSize, 0xaaaaaaaa));  // holes, all of them
+    static_assert(gpu::kHole == 2);
+    gpu::PresentPass pass{};
+    pass.colours = in.address<gpu::vec4>();
+    pass.tile_kinds = kinds.address<gpu::uint>();
+    pass.pixel_classes = classes.address<gpu::uint>();
+    pass.pixels = pixels.address<gpu::uint>();
+    pass.size_px = size_px;
+    const Kernel kernel(context(), "10_present", sizeof(pass), {0, 0, 1, 0, 0, 0});
+    run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
+    const std::vector<std::uint32_t> shown = readBack<std::uint32_t>(pixels, colours.size());
+    CHECK(shown[0] == 0xff000000);
+    CHECK(shown[gpu::kTileSize] == 0xff662400);      // 0.4 of 0, 0.35, 1
+    CHECK(shown[2 * gpu::kTileSize] == 0xff000066);  // 0.4 of red
+}
+
 TEST_CASE_FIXTURE(Gpu, "red comes first, opaque; with blue first it comes third") {
     const std::vector<glm::vec4> colours{{1.0f, 0.5f, 0.0f, 0.25f}};
     CHECK(runPresent(*this, {1, 1}, colours, {}, {false, false, 0.2}).pixels[0] == 0xff0080ffu);

@@ -10,7 +10,7 @@ using namespace binosplat::test;
 namespace {
 
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
-const std::string kScene = "builtin:fence --load-first --mode mono";
+const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
 const std::string kJointless = "extension XR_EXT_hand_tracking off\n";
 
 // Lines that put a hand at a place and let it look at another one.
@@ -206,7 +206,7 @@ TEST_CASE("the view's edge is dark while a stick moves the wearer, its middle is
 TEST_CASE("the room shows behind the scene where the headset and the wearer let it, in every mode") {
     const Workplace work;
     std::ofstream(work.path / "through.toml") << "[view]\npassthrough = true\n";
-    const std::string options = "builtin:fence --load-first --hide-panel --hide-hands --eye 0,0,-6 --look 0,0,3 --up 0,-1,0";
+    const std::string options = "builtin:slanted-wall --load-first --hide-panel --hide-hands --eye 0,0,-6 --look 0,0,3 --up 0,-1,0";
     const auto run = [&](const std::string& name, const std::string& modes, const std::string& more,
                          const std::string& room = "0.2 0.9 0.4") {
         const ViewRun seen = runView(work, name, kSmall + "room-colour " + room + "\n" + modes + "at 0.2 exit\n", options + more);

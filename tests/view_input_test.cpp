@@ -16,7 +16,7 @@ using namespace binosplat::test;
 
 namespace {
 
-const std::string kScene = "builtin:fence --load-first --mode mono";
+const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
 
 std::string withProfile(const std::string& profile) { return kValidated + " BINOSPLAT_SIMULATED_PROFILE=" + profile; }
 

@@ -17,7 +17,8 @@ namespace {
 
 // The left hand points at the floor.
 const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
-const std::string kScene = "builtin:fence --load-first --hide-hands";
+// Few splats where any picture will do; bars with holes between them where it is looked at.
+const std::string kScene = "builtin:slanted-wall --load-first --hide-hands", kFence = "builtin:fence --load-first --hide-hands";
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {
@@ -112,7 +113,7 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
     const Workplace work;
     const Panel panel = startPanel(work);
     // Near enough to the bars that holes open inside the picture.
-    const std::string arguments = kScene + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3";
+    const std::string arguments = kFence + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3";
     const ViewRun run = runView(
         work, "click", kSmall + clickOn(panel, {placeOf("Show what made it"), placeOf("Centre ROI (paper)"), {0.9, 0.95}}), arguments);
     checkClean(run);
@@ -207,7 +208,7 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
         time_s += 0.3;
     }
     const std::string start = " --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
-    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kScene + start);
+    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kFence + start);
     checkClean(run);
     CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
     CHECK(run.frames.size() >= 200);
@@ -256,13 +257,13 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     const std::size_t at = output.find("saved as ");
     REQUIRE(at != std::string::npos);
     const std::filesystem::path file = output.substr(at + 9, output.find('\n', at) - at - 9);
-    CHECK(std::filesystem::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
+    CHECK(std::filesystem::weakly_canonical(file) == work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
     CHECK(says(saved, "loaded " + file.string()));
     CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
     // The viewer and `render` take the file.
     const ViewRun again = runView(work, "again", kSmall + "at 0.1 exit\n", kScene + " --config '" + file.string() + "'");
     checkClean(again);
-    CHECK(work.run("render builtin:fence --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
+    CHECK(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
     CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
     // The wearer stands there again, unless told where to.
@@ -280,7 +281,7 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     std::ofstream(file) << "[view]\nnonsense = 1\n";
     const ViewRun broken = runView(work, "broken", kSmall + "at 0.1 exit\n", kScene);
     checkClean(broken);
-    CHECK(says(broken, "fence.view.toml:2"));
+    CHECK(says(broken, "slanted-wall.view.toml:2"));
 }
 
 TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {

@@ -63,7 +63,7 @@ std::vector<Call> lastCallsOfViewer(std::size_t submissions) {
     std::ofstream(work.path / "rest.script") << "size 64 64\n";
     const std::string manifest = (std::filesystem::path(BINOSPLAT_PROGRAM).parent_path() / "simulated_runtime.json").string();
     const Outcome outcome =
-        work.run("view builtin:fence --load-first --frames 40",
+        work.run("view builtin:slanted-wall --load-first --frames 120",  // until every image has been in use
                  fmt::format("XDG_CONFIG_HOME=\"$PWD\" DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_RUNTIME_JSON='{}' "
                              "SIMULATED_OPENXR_SCRIPT=rest.script VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' "
                              "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_TRACE=calls.txt",

@@ -11,7 +11,7 @@ namespace {
 
 const std::string kSmall = "rate 90\nsize 128 128\nframes none\n";
 
-ViewRun runTrouble(const Workplace& work, const std::string& lines, const std::string& arguments = "builtin:fence --load-first") {
+ViewRun runTrouble(const Workplace& work, const std::string& lines, const std::string& arguments = "builtin:slanted-wall --load-first") {
     CAPTURE(lines);
     // Without the end that the script brings about, the frames would.
     const ViewRun run = runView(work, "trouble", kSmall + lines, arguments + " --frames 200");
@@ -45,7 +45,7 @@ TEST_CASE("sessions that are lost again and again before they show anything are 
     const Workplace work;
     std::string script = kSmall;
     for (int i = 0; i < 12; ++i) { script += fmt::format("at {} lose-session\n", 0.001 + 0.015 * i); }
-    const ViewRun run = runView(work, "again", script, "builtin:fence --load-first --frames 200", "");
+    const ViewRun run = runView(work, "again", script, "builtin:slanted-wall --load-first --frames 200", "");
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.errors.find("times in a row") != std::string::npos);
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
@@ -55,7 +55,7 @@ TEST_CASE("a lost runtime gives one line and exit code 3") {
     const Workplace work;
     for (const char* time : {"0", "0.02", "0.2"}) {
         const ViewRun run = runView(work, "gone", kSmall + fmt::format("at {} lose-instance\n", time),
-                                    "builtin:fence --load-first --frames 200", "DISPLAY= BINOSPLAT_VALIDATION=1");
+                                    "builtin:slanted-wall --load-first --frames 200", "DISPLAY= BINOSPLAT_VALIDATION=1");
         INFO(run.outcome.errors);
         CHECK(run.outcome.exit_code == 3);
         CHECK(run.outcome.errors == "binosplat: the OpenXR runtime is going away\n");
@@ -71,11 +71,11 @@ TEST_CASE("a runtime that ends whoever asks it for the mask is bearable without"
     const Workplace work;
     std::ofstream(work.path / "no-mask.toml") << "[view]\nvisibility-mask = false\n";
     const std::string lines = "visibility-mask broken\nat 0.1 exit\n";
-    runTrouble(work, lines, "builtin:fence --load-first --config no-mask.toml");
-    checkClean(runView(work, "environment", kSmall + lines, "builtin:fence --load-first --frames 200",
+    runTrouble(work, lines, "builtin:slanted-wall --load-first --config no-mask.toml");
+    checkClean(runView(work, "environment", kSmall + lines, "builtin:slanted-wall --load-first --frames 200",
                        kValidated + " BINOSPLAT_VISIBILITY_MASK=0"));
     // Which is what it would be with it.
-    CHECK(runView(work, "with", kSmall + lines, "builtin:fence --load-first --frames 200", "2>/dev/null").outcome.exit_code != 0);
+    CHECK(runView(work, "with", kSmall + lines, "builtin:slanted-wall --load-first --frames 200", "2>/dev/null").outcome.exit_code != 0);
 }
 
 TEST_CASE("a headset that is not there yet is waited for, with one line") {
@@ -87,7 +87,7 @@ TEST_CASE("a headset that is not there yet is waited for, with one line") {
     // Ctrl-C ends the wait.
     std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
     const Outcome outcome = work.run(
-        "view builtin:fence --simulate never.script --frames 5 > said & child=$!; "
+        "view builtin:slanted-wall --simulate never.script --frames 5 > said & child=$!; "
         "until grep -q 'no headset yet' said || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child");
     CHECK(outcome.exit_code == 0);
 }
@@ -101,7 +101,7 @@ TEST_CASE("a headset that is unplugged is waited for, and the scene goes on with
     // Ctrl-C ends this wait, too.
     std::ofstream(work.path / "gone.script") << kSmall << "no-headset-for 1000000 after-loss\nat 0.1 lose-session\n";
     const Outcome outcome = work.run(
-        "view builtin:fence --simulate gone.script --frames 2000 --out gone > said & child=$!; "
+        "view builtin:slanted-wall --simulate gone.script --frames 2000 --out gone > said & child=$!; "
         "until grep -q 'waiting for it' said || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child; cat said");
     CHECK(outcome.exit_code == 0);
 }
@@ -137,7 +137,7 @@ TEST_CASE("whoever leaves while the headset is off need not put it on") {
     CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
     std::ofstream(work.path / "desk.script") << kSmall << "at -1 worn off\n";
     const Outcome outcome = work.run(
-        "view builtin:fence --simulate desk.script --out seen & child=$!; "
+        "view builtin:slanted-wall --simulate desk.script --out seen & child=$!; "
         "until [ -e seen/frames.jsonl ] || ! kill -0 $child; do sleep 0.02; done; kill -INT $child; wait $child");
     CHECK(outcome.exit_code == 0);
 }
@@ -233,7 +233,7 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
     const std::string script = "rate 90\nsize 200 200\nframes every 4\n", end = "at 0.12 eye left angles -45 60 45 -45\nat 0.25 exit\n";
     for (const std::string mode : {"shared", "predicted", "mono"}) {
         CAPTURE(mode);
-        const std::string arguments = "builtin:fence --load-first --hide-panel --hide-hands --mode " + mode;
+        const std::string arguments = "builtin:slanted-wall --load-first --hide-panel --hide-hands --mode " + mode;
         const ViewRun without = runView(work, "without-" + mode, script + end, arguments);
         const ViewRun with = runView(work, "with-" + mode, script + "visibility-mask on\n" + end, arguments);
         checkClean(with);
@@ -273,7 +273,7 @@ TEST_CASE("lost controllers, a visibility mask and missing extensions are no tro
 
 TEST_CASE("a runtime without the Vulkan extension is refused in one line") {
     const Workplace work;
-    const ViewRun run = runView(work, "refused", kSmall + "extension XR_KHR_vulkan_enable2 off\n", "builtin:fence", "");
+    const ViewRun run = runView(work, "refused", kSmall + "extension XR_KHR_vulkan_enable2 off\n", "builtin:slanted-wall", "");
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.errors.find("XR_KHR_vulkan_enable2") != std::string::npos);
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
@@ -282,7 +282,7 @@ TEST_CASE("a runtime without the Vulkan extension is refused in one line") {
 TEST_CASE("a script that the simulated headset does not take is bad input, and named") {
     const Workplace work;
     std::ofstream(work.path / "broken.script") << "size 64 64\nwalk somewhere\n";
-    const Outcome outcome = work.run("view builtin:fence --frames 3 --simulate broken.script");
+    const Outcome outcome = work.run("view builtin:slanted-wall --frames 3 --simulate broken.script");
     CHECK(outcome.exit_code == 1);
     CHECK(outcome.errors.find("broken.script, see docs/simulated_script.md") != std::string::npos);
     CHECK(outcome.errors.find("start one (Monado") == std::string::npos);
@@ -292,7 +292,7 @@ TEST_CASE("a folder whose files would be replaced is bad input, and they stay") 
     const Workplace work;
     std::filesystem::create_directories(work.path / "mine");
     std::ofstream(work.path / "mine" / "frame_000000.png") << "holiday";
-    const Outcome outcome = work.run("view builtin:fence --frames 3 --simulate --out mine");
+    const Outcome outcome = work.run("view builtin:slanted-wall --frames 3 --simulate --out mine");
     CHECK(outcome.exit_code == 1);
     CHECK(outcome.errors.find("mine/frame_000000.png: not what an earlier run left here, must be moved elsewhere\n") != std::string::npos);
     CHECK(outcome.errors.find("--out: the simulated headset does not begin with mine") != std::string::npos);

@@ -316,7 +316,7 @@ public:
         : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
           connection_(screen_),
           program_((connection_.setDpi(dpi), work.path),
-                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:fence --load-first " + options}, screen_.name) {
+                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first " + options}, screen_.name) {
         REQUIRE(program_.waitFor("per eye, on ") != "");
         // The keys go to the window that the mouse is in.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
@@ -343,8 +343,8 @@ public:
     // Where the wearer's room lies now, as the viewer saves it.
     Pose placement(const Workplace& work, double* units_per_metre = nullptr) {
         click(placeOf("Save", true));
-        REQUIRE(program_.waitFor("fence.view.toml") != "");
-        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "fence.view.toml");
+        REQUIRE(program_.waitFor("slanted-wall.view.toml") != "");
+        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
         const std::string text{std::istreambuf_iterator<char>(file), {}};
         const auto numbers = [&](const std::string& key) {
             const std::size_t at = text.find(key + " = [");
@@ -519,7 +519,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
 TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     if (!haveScreen()) { return; }
     const Workplace work;
-    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:fence --load-first";
+    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:slanted-wall --load-first";
     const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", scene), 8);
     std::filesystem::create_directory(work.base / "screen");
     const Screen screen(work.base / "screen");
@@ -578,7 +578,7 @@ TEST_CASE("a lost device ends the viewer with three, also beside a window") {
     const Workplace work;
     std::filesystem::create_directory(work.base / "screen");
     const Screen screen(work.base / "screen");
-    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:fence --load-first",
+    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:slanted-wall --load-first",
                                 "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
                                 "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:30:lost DISPLAY=" +
                                     screen.name);
@@ -587,6 +587,22 @@ TEST_CASE("a lost device ends the viewer with three, also beside a window") {
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.output.find("no window") == std::string::npos);
     CHECK(run.outcome.errors.find("DeviceLost") != std::string::npos);
+}
+
+TEST_CASE("a window whose display is lost is gone, and the headset goes on") {
+    if (!haveScreen()) { return; }
+    const Workplace work;
+    std::filesystem::create_directory(work.base / "screen");
+    const Screen screen(work.base / "screen");
+    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 1 exit\n", "builtin:slanted-wall --load-first",
+                                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=present:5:surface-lost DISPLAY=" +
+                                    screen.name);
+    INFO(run.outcome.output);
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.errors == "");
+    CHECK(run.outcome.output.find("the window is gone: ") != std::string::npos);
+    CHECK(run.frames.size() > 80);
 }
 
 TEST_CASE("a picture of a frame that was given up is drawn in the next, and a window that cannot be drawn on is gone") {
@@ -634,7 +650,7 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         std::ofstream(work.path / "never.script") << "no-headset-for 1000000\n";
         std::filesystem::create_directory(work.base / "screen");
         const Screen screen(work.base / "screen");
-        Program program(work.path, {BINOSPLAT_PROGRAM, "view", "builtin:fence", "--simulate", "never.script"}, screen.name);
+        Program program(work.path, {BINOSPLAT_PROGRAM, "view", "builtin:slanted-wall", "--simulate", "never.script"}, screen.name);
         REQUIRE(program.waitFor("has no headset yet") != "");
         if (by_cross) {
             clickCross(screen, "^binosplat waits for a headset");

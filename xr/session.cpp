@@ -62,7 +62,10 @@ Session::Session(const Instance& instance, const Context& context)
     }
 }
 
-Session::~Session() { xrDestroySession(session_); }
+Session::~Session() {
+    const std::lock_guard lock(context_.queueMutex());
+    xrDestroySession(session_);
+}
 
 FrameOutcome Session::beginFrame() {
     pollEvents();
@@ -248,6 +251,7 @@ std::optional<std::array<EyeView, 2>> Session::locateEyes() {
 
 bool Session::settle(bool demanded) {
     const bool moved = recentred_from_ && frame_state_.predictedDisplayTime >= *recentred_from_;
+    if (turn_settled_ && place_settled_ && !moved && !demanded) { return false; }
     Located located = locate(local_);
     // A headset that never says where it is turns all the same.
     const bool first = !turn_settled_ || (!place_settled_ && located.place_known);

@@ -113,6 +113,7 @@ void Canvas::bringLetters(std::string_view text) {
     ImGui_ImplVulkan_Shutdown();
     descriptors_.reset();
     startBackend();
+    draw_list_.clear();  // letters may have moved
 }
 
 void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {
@@ -128,13 +129,44 @@ void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {
     is_begun_ = true;
 }
 
+void Canvas::end() {
+    ImGui::Render();
+    is_begun_ = false;
+    DrawList now = drawList();
+    is_new_ = !is_recorded_ || now != draw_list_;
+    if (!is_new_) { return; }
+    draw_list_ = std::move(now);
+    is_recorded_ = false;
+    ++revision_;
+}
+
 void Canvas::giveUp() {
     if (std::exchange(is_begun_, false)) { ImGui::EndFrame(); }
+    is_recorded_ = false;
+}
+
+Canvas::DrawList Canvas::drawList() {
+    DrawList bytes;
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* begin = static_cast<const unsigned char*>(data);
+        bytes.insert(bytes.end(), begin, begin + size);
+    };
+    const ImDrawData& drawn = *ImGui::GetDrawData();
+    for (int i = 0; i < drawn.CmdListsCount; ++i) {
+        const ImDrawList& list = *drawn.CmdLists[i];
+        add(list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
+        add(list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            add(&command.ClipRect, sizeof command.ClipRect);
+            add(&command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return bytes;
 }
 
 void Canvas::record(Commands& commands) {
-    ImGui::Render();
-    is_begun_ = false;
+    if (!is_new_) { return; }
+    is_recorded_ = true;
     const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
     const vk::raii::CommandBuffer& buffer = commands.buffer();
     buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_, vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),

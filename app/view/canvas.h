@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -33,11 +34,16 @@ public:
 
     // Before begin(): `text` can be written, in as far as a font has its letters. What is new waits for the queue.
     void bringLetters(std::string_view text);
-    // Widgets are drawn between this and record(), or giveUp() where nothing comes of them.
+    // Widgets are drawn between this and end() or giveUp().
     void begin(const CanvasPointer& pointer, double step_seconds);
+    void end();
+    // Nothing comes of the widgets, or of what was recorded last.
     void giveUp();
-    // Draws; then the canvas may be copied from.
+    // Draws, unless the image shows it already; then the canvas may be copied from.
     void record(Commands& commands);
+
+    // Of what the image shows once record() has run: another number for another picture, never 0.
+    [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // Why the small built-in font is used; empty: it is not.
@@ -50,10 +56,17 @@ private:
     void startImGui();
     void startBackend();
 
+    // What ImGui draws, to the byte.
+    using DrawList = std::vector<unsigned char>;
+    static DrawList drawList();
+
     const Context& context_;
     glm::uvec2 size_px_;
     bool is_begun_ = false;
-    std::unique_ptr<PanelFont> font_;  // once there is an ImGui context
+    DrawList draw_list_;
+    std::uint64_t revision_ = 0;
+    bool is_new_ = true, is_recorded_ = false;  // of the last end()
+    std::unique_ptr<PanelFont> font_;           // once there is an ImGui context
     vk::raii::DeviceMemory memory_{nullptr};
     vk::raii::Image image_{nullptr};
     vk::raii::ImageView view_{nullptr};

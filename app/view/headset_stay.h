@@ -20,6 +20,7 @@ struct HeadsetStay {
     std::vector<double> refresh_rates;
     xr::Input input;
     xr::Swapchain panel_images;
+    std::uint64_t panel_revision = 0;  // of the canvas, that they show; 0: none yet
     RoomThings things;
     std::unique_ptr<EyeImages> images;  // once their size is known
     LensMask lens_mask;

@@ -106,7 +106,9 @@ void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScen
         stay.images->present(commands, e, image, tinted ? &scene.frame.stereoBuffers() : nullptr, frame.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = frame.mode == Mode::kMono || dominant != tint;
-        if (window != nullptr && shown) { window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_); }
+        if (window != nullptr && window->drawn() && shown) {
+            window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_);
+        }
     }
 }
 

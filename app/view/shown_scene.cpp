@@ -46,16 +46,20 @@ std::string ShownScene::take(ViewSettings& settings) {
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
         if (ahead_) { ahead_->known.insert(kindOf(*taken)); }
         scene_ = std::move(taken);
-    } catch (const Error& error) {
-        if (scene_) { return error.what(); }
-        if (asked_ == options_.scene) { throw; }  // nothing to show instead
-        begin(options_.scene);                    // which another one had pushed aside
-        return error.what();
-    }
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        return goOnWithout(error.what());
+    } catch (const Error& error) { return goOnWithout(error.what()); }
     log_.say("shows " + scene_->name);
     const std::string complaint = place(settings);
     for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
     return complaint;
+}
+
+std::string ShownScene::goOnWithout(const std::string& why) {
+    if (scene_) { return why; }
+    if (asked_ == options_.scene) { throw; }  // nothing to show instead
+    begin(options_.scene);                    // which another one had pushed aside
+    return why;
 }
 
 std::string ShownScene::place(ViewSettings& settings) {

@@ -40,6 +40,8 @@ public:
 
 private:
     [[nodiscard]] std::string place(ViewSettings& settings);
+    // Within a handler: the next one cannot be shown. Returns `why`, or throws on.
+    [[nodiscard]] std::string goOnWithout(const std::string& why);
 
     const Context& context_;
     const ViewOptions& options_;

@@ -26,6 +26,17 @@ std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views) {
     return eyes;
 }
 
+std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views) {
+    const XrFovf& left = views[kLeft].fov;
+    XrFovf& right = views[kRight].fov;
+    const auto isAlike = [](float a, float b) { return std::abs(a - b) < static_cast<float>(kNoise); };
+    if (isAlike(left.angleUp, right.angleUp) && isAlike(left.angleDown, right.angleDown)) {
+        right.angleUp = left.angleUp;
+        right.angleDown = left.angleDown;
+    }
+    return views;
+}
+
 Pose roomFromHead(const std::array<Pose, 2>& room_from_eyes) {
     const auto& [left, right] = room_from_eyes;
     return {glm::slerp(left.orientation, right.orientation, 0.5), 0.5 * (left.position + right.position)};

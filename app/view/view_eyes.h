@@ -8,6 +8,9 @@
 
 namespace binosplat {
 
+// Angles up and down that differ by rounding alone are made equal: rows of parallel eyes are one row then.
+std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
+
 // Both eyes in room axes. What float32 added to parallel, side-by-side eyes is taken out again, so that they are exactly that: under
 // 2 micrometres and microradians, hundredths of a pixel.
 std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);

@@ -19,6 +19,9 @@ namespace {
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
 constexpr std::size_t kPlottedFrames = 120;
+// How long the panel shows the times of a frame: nobody can read what changes with every frame, and the panel is drawn only when it
+// changes.
+constexpr double kTimesSeconds = 0.25;
 // How often to look whether the session has begun to run, and how often the window is drawn meanwhile.
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
 // So many sessions lost in a row before one has shown a frame are too many.
@@ -139,15 +142,16 @@ void Viewer::settle() {
 
 void Viewer::drawFrame() {
     settle();
-    const std::optional<std::array<xr::EyeView, 2>> eyes = stay_->session.locateEyes();
-    if (!eyes) {
+    const std::optional<std::array<xr::EyeView, 2>> located = stay_->session.locateEyes();
+    if (!located) {
         drawWindowAlone("The headset does not know where it is");
         stay_->session.endFrame({});
         return;
     }
     if (scenes_.isNextReady()) { takeScene(); }
-    const std::array<Pose, 2> room_from_eyes = roomFromEyes(*eyes);
-    FrameViews views{*eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
+    const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
+    const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
+    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
     const double step_seconds = stay_->session.stepSeconds();
@@ -162,17 +166,18 @@ void Viewer::drawFrame() {
     obeyWindow(step_seconds);
     if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     status_.state.clear();
-    if (settings_.panel || window_) { layOutPanel(settings_.panel, step_seconds); }
+    panel_hangs_ = settings_.panel;
+    if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
     // Last, since the panel and the window may change what is wished for.
     renderer_.govern(*stay_, settings_);
-    if (window_) { window_->acquire(); }
+    onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get()) {
         renderer_.render(*stay_, *scene, scenes_.scene_from_room, settings_, views, window_.get(),
                          [this](Commands& commands) { recordPanel(commands); });
     } else {
         renderWaiting();
     }
-    if (window_) { window_->show(); }
+    onWindow(&MirrorWindow::show);
     showFrame(views);
     sayChange(before);
     keepFrameTime();
@@ -195,23 +200,25 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 void Viewer::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
     if (last_end_ != std::chrono::steady_clock::time_point()) {
-        status_.frame_ms.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
+        frame_ms_.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
     }
-    if (status_.frame_ms.size() > kPlottedFrames) { status_.frame_ms.erase(status_.frame_ms.begin()); }
+    if (frame_ms_.size() > kPlottedFrames) { frame_ms_.erase(frame_ms_.begin()); }
     last_end_ = now;
 }
 
 void Viewer::showFrame(const FrameViews& views) {
     stay_->images->release();
-    const bool has_panel = std::exchange(panel_now_, nullptr) != vk::Image();
-    if (has_panel) { stay_->panel_images.release(); }
+    if (std::exchange(panel_now_, nullptr)) {
+        stay_->panel_images.release();
+        stay_->panel_revision = canvas_.revision();
+    }
     stay_->things.release();
     stay_->session.seeThrough(renderer_.seesThrough(settings_));
     const auto submit = [&] {
         xr::Layers layers(stay_->session);
         addEyes(layers, views);
         stay_->things.addBehindPanel(layers);
-        if (has_panel) { layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images); }
+        if (panel_hangs_) { layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images); }
         stay_->things.addBeforePanel(layers);
         stay_->session.endFrame(layers.list());
     };
@@ -237,13 +244,14 @@ void Viewer::drawWindowAlone(const std::string& why) {
     obeyWindow(step_seconds);
     status_.state = why;
     layOutPanel(false, step_seconds);
-    window_->acquire();
+    onWindow(&MirrorWindow::acquire);
+    if (!window_) { return; }
     waitForQueue();  // what the panel is drawn from is that of the last frame
     commands_.begin();
     recordPanel(commands_);
     commands_.submit(window_->drawn());
     commands_.wait();
-    window_->show();
+    onWindow(&MirrorWindow::show);
     sayChange(before);
 }
 
@@ -268,6 +276,19 @@ void Viewer::openWindow() {
     }
 }
 
+void Viewer::onWindow(void (MirrorWindow::*act)()) {
+    const auto goOnWithout = [&](const char* why) {
+        say(fmt::format("the window is gone: {}", why));
+        window_.reset();
+        window_input_ = {};
+    };
+    try {
+        if (window_) { (*window_.*act)(); }
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        goOnWithout(error.what());
+    } catch (const Error& error) { goOnWithout(error.what()); }
+}
+
 void Viewer::renderWaiting() {
     for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
     commands_.begin();
@@ -290,16 +311,13 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
 }
 
 void Viewer::layOutPanel(bool hung, double step_seconds) {
-    const FrameResult& last = renderer_.lastFrame();
     status_.scene = scenes_.name();
     status_.loading = scenes_.loading();
     status_.has_scene = scenes_.get() != nullptr;
     status_.can_pass_through = instance_.canSeeThrough();
     if (stay_) { status_.refresh_rates = stay_->refresh_rates; }
     if (status_.has_scene) { status_.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
-    status_.governor = renderer_.governorSentence();
-    status_.frame = last.counters.empty() ? nullptr : &last;
-    if (hung) { panel_now_ = stay_->panel_images.acquire(); }
+    showTimes(step_seconds);
     canvas_.bringLetters(namesOn(pages_, status_));
     // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
     const CanvasPointer& hand = panel_.pointer();
@@ -308,7 +326,22 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     CanvasPointer pointer = mouse_points_ ? window_input_.pointer : hand;
     if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
     canvas_.begin(pointer, step_seconds);
-    obey(drawOverlay(kPanelPx, settings_, pages_, status_));
+    const OverlayActions actions = drawOverlay(kPanelPx, settings_, pages_, status_);
+    canvas_.end();
+    if (hung && stay_->panel_revision != canvas_.revision()) { panel_now_ = stay_->panel_images.acquire(); }
+    obey(actions);
+}
+
+void Viewer::showTimes(double step_seconds) {
+    times_age_s_ += step_seconds;
+    const FrameResult& last = renderer_.lastFrame();
+    const bool has_times = !last.counters.empty();
+    if (has_times && status_.frame != nullptr && times_age_s_ < kTimesSeconds) { return; }
+    times_age_s_ = 0.0;
+    shown_frame_ = last;
+    status_.frame = has_times ? &shown_frame_ : nullptr;
+    status_.frame_ms = frame_ms_;
+    status_.governor = renderer_.governorSentence();
 }
 
 void Viewer::recordPanel(Commands& commands) {

@@ -47,9 +47,12 @@ private:
     // Hands, rays and what else hangs in the room in this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
     void showFrame(const FrameViews& views);
+    // Trouble with the window ends the window alone.
+    void onWindow(void (MirrorWindow::*act)());
     void addEyes(xr::Layers& layers, const FrameViews& views) const;
-    // The widgets; takes the panel's image where it is `hung`.
+    // The widgets; takes an image for the panel where that is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
+    void showTimes(double step_seconds);
     void keepFrameTime();
     void obeyWindow(double step_seconds);
     void obey(const OverlayActions& actions);
@@ -74,13 +77,17 @@ private:
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
     bool mouse_points_ = false;  // on the panel, and not a hand
-    vk::Image panel_now_;        // of this frame, where the panel is shown
+    bool panel_hangs_ = false;   // in this frame
+    vk::Image panel_now_;        // where the panel has to be drawn anew
     OverlayPanel panel_;
     WearerControls controls_;
     Vignette vignette_;
     GazeFollower gaze_;
     Commands commands_;
     OverlayStatus status_;
+    FrameResult shown_frame_;      // whose times the panel shows
+    std::vector<float> frame_ms_;  // see OverlayStatus
+    double times_age_s_ = 0.0;
     OverlayPages pages_;
     Pose room_from_head_;  // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;

@@ -74,6 +74,7 @@ void WindowPictures::acquire() {
     is_stale_ = is_stale_ || window_px_ != window_size_px_();
     if (is_stale_) {
         hold_ = Hold::kNone;
+        is_remade_ = window_px_ == window_size_px_();
         // What was presented is not written to again.
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
@@ -104,7 +105,9 @@ void WindowPictures::show() {
     const vk::Semaphore drawn = *drawn_[index_];
     try {
         const std::lock_guard lock(context_.queueMutex());
-        is_stale_ = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_)) == vk::Result::eSuboptimalKHR;
+        const auto result = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_));
+        is_stale_ = result == vk::Result::eSuboptimalKHR && !is_remade_;
+        is_remade_ = is_remade_ && result == vk::Result::eSuboptimalKHR;
     } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
 }
 

@@ -45,7 +45,8 @@ private:
     glm::uvec2 size_px_{0, 0}, window_px_{0, 0};  // of the pictures, and of the window when they were made
     // Of the picture index_: none; promised, while the display may still read it; ours to draw on.
     enum class Hold { kNone, kPromised, kOurs } hold_ = Hold::kNone;
-    bool is_stale_ = false;  // the pictures are not as the display wants them any more
+    bool is_stale_ = false;   // the pictures are not as the display wants them any more
+    bool is_remade_ = false;  // at the same size: if the display still is not content, that is how it is
     std::uint32_t index_ = 0;
 };
 

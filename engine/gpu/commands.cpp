@@ -34,6 +34,7 @@ Commands::~Commands() {
 
 void Commands::begin() {
     assert(!under_way_);
+    in_pass_ = false;  // of what was dropped
     pass_names_.clear();
     timestamp_count_ = 0;
     count_ = 0;

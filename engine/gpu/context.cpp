@@ -240,6 +240,8 @@ void Context::readLimits() {
             physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
         min_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize;
         max_subgroup_size_ = sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().maxSubgroupSize;
+        const auto buffers = physical_device_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance4Properties>();
+        max_allocation_bytes_ = std::min(max_allocation_bytes_, buffers.get<vk::PhysicalDeviceMaintenance4Properties>().maxBufferSize);
     } else {  // some drivers vary the size between 8 and 32 without saying so
         min_subgroup_size_ = std::min(8u, subgroup_size_);
         max_subgroup_size_ = std::max(32u, subgroup_size_);

@@ -1,8 +1,8 @@
 // A Vulkan layer in which a call fails, or a signal comes, at a place that a test names: what machines do at a place nobody knows.
-// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait or allocate, N from 1, and FAULT lost, no-device-memory, no-host-memory, SIGINT or
-// SIGTERM. From the Nth such call on a device stays lost and memory stays full; signals come once. Of a lost device no wait until it is
-// idle succeeds. BINOSPLAT_FAULT_TICKS=N: timestamps are
-// N ticks apart, however long the work between them took.
+// BINOSPLAT_FAULT=CALL:N:FAULT with CALL submit, wait, present or allocate, N from 1, and FAULT lost, surface-lost, no-device-memory,
+// no-host-memory, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost and memory stays full; signals come once. Of a
+// lost device no wait until it is idle succeeds.
+// BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
 // BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
 // BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
 #include "tests/faults/live.h"
@@ -45,6 +45,7 @@ PFN_vkGetInstanceProcAddr g_instance_next = nullptr;
 VkInstance g_instance = VK_NULL_HANDLE;
 PFN_vkGetDeviceProcAddr g_device_next = nullptr;
 PFN_vkQueueSubmit g_submit = nullptr;
+PFN_vkQueuePresentKHR g_present = nullptr;
 PFN_vkWaitForFences g_wait = nullptr;
 PFN_vkDeviceWaitIdle g_wait_device = nullptr;
 PFN_vkQueueWaitIdle g_wait_queue = nullptr;
@@ -63,6 +64,7 @@ VkResult strike(const char* call) {
         g_is_lost = true;
         return VK_ERROR_DEVICE_LOST;
     }
+    if (plan.fault == "surface-lost") { return VK_ERROR_SURFACE_LOST_KHR; }
     if (plan.fault == "no-device-memory") { return VK_ERROR_OUT_OF_DEVICE_MEMORY; }
     if (plan.fault == "no-host-memory") { return VK_ERROR_OUT_OF_HOST_MEMORY; }
     if (number == plan.number) { (void)std::raise(plan.fault == "SIGTERM" ? SIGTERM : SIGINT); }
@@ -84,6 +86,11 @@ VKAPI_ATTR VkResult VKAPI_CALL submit(VkQueue queue, std::uint32_t count, const 
     faults::noteSubmission();
     const VkResult result = strike("submit");
     return result != VK_SUCCESS ? result : g_submit(queue, count, infos, fence);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL present(VkQueue queue, const VkPresentInfoKHR* info) {
+    const VkResult result = strike("present");
+    return result != VK_SUCCESS ? result : g_present(queue, info);
 }
 
 // A device is lost while it works: the wait itself is made, so that nothing is destroyed that is still in use.
@@ -160,6 +167,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physical_device, co
     const VkResult result = create(physical_device, info, callbacks, device);
     if (result != VK_SUCCESS) { return result; }
     g_submit = reinterpret_cast<PFN_vkQueueSubmit>(g_device_next(*device, "vkQueueSubmit"));
+    g_present = reinterpret_cast<PFN_vkQueuePresentKHR>(g_device_next(*device, "vkQueuePresentKHR"));
     g_wait = reinterpret_cast<PFN_vkWaitForFences>(g_device_next(*device, "vkWaitForFences"));
     g_wait_device = reinterpret_cast<PFN_vkDeviceWaitIdle>(g_device_next(*device, "vkDeviceWaitIdle"));
     g_wait_queue = reinterpret_cast<PFN_vkQueueWaitIdle>(g_device_next(*device, "vkQueueWaitIdle"));
@@ -183,6 +191,7 @@ PFN_vkVoidFunction asVoid(Function* function) {
 
 PFN_vkVoidFunction ownFunction(const char* name) {
     if (std::strcmp(name, "vkQueueSubmit") == 0) { return asVoid(submit); }
+    if (std::strcmp(name, "vkQueuePresentKHR") == 0 && g_present != nullptr) { return asVoid(present); }
     if (std::strcmp(name, "vkWaitForFences") == 0) { return asVoid(wait); }
     if (std::strcmp(name, "vkDeviceWaitIdle") == 0) { return asVoid(waitForDevice); }
     if (std::strcmp(name, "vkQueueWaitIdle") == 0) { return asVoid(waitForQueue); }
