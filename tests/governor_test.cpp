@@ -227,6 +227,21 @@ TEST_CASE("a lossy method that is slower than what loses nothing is found out in
     CHECK(lossy < run.frames.size() / 8);
 }
 
+TEST_CASE("a lossy method that does not fit at all is found out in one trial as well") {
+    for (const double lossy : {2.2, 3.0}) {
+        CAPTURE(lossy);
+        const Run run = govern(Quality::kFast, 40.0, [&](double, const GovernedSettings& s) { return cost(14.0, lossy, s); });
+        checkCalm(run, {0.0}, 2);
+        CHECK(run.longestOver() <= 4);
+        // And all is as before.
+        CHECK(run.last().settings == run.at(1.0).settings);
+        CHECK(run.last().settings.mode == Mode::kShared);
+        std::size_t trials = 0;
+        for (const std::size_t i : run.changes()) { trials += run.frames[i].settings.mode == Mode::kShared ? 0 : 1; }
+        CHECK(trials <= 2);
+    }
+}
+
 TEST_CASE("a lossy method that becomes slower than what loses nothing is left") {
     const auto lossy = [](double t) { return t < 15.0 ? 0.7 : 1.4; };
     const Run run = govern(Quality::kFast, 60.0, [&](double t, const GovernedSettings& s) { return cost(12.5, lossy(t), s); });

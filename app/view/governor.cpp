@@ -70,6 +70,7 @@ void Governor::wish(Quality quality, const GovernedSettings& best) {
     downs_ = 0;
     changed_s_ = now_s_;
     left_.reset();
+    trial_from_.reset();
     lossless_ms_ = 0.0;
     beaten_ = false;
     share_ = 1.0;
@@ -186,6 +187,7 @@ void Governor::raiseShare() {
 }
 
 double Governor::expectedMs(std::size_t level, double now_ms) const {
+    if (hasTriedInVain() && trial_from_->level == level) { return trial_from_->ms; }
     const Level &to = levels_[level], &from = levels_[current_];
     const double scale = to.settings.resolution_scale / from.settings.resolution_scale;
     return now_ms * ratios_[to.method].value / ratios_[from.method].value * std::pow(scale, scale < 1.0 ? kPowerDown : kPowerUp);
@@ -208,7 +210,7 @@ std::size_t Governor::bestWithin(double most_ms, double now_ms) const {
 }
 
 // Ratios of methods follow from what the lossless one took last and what the current one takes now.
-void Governor::learn(double now_ms) {
+void Governor::learn(double now_ms, bool is_over) {
     const Level& level = levels_[current_];
     const double full_ms = now_ms / std::pow(level.settings.resolution_scale / best_.resolution_scale, kPowerDown);
     if (level.method == 0) {
@@ -222,7 +224,8 @@ void Governor::learn(double now_ms) {
         return;
     }
     Ratio& ratio = ratios_[level.method];
-    if (ratio.measured_s || lossless_ms_ <= 0.0 || recent_ms_.size() < kTrialFrames) { return; }
+    // A trial that is over the period has said enough.
+    if (ratio.measured_s || lossless_ms_ <= 0.0 || (!is_over && recent_ms_.size() < kTrialFrames)) { return; }
     ratio.value = full_ms / lossless_ms_;
     ratio.measured_s = now_s_;
     ratio.own_ms = full_ms;
@@ -276,7 +279,7 @@ void Governor::measure(const GovernedFrame& frame) {
     lookAfterMisses();
     const bool is_over = takes_too_long || (!leavesMissesAlone() && missesDisplays());
     const double now_ms = median(is_over ? at_once : kWindow);
-    learn(now_ms);
+    learn(now_ms, is_over);
     if (is_over) {
         if (!takes_too_long) {
             if (!before_misses_) { before_misses_ = {current_, now_ms, usuallyLost(missesAtOnce() ? kOverAtOnce : kOftenOf)}; }
@@ -299,7 +302,7 @@ void Governor::makeItFit(double now_ms) {
         const double full_ms = now_ms / std::pow(level.settings.resolution_scale / best_.resolution_scale, kPowerDown);
         if (std::abs(full_ms - before_ms) > kDrift * before_ms && full_ms > lossless_ms_) { ratios_[level.method].value = 1.0; }
     }
-    std::size_t next = bestWithin((downs_ == 0 ? kTarget : kAgain) * roomMs(), now_ms);
+    std::size_t next = awayFrom((downs_ == 0 ? kTarget : kAgain) * roomMs(), now_ms);
     if (downs_ >= 2) {
         next = current_;
         for (std::size_t i = 0; i < levels_.size(); ++i) {
@@ -318,6 +321,10 @@ void Governor::makeItFit(double now_ms) {
                      period_ms_, now_ms > period_ms_ ? "" : " and missed displays"));
 }
 
+std::size_t Governor::awayFrom(double most_ms, double now_ms) const {
+    return hasTriedInVain() ? trial_from_->level : bestWithin(most_ms, now_ms);
+}
+
 void Governor::giveBack(double now_ms) {
     const Level& level = levels_[current_];
     beaten_ = false;
@@ -329,7 +336,7 @@ void Governor::giveBack(double now_ms) {
     if (is_calm && level.method != 0 && ratios_[level.method].measured_s && ratios_[level.method].value > kLeastSaving) {
         const std::string why = fmt::format("{} saves nothing here", nameOf(level.settings.mode));
         left_.reset();
-        step(bestWithin(kTarget * roomMs(), now_ms), now_ms, why);
+        step(awayFrom(kTarget * roomMs(), now_ms), now_ms, why);
         return;
     }
     if (is_calm && recent_ms_.size() >= kWindow) {
@@ -348,7 +355,9 @@ void Governor::giveBack(double now_ms) {
         }
         if (const auto trial = worthTrying(now_ms)) {
             left_.reset();
+            const TrialFrom from{current_, now_ms};
             step(*trial, now_ms, "to see what it takes");
+            trial_from_ = from;
             return;
         }
     }
@@ -357,6 +366,7 @@ void Governor::giveBack(double now_ms) {
 
 void Governor::step(std::size_t level, double now_ms, const std::string& why) {
     const double expected_ms = expectedMs(level, now_ms);
+    trial_from_.reset();
     current_ = level;
     recent_ms_.clear();
     recent_lost_.clear();

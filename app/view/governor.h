@@ -89,7 +89,7 @@ private:
     [[nodiscard]] std::size_t bestWithin(double most_ms, double now_ms) const;
     // Whether the method is known to be faster than what loses nothing, or is just that.
     [[nodiscard]] bool pays(std::size_t method) const;
-    void learn(double now_ms);
+    void learn(double now_ms, bool is_over);
     // A step upwards that did not keep what it promised is not tried again soon.
     void takeBack();
     // A method that nobody has measured yet, at a resolution where it cannot do harm: if what is guessed of it would allow better settings
@@ -98,6 +98,9 @@ private:
     // What to do about frames that took too long, and about those that did not.
     void makeItFit(double now_ms);
     void giveBack(double now_ms);
+    [[nodiscard]] bool hasTriedInVain() const { return trial_from_ && !pays(levels_[current_].method); }
+    // Where to go from a method that saves nothing: where it was tried from, which fitted, or what fits by what is known.
+    [[nodiscard]] std::size_t awayFrom(double most_ms, double now_ms) const;
     void step(std::size_t level, double now_ms, const std::string& why);
     void describe(double now_ms, const std::string& why);
 
@@ -112,7 +115,13 @@ private:
     int downs_ = 0;                               // changes in a row that were not enough
     double changed_s_ = 0.0;
     std::optional<std::size_t> left_;  // the level before the last change upwards
-    double lossless_ms_ = 0.0;         // last measured, at full resolution's price
+    // The level before the last change, and what it took, where that change was to see what a method takes.
+    struct TrialFrom {
+        std::size_t level = 0;
+        double ms = 0.0;
+    };
+    std::optional<TrialFrom> trial_from_;
+    double lossless_ms_ = 0.0;  // last measured, at full resolution's price
     std::string why_, sentence_;
     bool beaten_ = false;
     // Of the period, what others (the compositor, another program) leave: found out by what is missed, given back little by little.
