@@ -49,6 +49,15 @@ FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const Fra
     return first.gpu_total_ms < kLongFrameMs ? frame.render(eyes, settings) : first;
 }
 
+// The options with what they left to the file and the memory.
+RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes) {
+    LoadOptions& load = options.run.load;
+    if (!notes.level_splats.empty()) { load.lod = notes.level; }
+    load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
+    load.antialiased = scene.antialiased;
+    return options;
+}
+
 }  // namespace
 
 void runRender(const RenderOptions& options) {
@@ -67,6 +76,7 @@ void runRender(const RenderOptions& options) {
         ProgressLine line("uploading " + options.scene);
         return GpuScene(context, scene, [&](double share) { line.show(share); });
     }();
+    const RenderOptions used = asUsed(options, scene, notes);
     scene = {};
 
     StereoFrame frame(context, gpu_scene);
@@ -82,13 +92,13 @@ void runRender(const RenderOptions& options) {
     stopIfInterrupted();
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
-        report(PathReport{context.deviceName(), options, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)});
+        report(PathReport{context.deviceName(), used, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)});
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
         const FrameResult result = renderTimed(frame, eyes, settings);
         writePictures(files, frame, settings);
-        report(FrameReport{context.deviceName(), options, cameras, result});
+        report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
     }
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }

@@ -161,6 +161,13 @@ TEST_CASE("the program loads the level that --lod names and says which levels th
     CHECK(contains(work.run("info --lod 1 '" + source + "'").output, "1: 8 splats (loaded)"));
     CHECK(work.run("convert --lod 1 '" + source + "' coarse.ply").exit_code == 0);
     checkSameScene(loadScene((work.path / "coarse.ply").string()), loadLevel(source, 1));
+    // The report says what the program chose.
+    CHECK(work.run("render '" + source + "' --mode mono --size 16x16 --out seen").exit_code == 0);
+    std::ifstream file(work.path / "seen" / "report.json");
+    const std::string report{std::istreambuf_iterator<char>(file), {}};
+    CHECK(contains(report, "\"lod\": 0,"));
+    CHECK(contains(report, "\"sh-degree\": 1,"));
+    CHECK(contains(report, "\"antialiased\": false"));
     const Outcome beyond = work.run("info --lod 2 '" + source + "'");
     CHECK(beyond.exit_code == 1);
     CHECK(contains(beyond.errors, "levels of detail, 0 (the finest) to 1\n"));
