@@ -20,7 +20,7 @@ struct Governed : ViewRun {
         const Workplace work;
         std::ofstream(work.path / "view.toml") << fmt::format("[view]\nquality = \"{}\"\n", quality);
         const ViewRun run = runView(work, "load", fmt::format("rate {0}\nsize {1} {1}\nframes none\n{2}", kRate, kWhole, load),
-                                    fmt::format("builtin:fence --load-first --hide-panel --frames {} --config view.toml", most_frames),
+                                    fmt::format("builtin:one-splat --load-first --hide-panel --frames {} --config view.toml", most_frames),
                                     kValidated + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
                                                  "' "
                                                  "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_TICKS=1");

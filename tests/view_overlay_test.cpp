@@ -16,13 +16,16 @@ using namespace binosplat::test;
 namespace {
 
 // The left hand points at the floor.
-const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+const std::string kLeftHand = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\n" + kLeftHand;
+// Where nobody looks at what the headset shows.
+const std::string kBlind = "rate 90\nsize 64 64\nframes none\n" + kLeftHand;
 // Few splats where any picture will do; bars with holes between them where it is looked at.
 const std::string kScene = "builtin:slanted-wall --load-first --hide-hands", kFence = "builtin:fence --load-first --hide-hands";
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {
-    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", kScene), 8);
+    static const Panel panel = panelOf(runView(work, "look", kBlind + "at 0.1 exit\n", kScene), 8);
     return panel;
 }
 
@@ -128,7 +131,7 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
 TEST_CASE("method and dominant eye are switched, and the wearer may quit from the panel") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kSmall + clickOn(panel, {placeOf("reproject"), placeOf("right"), placeOf("Quit"), {0.9, 0.95}});
+    const std::string script = kBlind + clickOn(panel, {placeOf("reproject"), placeOf("right"), placeOf("Quit"), {0.9, 0.95}});
     const ViewRun run = runView(work, "click", script, kScene);
     checkClean(run);
     CHECK(says(run, "mode = \"reproject\""));
@@ -140,7 +143,7 @@ TEST_CASE("method and dominant eye are switched, and the wearer may quit from th
 TEST_CASE("a rate chosen on the panel is the headset's from then on") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "rate", kSmall + clickOn(panel, {placeOf("120 Hz", true), {0.9, 0.95}}), kScene);
+    const ViewRun run = runView(work, "rate", kBlind + clickOn(panel, {placeOf("120 Hz", true), {0.9, 0.95}}), kScene);
     checkClean(run);
     CHECK(says(run, "refresh-rate = 120"));
     CHECK(run.frames.front().at("period_ns").get<std::int64_t>() > 9'000'000);
@@ -151,7 +154,7 @@ TEST_CASE("a rate that the headset refuses is said, and is no end") {
     const Workplace work;
     const ViewRun run = runView(
         work, "fixed",
-        "rate 90 fixed\n" + kSmall.substr(kSmall.find('\n') + 1) + clickOn(startPanel(work), {placeOf("120 Hz", true), {0.9, 0.95}}),
+        "rate 90 fixed\n" + kBlind.substr(kBlind.find('\n') + 1) + clickOn(startPanel(work), {placeOf("120 Hz", true), {0.9, 0.95}}),
         kScene);
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.output.find("VUID") == std::string::npos);
@@ -237,7 +240,7 @@ TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the 
 TEST_CASE("pointing beside the panel clicks nothing") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "beside", kSmall + clickOn(panel, {{1.2, 0.3}, {-0.2, 0.3}}), kScene);
+    const ViewRun run = runView(work, "beside", kBlind + clickOn(panel, {{1.2, 0.3}, {-0.2, 0.3}}), kScene);
     checkClean(run);
     CHECK_FALSE(says(run, " = "));
 }
@@ -250,7 +253,7 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
         "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 1\naxis left thumbstick 0.14 0 1\naxis left thumbstick 0.15 0 0\n";
     const ViewRun saved =
         runView(work, "save",
-                kSmall + walk + clickOn(panel, {placeOf("reproject"), placeOf("Save"), placeOf("predicted"), placeOf("Load"), {0.9, 0.95}}),
+                kBlind + walk + clickOn(panel, {placeOf("reproject"), placeOf("Save"), placeOf("predicted"), placeOf("Load"), {0.9, 0.95}}),
                 kScene);
     checkClean(saved);
     const std::string& output = saved.outcome.output;
@@ -261,7 +264,7 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     CHECK(says(saved, "loaded " + file.string()));
     CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
     // The viewer and `render` take the file.
-    const ViewRun again = runView(work, "again", kSmall + "at 0.1 exit\n", kScene + " --config '" + file.string() + "'");
+    const ViewRun again = runView(work, "again", kBlind + "at 0.1 exit\n", kScene + " --config '" + file.string() + "'");
     checkClean(again);
     CHECK(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
@@ -277,9 +280,9 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     CHECK(compare(there.eye(8, kLeft), named.eye(8, kLeft)).psnrDb() > 60.0);
     CHECK(compare(there.eye(8, kLeft), before.eye(8, kLeft)).psnrDb() < 40.0);
     // Another scene has another place, and one that cannot be read is said and does not keep anybody out.
-    CHECK_FALSE(says(runView(work, "other", kSmall + "at 0.1 exit\n", "builtin:step-edge --load-first"), "where this scene was saved"));
+    CHECK_FALSE(says(runView(work, "other", kBlind + "at 0.1 exit\n", "builtin:step-edge --load-first"), "where this scene was saved"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
-    const ViewRun broken = runView(work, "broken", kSmall + "at 0.1 exit\n", kScene);
+    const ViewRun broken = runView(work, "broken", kBlind + "at 0.1 exit\n", kScene);
     checkClean(broken);
     CHECK(says(broken, "slanted-wall.view.toml:2"));
 }
@@ -341,7 +344,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
 TEST_CASE("nobody reloads shaders who was not told where they are") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
+    const std::string script = kBlind + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
     const ViewRun run = runView(work, "none", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
@@ -352,7 +355,7 @@ TEST_CASE("nobody reloads shaders who was not told where they are") {
 TEST_CASE("the menu button hides the panel and brings it before the eyes") {
     const Workplace work;
     const std::string script =
-        kSmall +
+        kBlind +
         "head 0 position 0 1.6 0\nhead 0.15 position 0 1.6 0\nhead 0.2 position 1 1.6 0 turn 90 0\npress left y 0.1 0.12\n"
         "press right b 0.3 0.32\npress left menu 0.1 0.12\nat 0.4 exit\n";
     const ViewRun run = runView(work, "menu", script, kScene);
@@ -372,7 +375,7 @@ TEST_CASE("a squeezed hand that points carries the panel") {
     const Panel panel = startPanel(work);
     Panel lifted = panel;
     lifted.middle.y += 0.2;
-    const std::string script = kSmall + pointAt(panel, {0.5, 0.5}, 0.1) + pointAt(panel, {0.5, 0.5}, 0.2) +
+    const std::string script = kBlind + pointAt(panel, {0.5, 0.5}, 0.1) + pointAt(panel, {0.5, 0.5}, 0.2) +
                                pointAt(lifted, {0.5, 0.5}, 0.3) + "press right squeeze 0.15 0.35\nat 0.4 exit\n";
     const ViewRun run = runView(work, "carry", script, kScene);
     checkClean(run);
@@ -415,7 +418,7 @@ TEST_CASE("the scene that one hand holds moves with it, as far as it does and no
     const std::string hold =
         "press left squeeze 0.05 0.16\ncontroller left 0.06 position -0.2 1.2 -0.35 turn 0 -80\n"
         "controller left 0.15 position -0.1 1.4 -0.65 turn 30 -60\n";
-    const ViewRun run = runView(work, "hold", kSmall + hold + clickOn(startPanel(work), {placeOf("Save"), {0.9, 0.95}}),
+    const ViewRun run = runView(work, "hold", kBlind + hold + clickOn(startPanel(work), {placeOf("Save"), {0.9, 0.95}}),
                                 kScene + " --mode mono --eye 0,0,0 --look 0,0,3 --up 0,-1,0 --metres-per-unit 0.5");
     checkClean(run);
     const std::string& output = run.outcome.output;
@@ -468,7 +471,7 @@ TEST_CASE("controllers are put down, hands click, and controllers are taken up a
     const Workplace work;
     const Panel panel = startPanel(work);
     // Whatever is not in the hand does nothing.
-    const std::string script = kSmall + pointAt(panel, placeOf("shared"), 0.1) + pointAt(panel, placeOf("shared"), 0.2) +
+    const std::string script = kBlind + pointAt(panel, placeOf("shared"), 0.1) + pointAt(panel, placeOf("shared"), 0.2) +
                                pointAt(panel, placeOf("two-pass"), 0.25) + pointAt(panel, placeOf("two-pass"), 0.4) +
                                pointAt(panel, placeOf("mono"), 0.45) + pointAt(panel, placeOf("mono"), 0.6) +
                                "press right aim_activate_ext 0.11 0.13\npress right trigger 0.15 0.18\n"

@@ -17,7 +17,7 @@ constexpr std::uint64_t kSlow = 1'000'000'000, kQuick = 1;
 ViewRun runQuality(const Workplace& work, const std::string& name, std::uint64_t ticks, int frames, const std::string& view) {
     std::ofstream(work.path / (name + ".toml")) << "[view]\n" << view;
     const ViewRun run = runView(work, name, "rate 90\nsize 200 200\nframes none\nvisibility-mask on\n",
-                                fmt::format("builtin:fence --load-first --hide-panel --frames {} --config {}.toml", frames, name),
+                                fmt::format("builtin:one-splat --load-first --hide-panel --frames {} --config {}.toml", frames, name),
                                 fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' "
                                             "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_TICKS={}",
                                             kValidated, ticks));

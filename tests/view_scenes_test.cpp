@@ -15,14 +15,15 @@ using namespace binosplat::test;
 namespace {
 
 // The left hand points at the floor.
-const std::string kSmall = "rate 90\nsize 160 160\nframes every 10\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+const std::string kLeftHand = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+const std::string kSmall = "rate 90\nsize 64 64\nframes none\n" + kLeftHand;
 
 const glm::dvec2 kBeside(0.9, 0.95);
 
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
 
 const Panel& startPanel(const Workplace& work) {
-    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:slanted-wall --load-first"), 8);
+    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:one-splat --load-first"), 8);
     return panel;
 }
 
@@ -93,8 +94,10 @@ TEST_CASE("the scene of the command line that cannot be read ends it, with one")
 TEST_CASE("a picture of both eyes is a file that is not overwritten") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(work, "shots", kSmall + clickOn(panel, {placeOf("Picture"), placeOf("Picture"), kBeside}),
-                                "builtin:slanted-wall --load-first --mode shared");
+    const ViewRun run =
+        runView(work, "shots",
+                "rate 90\nsize 160 160\nframes every 10\n" + kLeftHand + clickOn(panel, {placeOf("Picture"), placeOf("Picture"), kBeside}),
+                "builtin:slanted-wall --load-first --mode shared");
     checkClean(run);
     CHECK(says(run, "picture binosplat-0001.png"));
     CHECK(says(run, "picture binosplat-0002.png"));
@@ -123,7 +126,7 @@ TEST_CASE("a working directory that was deleted takes no picture, and is no end"
     std::ofstream(work.path / "gone.script") << script;
     const Outcome outcome = work.runCommand(
         fmt::format("mkdir gone && cd gone && rmdir ../gone && DISPLAY= WAYLAND_DISPLAY= XDG_CONFIG_HOME='{0}/config' '" BINOSPLAT_PROGRAM
-                    "' view builtin:slanted-wall --load-first --simulate '{0}/gone.script' --out '{0}/seen'",
+                    "' view builtin:one-splat --load-first --simulate '{0}/gone.script' --out '{0}/seen'",
                     work.path.string()));
     CHECK(outcome.exit_code == 0);
     CHECK(outcome.errors == "");
@@ -135,7 +138,7 @@ TEST_CASE("the wearer recentres by the panel's button") {
     const Panel panel = startPanel(work);
     const std::string head = "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.4 1.5 0.3 turn 50 0\n";
     const ViewRun run =
-        runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}), "builtin:slanted-wall --load-first");
+        runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}), "builtin:one-splat --load-first");
     checkClean(run);
     CHECK(says(run, "the wearer's place is the room's, 1.50 m above the floor"));
     const std::size_t last = run.frames.size() - 5;
@@ -149,18 +152,18 @@ TEST_CASE("a scene that two hands tilted is levelled again") {
     const Panel panel = startPanel(work);
     // Both hands hold the scene and roll it by some 30 degrees; then the right one clicks.
     const std::string roll =
-        "rate 90\nsize 160 160\nframes every 10\n"
+        "rate 90\nsize 64 64\nframes none\n"
         "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\ncontroller left 0.1 position -0.2 1.2 -0.35 turn 0 -80\n"
         "controller left 0.3 position -0.17 1.1 -0.35 turn 0 -80\n"
         "controller right 0 position 0.2 1.2 -0.35 turn 0 -80\ncontroller right 0.1 position 0.2 1.2 -0.35 turn 0 -80\n"
         "controller right 0.3 position 0.17 1.3 -0.35 turn 0 -80\ncontroller right 0.35 position 0.17 1.3 -0.35 turn 0 -80\n"
         "press left squeeze 0.05 0.32\npress right squeeze 0.05 0.32\n";
-    const std::string scene = "builtin:slanted-wall --load-first --mode mono --config tilt.toml";
+    const std::string scene = "builtin:one-splat --load-first --mode mono --config tilt.toml";
     // How much of the turn is not about the vertical, as it was saved.
     const auto tiltAfter = [&](const std::string& name, const std::string& clicks) {
         const ViewRun run = runView(work, name, roll + clicks + "at 1 exit\n", scene);
         checkClean(run);
-        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "slanted-wall.view.toml");
+        std::ifstream file(work.base / "config" / "binosplat" / "scenes" / "one-splat.view.toml");
         for (std::string line; std::getline(file, line);) {
             std::array<double, 4> q{};
             if (std::sscanf(line.c_str(), "scene-orientation = [%lf, %lf, %lf, %lf]", q.data(), &q[1], &q[2], &q[3]) == 4) {

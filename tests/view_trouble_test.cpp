@@ -9,7 +9,7 @@ using namespace binosplat::test;
 
 namespace {
 
-const std::string kSmall = "rate 90\nsize 128 128\nframes none\n";
+const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
 
 ViewRun runTrouble(const Workplace& work, const std::string& lines, const std::string& arguments = "builtin:slanted-wall --load-first") {
     CAPTURE(lines);
