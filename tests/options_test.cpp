@@ -272,6 +272,11 @@ TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
     CHECK(!results[2].ratio_to_two_pass.has_value());
     CHECK(!results[3].ratio_to_shared.has_value());
     CHECK(benchCsv({"GPU", "", results}).find("\"b,c\"") != std::string::npos);
+    // Frames that took turns are compared with their neighbours: what slows both for a while changes no ratio.
+    results[0].frame_ms = {4.0, 8.0, 4.0};
+    results[1].frame_ms = {3.0, 6.0, 1.0};
+    compareModes(results);
+    CHECK(results[1].ratio_to_two_pass == 0.75);
 }
 
 TEST_CASE("passesOfBothEyesAddUp") {

@@ -46,6 +46,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
     for (const auto& [name, ms] : addUp(runner.last.gpu_ms)) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
     result.total_ms = median(runner.total_ms);
+    result.frame_ms = runner.total_ms;
     result.least_ms = std::ranges::min(runner.total_ms);
     result.most_ms = std::ranges::max(runner.total_ms);
     result.counters = runner.last.counters;

@@ -22,7 +22,10 @@ const BenchResult* findMode(const std::vector<BenchResult>& results, const Bench
 
 std::optional<double> ratioTo(const BenchResult& result, const BenchResult* other) {
     if (other == nullptr || !(other->total_ms > 0.0)) { return std::nullopt; }
-    return result.total_ms / other->total_ms;
+    if (result.frame_ms.empty() || result.frame_ms.size() != other->frame_ms.size()) { return result.total_ms / other->total_ms; }
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < result.frame_ms.size(); ++i) { ratios.push_back(result.frame_ms[i] / other->frame_ms[i]); }
+    return median(ratios);
 }
 
 // Bare pass: without the eyes in front.

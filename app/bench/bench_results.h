@@ -34,15 +34,17 @@ struct BenchResult {
     std::uint32_t frames = 0;
     NamedTimes pass_ms;                                    // in frame order
     double total_ms = 0.0, least_ms = 0.0, most_ms = 0.0;  // the whole pair (one eye for mono)
+    std::vector<double> frame_ms;                          // of each frame, in turn with those of the point's other methods
     std::map<std::string, std::uint64_t> counters;
     std::uint64_t peak_gpu_bytes = 0;
-    std::vector<OriginScores> quality;                         // of the affiliated eye; empty where it is rendered in full
-    std::optional<double> ratio_to_two_pass, ratio_to_shared;  // of total_ms, in the same run
-    std::optional<double> ratio_to_twin;                       // mono: of total_ms to the twin's
-    double tiles_rendered = 1.0, work_rendered = 1.0;          // see FrameResult
-    double stereo_bytes_per_pixel = 0.0;                       // likewise, of all passes; 0 where every eye is rendered in full
-    std::optional<double> move_cost;                           // predicted: what moving a tile took, in pairs of `shared`
-    bool on_front = false;                                     // no other method of the point is as fast and as close to the full render
+    std::vector<OriginScores> quality;  // of the affiliated eye; empty where it is rendered in full
+    // Median of the ratios of frames that took turns: what slows the machine for a while slows both. Of total_ms where they did not.
+    std::optional<double> ratio_to_two_pass, ratio_to_shared;
+    std::optional<double> ratio_to_twin;               // mono: to the twin's
+    double tiles_rendered = 1.0, work_rendered = 1.0;  // see FrameResult
+    double stereo_bytes_per_pixel = 0.0;               // likewise, of all passes; 0 where every eye is rendered in full
+    std::optional<double> move_cost;                   // predicted: what moving a tile took, in pairs of `shared`
+    bool on_front = false;                             // no other method of the point is as fast and as close to the full render
 };
 
 struct BenchRun {
