@@ -2,6 +2,7 @@
 // written, that no byte depends on the run, and what it costs.
 #include "engine/picture/metrics.h"
 #include "tests/affiliated_frames.h"
+#include "tests/frame_runs.h"
 #include "tests/shared_data.h"
 
 #include <doctest/doctest.h>
@@ -87,6 +88,7 @@ TEST_CASE_FIXTURE(Gpu, "without a distance between the eyes, the other eye's pic
         CAPTURE(view.name);
         const GpuScene scene(context(), view.scene);
         StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
         for (const gpu::uint depth_choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
             CAPTURE(depth_choice);
             for (FrameSettings settings : makeReprojecting(depth_choice == gpu::kDepthMean ? kRight : kLeft)) {
@@ -110,6 +112,7 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, and on 
     const auto eyes = test::headsetEyes(view.eye, glm::radians(5.0));
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     std::vector<FrameSettings> all = makeReprojecting();
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) { all.push_back(makeSettings(mode)); }
     for (const FrameSettings& settings : all) {
@@ -135,6 +138,7 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
         const ViewedScene view = viewAtelier(size_px);
         const GpuScene scene(context(), view.scene);
         StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
         for (const double canting_rad : {0.0, glm::radians(5.0)}) {
             const auto eyes = test::headsetEyes(view.eye, canting_rad);
             for (const Side dominant : {kLeft, kRight}) {
@@ -165,6 +169,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
         const auto eyes = test::headsetEyes(view.eye, canting_rad);
         const Image full = makeAffiliated(frame, eyes, makeSettings(Mode::kShared)).pictures[kRight];
@@ -203,6 +208,7 @@ TEST_CASE_FIXTURE(Gpu,
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     for (const double canting_rad : {0.0, glm::radians(5.0)}) {
         CAPTURE(canting_rad);
         const auto eyes = test::headsetEyes(view.eye, canting_rad);
@@ -225,6 +231,7 @@ TEST_CASE_FIXTURE(Gpu, "more budget is never worse") {
     const auto eyes = stereoPair(view.eye, 0.063);
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     const Image full = makeAffiliated(frame, eyes, makeSettings(Mode::kShared)).pictures[kRight];
     double before_db = compare(makeAffiliated(frame, eyes, makeSettings(Mode::kReproject)).pictures[kRight], full).psnrDb();
     for (const double budget : {0.0, 0.05, 0.1, 0.2, 0.4, 0.8}) {

@@ -1,6 +1,7 @@
 // Facts about foveation: what 8h counts of an error where it is known where an eye looks, against the twin, and the frames that follow.
 #include "engine/picture/metrics.h"
 #include "tests/affiliated_frames.h"
+#include "tests/frame_runs.h"
 #include "tests/stereo_stages.h"
 
 #include <doctest/doctest.h>
@@ -159,6 +160,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's") {
     test::hideWhatMeetsTheNearPlane(room.scene, eyes);
     const GpuScene scene(context(), room.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     std::size_t chosen = 0, chosen_everywhere = 0;
     for (const Side dominant : {kLeft, kRight}) {
         CAPTURE(static_cast<int>(dominant));

@@ -76,6 +76,7 @@ TEST_CASE_FIXTURE(Gpu, "the host goes on while the device draws") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     frame.renderAhead(eyesAt(view.eye, 0), makeSettings(Mode::kShared));
     // A device that waits for the host, which would wait for ever were the frame waited for.
     vk::raii::Event gate = context().device().createEvent({});
@@ -216,6 +217,7 @@ TEST_CASE_FIXTURE(Gpu, "other sizes, modes and hidden tiles wait for the frames 
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     std::array<Eye, 2> small = eyesAt(view.eye, 0);
     for (Eye& eye : small) {
         eye.size_px = {64, 48};
@@ -248,6 +250,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
     auto before = std::make_unique<StereoFrame>(context(), other_scene);
     for (int step = 0; step < 2; ++step) { before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted)); }
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     frame.takeKernels(*before);  // while frames are under way
     CHECK(pictureOf(frame, view.eye) == expected);
     CHECK(pictureOf(*before, other_view.eye) == other_expected);

@@ -9,6 +9,32 @@
 
 namespace binosplat::test {
 
+// While it lives a frame on the tests' own device has the kernels that were made before it in this program.
+class KeptKernels {
+public:
+    KeptKernels(const Context& context, StereoFrame& frame) : frame_(frame), pool_(&context == &Gpu::shared() ? &pool() : nullptr) {
+        if (pool_ != nullptr) { frame_.takeKernels(pool_->frame); }
+    }
+    KeptKernels(const KeptKernels&) = delete;
+    KeptKernels& operator=(const KeptKernels&) = delete;
+    ~KeptKernels() {
+        if (pool_ != nullptr) { pool_->frame.takeKernels(frame_); }
+    }
+
+private:
+    struct Pool {
+        GpuScene scene{Gpu::shared(), viewBuiltin("builtin:one-splat", {16, 16}).scene};
+        StereoFrame frame{Gpu::shared(), scene};
+    };
+    static Pool& pool() {
+        static Pool made;
+        return made;
+    }
+
+    StereoFrame& frame_;
+    Pool* pool_;
+};
+
 struct MonoFrame {
     FrameResult result;
     Image picture, depth, moments;
@@ -17,6 +43,7 @@ inline MonoFrame renderMono(const Context& context, const Scene& scene, const Ey
                             const FrameOptions& options = {}) {
     const GpuScene gpu_scene(context, scene);
     StereoFrame frame(context, gpu_scene, options);
+    const KeptKernels kept(context, frame);
     FrameResult result = frame.render({&eye, 1}, settings);
     return {std::move(result), frame.readPicture(0), frame.readDominantDepth(),
             settings.keep_moments ? frame.readInverseDepthMoments() : Image{}};
@@ -30,6 +57,7 @@ inline PairOfPictures renderPair(const Context& context, const Scene& scene, con
                                  const FrameOptions& options = {}) {
     const GpuScene gpu_scene(context, scene);
     StereoFrame frame(context, gpu_scene, options);
+    const KeptKernels kept(context, frame);
     FrameResult result = frame.render(eyes, settings);
     return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}};
 }

@@ -5,15 +5,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
+#include <utility>
 
 namespace binosplat::test {
 namespace {
-
-// Made by the first test that wants it; throws in every test if there is no device.
-const Context& sharedContext() {
-    static const Context context({.device = {}, .validation = true, .max_allocation_bytes = 0});
-    return context;
-}
 
 gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
     const auto groups = static_cast<std::uint32_t>((count + group_items - 1) / group_items);
@@ -22,12 +18,24 @@ gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
 
 }  // namespace
 
-Gpu::Gpu() : context_(sharedContext()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
+const Context& Gpu::shared() {
+    static const Context context({.device = {}, .validation = true, .max_allocation_bytes = 0});
+    return context;
+}
+
+Gpu::Gpu() : context_(shared()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
 
 Gpu::~Gpu() {
     CHECK(context_.validates());
     const std::vector<std::string> messages = context_.validationMessages();
     for (std::size_t i = messages_before_; i < messages.size(); ++i) { FAIL_CHECK("validation: " << messages[i]); }
+}
+
+const Kernel& Gpu::kernel(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
+    static std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> made;  // after the device, and gone before it
+    const auto found = made.find({shader, constants});
+    if (found != made.end()) { return found->second; }
+    return made.emplace(std::pair(shader, constants), Kernel(context_, shader, push_bytes, constants)).first->second;
 }
 
 void Gpu::write(const Buffer& buffer, std::span<const std::byte> bytes) {

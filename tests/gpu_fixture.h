@@ -20,6 +20,8 @@ public:
     ~Gpu();
 
     [[nodiscard]] const Context& context() const { return context_; }
+    // Made by the first test that wants it; throws in every test if there is no device.
+    [[nodiscard]] static const Context& shared();
 
     // A device buffer with these values; of at least one value, so that it has an address.
     template <typename T>
@@ -42,6 +44,10 @@ public:
         read(buffer, std::as_writable_bytes(std::span(values)), offset_bytes);
         return values;
     }
+
+    // The kernel of a shader with these specialization constants, made once for all tests of a program.
+    [[nodiscard]] const Kernel& kernel(const std::string& shader, std::uint32_t push_bytes,
+                                       const std::vector<std::uint32_t>& constants = {});
 
     // Runs what `record(commands)` records, to its end.
     template <typename Record>

@@ -131,8 +131,8 @@ struct ProjectedOnDevice {
 // `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
 inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
                                          std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
-    const Kernel kernel(
-        gpu.context(), "4_project", sizeof(gpu::ProjectPass),
+    const Kernel& kernel = gpu.kernel(
+        "4_project", sizeof(gpu::ProjectPass),
         {static_cast<std::uint32_t>(device.scene.shDegree()), /*masked=*/tile_mask.value != 0 ? 1u : 0u, device.scene.splatKind()});
     const std::size_t count = order.size();
     ProjectedOnDevice result{static_cast<std::uint32_t>(count),

@@ -45,7 +45,7 @@ struct Culled {
 Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_count) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
-    const Kernel kernel(gpu.context(), "1_cull", sizeof(gpu::CullPass), {device.scene.splatShape()});
+    const Kernel& kernel = gpu.kernel("1_cull", sizeof(gpu::CullPass), {device.scene.splatShape()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
@@ -70,7 +70,7 @@ struct Compacted {
 // 2_compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
 Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
                           const std::optional<glm::dvec3>& middle) {
-    const Kernel kernel(gpu.context(), "2_compact", sizeof(gpu::CompactPass), {middle ? 1u : 0u});
+    const Kernel& kernel = gpu.kernel("2_compact", sizeof(gpu::CompactPass), {middle ? 1u : 0u});
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
     std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);

@@ -2,6 +2,7 @@
 // depths, and splats that only the affiliated eye sees.
 #include "engine/picture/metrics.h"
 #include "tests/affiliated_frames.h"
+#include "tests/frame_runs.h"
 
 #include <doctest/doctest.h>
 

@@ -2,6 +2,7 @@
 #include "engine/picture/metrics.h"
 #include "engine/reference/splat.h"
 #include "tests/affiliated_frames.h"
+#include "tests/frame_runs.h"
 #include "tests/stereo_cases.h"
 
 #include <doctest/doctest.h>
@@ -88,6 +89,7 @@ TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of th
     const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
         for (const Side dominant : {kLeft, kRight}) {
             CAPTURE(static_cast<int>(dominant));
@@ -121,6 +123,7 @@ TEST_CASE_FIXTURE(Gpu, "a masked eye is the twin's, pair for pair but for what l
 
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     const FrameResult result = frame.render({&view.eye, 1}, makeSettings(Mode::kMono, kLeft, true));
     CHECK(static_cast<double>(result.counters.at("tile_pairs")) == doctest::Approx(static_cast<double>(pairs.size())).epsilon(0.02));
     CHECK(compare(frame.readPicture(0), test::toImage(twin), 4).psnrDb() >= 65.0);
@@ -139,6 +142,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         test::hideWhatMeetsTheNearPlane(host_scene, setting.eyes);
         const GpuScene scene(context(), host_scene);
         StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
         for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
             const Side dominant = method == StereoMethod::kPaper ? kRight : kLeft, other = dominant == kLeft ? kRight : kLeft;
             const reference::StereoSettings twin_settings{.method = method,
@@ -204,6 +208,7 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
     const auto eyes = test::headsetEyes(view.eye, glm::radians(4.0));
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     frame.render(eyes, makeSettings(Mode::kShared, kLeft, false));
     const Image whole = frame.readPicture(kRight);
     // The left lens hides all of the right half: what is made of the other half reaches nowhere near.
@@ -232,6 +237,7 @@ TEST_CASE_FIXTURE(Gpu, "masks come, change and go between frames") {
     const auto eyes = test::headsetEyes(view.eye, 0.0);
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     for (const Mode mode : {Mode::kPredicted, Mode::kPaper, Mode::kShared}) {
         const auto read = [&] { return std::array{frame.readPicture(kLeft).values, frame.readPicture(kRight).values}; };
         const FrameSettings without = makeSettings(mode, kLeft, false), with = makeSettings(mode, kLeft, true);
@@ -271,6 +277,7 @@ TEST_CASE_FIXTURE(Gpu, "the affiliated eye's depth is there in every mode, the r
         const auto eyes = test::headsetEyes(view->eye, glm::radians(4.0));
         const GpuScene scene(context(), view->scene);
         StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
         frame.render(eyes, makeSettings(Mode::kShared, kLeft, false));
         const Image full = frame.readPicture(kRight), full_depth = frame.readDepth(kRight);
         for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {

@@ -56,6 +56,7 @@ TEST_CASE_FIXTURE(Gpu, "frames are the same from run to run, byte for byte") {
     const auto eyes = headsetEyes(view.eye, 0.0);
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     frame.render(eyes, makeSettings(Mode::kShared));
     const std::array<Image, 2> first{frame.readPicture(kLeft), frame.readPicture(kRight)};
     const Image first_depth = frame.readDominantDepth();

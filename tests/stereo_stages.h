@@ -317,7 +317,7 @@ private:
 
     template <typename Pass>
     void dispatch(const char* shader, const std::vector<std::uint32_t>& constants, const Pass& pass, glm::uvec2 groups) {
-        const Kernel kernel(gpu_.context(), shader, sizeof(Pass), constants);
+        const Kernel& kernel = gpu_.kernel(shader, sizeof(Pass), constants);
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
     }
     void fill(const Buffer& buffer, std::size_t count, gpu::uint value) { gpu_.upload(buffer, std::vector<gpu::uint>(count, value)); }

@@ -1,5 +1,6 @@
 // The twin's whole stereo frame: what must hold of it by itself, and that the device's frames are like it.
 #include "engine/picture/metrics.h"
+#include "tests/frame_runs.h"
 #include "tests/stereo_cases.h"
 
 #include <doctest/doctest.h>
@@ -99,6 +100,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
           View{"3D Gaussians, dimmed, canted", dimmed, test::headsetEyes(dimmed.eye, glm::radians(5.0))}}) {
         const GpuScene scene(context(), seen.view.scene);
         StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
         for (const Side dominant : {kLeft, kRight}) {
             // A move that costs nothing, as much as many tiles' pairs, and more than any. And the paper to the letter, each eye by itself.
             for (const auto& [method, move_cost, letter] :

@@ -47,7 +47,7 @@ struct Summed {
 
 Summed sumUp(Gpu& gpu, const Values& values, std::uint32_t capacity) {
     gpu.context().replacedShaders()["sum_up"].assign(std::begin(kSumUpWords), std::end(kSumUpWords));
-    const Kernel kernel(gpu.context(), "sum_up", sizeof(SumUpPass));
+    const Kernel& kernel = gpu.kernel("sum_up", sizeof(SumUpPass));
     const std::size_t count = values.size();
     const Buffer buffer = gpu.upload("values", values), sums = gpu.upload("sums", Values(count + 1, kUntouched));
     const Buffer result = gpu.upload("result", std::vector{gpu::ListState{}});

@@ -39,8 +39,8 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const std::uint32_t masked = mask.empty() ? 0 : 1;
-    const Kernel kernel(gpu.context(), "5_bin", sizeof(gpu::BinPass)),
-        large_kernel(gpu.context(), "5_bin_large", sizeof(gpu::BinPass), {masked, device.scene.splatShape()});
+    const Kernel& kernel = gpu.kernel("5_bin", sizeof(gpu::BinPass));
+    const Kernel& large_kernel = gpu.kernel("5_bin_large", sizeof(gpu::BinPass), {masked, device.scene.splatShape()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
@@ -88,7 +88,7 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
 }
 
 std::vector<glm::uvec2> rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, std::size_t tile_count) {
-    const Kernel kernel(gpu.context(), "6_tile_ranges", sizeof(gpu::TileRangesPass));
+    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass));
     const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
     const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(0)));
     gpu::TileRangesPass pass{};
@@ -240,9 +240,10 @@ constexpr std::uint32_t kThreadsPerCell = 32;
 
 TEST_CASE_FIXTURE(Gpu, "7_rasterize blends the twin's splats, pairs and ranges to the twin's picture") {
     for (const ViewedScene& view : allScenes()) {
-        const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
-                            {kThreadsPerCell, /*depth=*/1, /*moments=*/1, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
-                             /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
+        const Kernel& kernel =
+            this->kernel("7_rasterize", sizeof(gpu::RasterizePass),
+                         {kThreadsPerCell, /*depth=*/1, /*moments=*/1, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
+                          /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
         CAPTURE(view.name);
         reference::Settings settings = kSettings;
         settings.background = {0.2, 0.4, 0.1};
@@ -286,9 +287,9 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize rounds colours to half floats where these ar
     for (const bool halves : {false, true}) {
         RasterInputs inputs(*this, view, twin, kSettings);
         inputs.pass.half_colours = inputs.colours.address<gpu::uvec2>();
-        const Kernel kernel(context(), "7_rasterize", sizeof(gpu::RasterizePass),
-                            {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
-                             halves, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
+        const Kernel& kernel = this->kernel("7_rasterize", sizeof(gpu::RasterizePass),
+                                            {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/0, /*spread=*/0, /*masked=*/0,
+                                             gpu::kDepthInverse, halves, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
         run([&](Commands& commands) {
             commands.dispatch(kernel, inputs.pass, inputs.eye_view.size_tiles.x, inputs.eye_view.size_tiles.y);
         });
@@ -327,8 +328,8 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize leaves the word that each pixel moves by, an
                 settings.inverse_depth_moments = true;
                 const TwinStages twin(view, settings);
                 RasterInputs inputs(*this, view, twin, settings);
-                const Kernel kernel(
-                    context(), "7_rasterize", sizeof(gpu::RasterizePass),
+                const Kernel& kernel = this->kernel(
+                    "7_rasterize", sizeof(gpu::RasterizePass),
                     {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0, test::depthChoiceOf(choice),
                      /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
                 // Rows of both, one after the other, as where they share memory with a picture.
