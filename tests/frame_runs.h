@@ -9,10 +9,12 @@
 
 namespace binosplat::test {
 
-// While it lives a frame on the tests' own device has the kernels that were made before it in this program.
+// While it lives a frame on the tests' own device has the kernels that were made before it in this program. They are those of frames
+// whose options leave the threads of a cell to the device: a frame that chose them makes its own.
 class KeptKernels {
 public:
-    KeptKernels(const Context& context, StereoFrame& frame) : frame_(frame), pool_(&context == &Gpu::shared() ? &pool() : nullptr) {
+    KeptKernels(const Context& context, StereoFrame& frame, const FrameOptions& options = {})
+        : frame_(frame), pool_(&context == &Gpu::shared() && options.threads_per_cell == 0 ? &pool() : nullptr) {
         if (pool_ != nullptr) { frame_.takeKernels(pool_->frame); }
     }
     KeptKernels(const KeptKernels&) = delete;
@@ -43,7 +45,7 @@ inline MonoFrame renderMono(const Context& context, const Scene& scene, const Ey
                             const FrameOptions& options = {}) {
     const GpuScene gpu_scene(context, scene);
     StereoFrame frame(context, gpu_scene, options);
-    const KeptKernels kept(context, frame);
+    const KeptKernels kept(context, frame, options);
     FrameResult result = frame.render({&eye, 1}, settings);
     return {std::move(result), frame.readPicture(0), frame.readDominantDepth(),
             settings.keep_moments ? frame.readInverseDepthMoments() : Image{}};
@@ -57,7 +59,7 @@ inline PairOfPictures renderPair(const Context& context, const Scene& scene, con
                                  const FrameOptions& options = {}) {
     const GpuScene gpu_scene(context, scene);
     StereoFrame frame(context, gpu_scene, options);
-    const KeptKernels kept(context, frame);
+    const KeptKernels kept(context, frame, options);
     FrameResult result = frame.render(eyes, settings);
     return {std::move(result), {frame.readPicture(kLeft), frame.readPicture(kRight)}};
 }
