@@ -81,6 +81,14 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     return result;
 }
 
+void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
+    if (shapeOf(eyes, settings) == shape_) { return; }
+    finish();
+    shape_ = {};  // some images are new, and some may fail
+    setRoles(settings);
+    prepareImages(eyes, settings);
+}
+
 std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                                     const std::function<void(Commands&)>& append, vk::Semaphore signals) {
     Flight &before_last = flights_[turn_], &last = flights_[1 - turn_];
@@ -210,13 +218,17 @@ bool StereoFrame::jumps(std::span<const Eye> eyes, const FrameSettings& settings
     return false;
 }
 
+void StereoFrame::setRoles(const FrameSettings& settings) {
+    mode_ = settings.mode;
+    dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
+}
+
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     assert(eyes.size() == (settings.mode == Mode::kMono ? 1u : 2u));
     check(!reprojects(settings.mode) || eyes[0].size_px == eyes[1].size_px,
           "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
           eyes.back().size_px.x, eyes.back().size_px.y);
-    mode_ = settings.mode;
-    dominant_ = settings.mode == Mode::kMono ? 0 : settings.dominant;
+    setRoles(settings);
     per_eye_ = settings.mode == Mode::kTwoPass || (settings.mode == Mode::kPaper && settings.per_eye);
     relation_ = relate(eyes[dominant_], eyes.size() == 2 ? eyes[1 - dominant_] : eyes[dominant_]);
     prepareImages(eyes, settings);

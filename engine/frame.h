@@ -91,6 +91,9 @@ public:
     // `signals`, where given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
+    // Makes the images that renderAhead needs for such frames, where they are others than those of the frame before, for which it waits.
+    // Throws Error if the device lacks the memory: then no picture is left, and frames as they were before may still be rendered.
+    void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
     // Waits for all frames under way: after this nothing that they use is in use. The last one's result.
     std::optional<FrameResult> finish();
     // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
@@ -153,6 +156,7 @@ private:
     [[nodiscard]] Shape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // Whether lists for these eyes need not be like those of the frame before.
     [[nodiscard]] bool jumps(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    void setRoles(const FrameSettings& settings);
     void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
     // Into the flight whose turn it is.
     void record(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append);

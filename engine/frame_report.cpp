@@ -58,7 +58,7 @@ void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const
         counters["tiles_cheap"] = stereo.cheap_tiles;
         counters["tiles_weighed_as_moved"] = stereo.moved_tiles;
         counters["work_full"] = stereo.picture_cost;
-        counters["work_rendered"] = stereo.chosen_cost;
+        counters["work_patched"] = stereo.chosen_cost;
         counters["work_saved_by_moving"] = stereo.saved_cost;
     }
     counters["hole_components"] = stereo.components;

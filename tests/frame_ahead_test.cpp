@@ -1,4 +1,5 @@
 // Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
+#include "engine/error.h"
 #include "engine/frame.h"
 #include "tests/frame_runs.h"
 
@@ -210,6 +211,31 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
         if (auto result = frame.renderAhead(eyesAt(view.eye, 0), blind)) { last = std::move(*result); }
     }
     CHECK(count(last, "frames_cut_short") <= cut_short + 2);  // two were under way
+    CHECK(tight.validationMessages().empty());
+}
+
+TEST_CASE_FIXTURE(Gpu, "pictures that the device has no memory for are refused before a frame is begun, and smaller ones go on") {
+    const ViewedScene view = viewAtelier();
+    const Context tight({.device = {}, .validation = true, .memory_limit_bytes = 64u << 20});
+    const GpuScene scene(tight, view.scene);
+    StereoFrame frame(tight, scene);
+    const FrameSettings settings = makeSettings(Mode::kPredicted);
+    const std::array<Eye, 2> fits = eyesAt(view.eye, 0);
+    std::array<Eye, 2> large = fits;
+    for (Eye& eye : large) { eye.size_px = {4096, 4096}; }
+    for (int step = 0; step < 3; ++step) {
+        frame.makeRoom(fits, settings);
+        frame.renderAhead(fits, settings);
+    }
+    frame.finish();
+    const Image before = frame.readPicture(kRight);
+    for (int time = 0; time < 2; ++time) { CHECK_THROWS_AS(frame.makeRoom(large, settings), Error); }
+    for (int step = 0; step < 3; ++step) {
+        frame.makeRoom(fits, settings);
+        frame.renderAhead(fits, settings);
+    }
+    frame.finish();
+    CHECK(frame.readPicture(kRight).values == before.values);
     CHECK(tight.validationMessages().empty());
 }
 

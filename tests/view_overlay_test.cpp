@@ -190,6 +190,24 @@ TEST_CASE("sliders take a click, and the resolution changes once the trigger is 
     CHECK(sizeIn(70) == static_cast<int>(std::round(160.0 * scale)));
 }
 
+TEST_CASE("a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
+    const Workplace work;
+    std::ofstream(work.path / "small.toml") << "[view]\nresolution-scale = 0.25\n";
+    const std::string large = "rate 90\nsize 1024 1024\nframes every 8\n" + kLeftHand;
+    const ViewRun run = runView(work, "full", large + clickOn(startPanel(work), {placeOf("resolution"), {0.9, 0.95}}),
+                                kScene + " --config small.toml --memory-limit 16");
+    checkClean(run);
+    CHECK(says(run, "does not fit: "));
+    CHECK(says(run, "the limit is 16.0 MiB (memory-limit)"));
+    const std::size_t late = run.frames.size() / 8 * 8 - 8;
+    const auto rect = run.layers(late, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>();
+    CHECK(rect[2] == 256);
+    Image before = run.eye(late / 16 * 8, kLeft), after = run.eye(late, kLeft);
+    maskPanels(before, run, late, kLeft);
+    maskPanels(after, run, late, kLeft);
+    CHECK(compare(after, before, 3).psnrDb() > 60.0);
+}
+
 TEST_CASE("a recorded walk of 200 frames, with clicks on the way, ends when the wearer leaves") {
     const Workplace work;
     const Panel panel = startPanel(work);

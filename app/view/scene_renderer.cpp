@@ -27,11 +27,23 @@ glm::uvec2 SceneRenderer::sizePx(const ViewSettings& settings) const { return sc
 
 void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
     const glm::uvec2 size_px = sizePx(settings);
-    std::unique_ptr<EyeImages>& images = stay.images;
-    if (images && images->sizePx() == size_px) { return; }
-    images.reset();
-    images = std::make_unique<EyeImages>(stay.session, presenter_, format_, size_px);
-    if (!takes_depth_) { images->dropDepth(); }
+    if (!stay.images) { return makeImages(stay, size_px); }
+    const glm::uvec2 before_px = stay.images->sizePx();
+    if (before_px == size_px) { return; }
+    try {
+        makeImages(stay, size_px);
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error&) {
+        makeImages(stay, before_px);
+        throw;
+    }
+}
+
+void SceneRenderer::makeImages(HeadsetStay& stay, glm::uvec2 size_px) {
+    stay.images.reset();  // first, since both may not fit
+    stay.images = std::make_unique<EyeImages>(stay.session, presenter_, format_, size_px);
+    if (!takes_depth_) { stay.images->dropDepth(); }
 }
 
 void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
@@ -69,22 +81,34 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     return frame;
 }
 
-void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
-                           const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel) {
+void SceneRenderer::prepare(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+                            const FrameViews& views) {
+    frame_ = settingsOfFrame(stay, settings, scene_from_room.scale, views);
+    eyes_.clear();
+    for (const int e : {kLeft, kRight}) {
+        if (settings.showsOneEye() && e != frame_.dominant) { continue; }
+        const auto at = static_cast<std::size_t>(e);
+        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, stay.images->partPx()));
+    }
+    try {
+        scene.frame.makeRoom(eyes_, frame_);
+    } catch (const Error&) {
+        forgetLastFrame();
+        throw;
+    }
+}
+
+void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+                           const std::function<void(Commands&)>& record_panel) {
     const bool one_eye = settings.showsOneEye();
     stay.images->seeThrough(seesThrough(settings));
-    const FrameSettings frame = settingsOfFrame(stay, settings, scene_from_room.scale, views);
-    std::array<Eye, 2> eyes;
     for (const int e : {kLeft, kRight}) {
-        const auto at = static_cast<std::size_t>(e);
-        eyes[at] = eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, stay.images->partPx());
-        if (!one_eye || e == frame.dominant) { stay.images->acquire(e, true); }
+        if (!one_eye || e == frame_.dominant) { stay.images->acquire(e, true); }
     }
-    const auto seen = one_eye ? std::span<const Eye>(&eyes[static_cast<std::size_t>(frame.dominant)], 1) : std::span<const Eye>(eyes);
     std::optional<FrameResult> known = scene.frame.renderAhead(
-        seen, frame,
+        eyes_, frame_,
         [&](Commands& commands) {
-            recordEyes(commands, stay, scene, frame, settings.tint, window);
+            recordEyes(commands, stay, scene, frame_, settings.tint, window);
             record_panel(commands);
         },
         window != nullptr ? window->drawn() : vk::Semaphore());

@@ -28,17 +28,20 @@ public:
 
     // Of an eye's images, as large as the wearer wants them.
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const;
-    // Images of the stay as large as the wearer wants them.
+    // Images of the stay as large as the wearer wants them. Throws Error where there cannot be any; they are as large as before then.
     void fitImages(HeadsetStay& stay, const ViewSettings& settings);
     // What the governor makes of the wearer's settings, in images as large as that.
     void govern(HeadsetStay& stay, const ViewSettings& settings);
     // The runtime refuses depth after all.
     void dropDepth(HeadsetStay& stay);
 
-    // Renders and presents, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps an eye
-    // for that.
-    void render(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
-                const FrameViews& views, MirrorWindow* window, const std::function<void(Commands&)>& record_panel);
+    // What render() will show. Throws Error where there is no memory for it; nothing is shown then, until this succeeds with less.
+    void prepare(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+                 const FrameViews& views);
+    // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps
+    // an eye for that.
+    void render(HeadsetStay& stay, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+                const std::function<void(Commands&)>& record_panel);
 
     // The wearer wants the room behind the scene, and the headset can show it.
     [[nodiscard]] bool seesThrough(const ViewSettings& settings) const { return settings.passthrough && instance_.canSeeThrough(); }
@@ -49,6 +52,7 @@ public:
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
+    void makeImages(HeadsetStay& stay, glm::uvec2 size_px);
     [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views);
     void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
     void sayHidden(bool one_eye);
@@ -61,6 +65,8 @@ private:
     vk::Format format_;
     Presenter presenter_;
     Governor governor_;
+    FrameSettings frame_;        // prepared
+    std::vector<Eye> eyes_;      // prepared
     GovernedSettings governed_;  // as of the frame drawn last
     std::uint64_t governed_count_ = 0;
     bool said_beaten_ = false;

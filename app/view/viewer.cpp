@@ -169,11 +169,10 @@ void Viewer::drawFrame() {
     panel_hangs_ = settings_.panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
     // Last, since the panel and the window may change what is wished for.
-    renderer_.govern(*stay_, settings_);
+    const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
-    if (LoadedScene* scene = scenes_.get()) {
-        renderer_.render(*stay_, *scene, scenes_.scene_from_room, settings_, views, window_.get(),
-                         [this](Commands& commands) { recordPanel(commands); });
+    if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
+        renderer_.render(*stay_, *scene, settings_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
     } else {
         renderWaiting();
     }
@@ -181,6 +180,25 @@ void Viewer::drawFrame() {
     showFrame(views);
     sayChange(before);
     keepFrameTime();
+}
+
+bool Viewer::prepareScene(const FrameViews& views) {
+    LoadedScene* scene = scenes_.get();
+    try {
+        renderer_.govern(*stay_, settings_);
+        if (scene != nullptr) { renderer_.prepare(*stay_, *scene, scenes_.scene_from_room, settings_, views); }
+        settings_that_fit_ = settings_;
+        return true;
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error& error) {
+        const std::string change = settings_that_fit_ ? describeChange(*settings_that_fit_, settings_) : "";
+        if (change.empty()) { throw; }
+        say(fmt::format("{} does not fit: {}", change, error.what()));
+    }
+    settings_ = *settings_that_fit_;
+    renderer_.govern(*stay_, settings_);
+    return false;
 }
 
 void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {

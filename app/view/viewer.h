@@ -44,6 +44,8 @@ private:
     void settle();
     void renderWaiting();
     void recordPanel(Commands& commands);
+    // What the wearer wishes for, or what was before that where there is no memory for it; false: the scene is not shown in this frame.
+    bool prepareScene(const FrameViews& views);
     // Hands, rays and what else hangs in the room in this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
     void showFrame(const FrameViews& views);
@@ -69,6 +71,7 @@ private:
     xr::Instance& instance_;
     const Context& context_;
     ViewSettings settings_;
+    std::optional<ViewSettings> settings_that_fit_;  // of the last frame there was memory for
     FrameLog log_;
     std::unique_ptr<HeadsetStay> stay_;  // null while there is no session
     vk::Format format_;                  // of every session's images

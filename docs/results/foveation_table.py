@@ -92,7 +92,7 @@ def main():
             for options in ["", "--foveation 15", "--foveation 8", "--foveation 8 --budget 0.4"]:
                 picture, counters = render("made", options.split())
                 label = f"`{options}`" if options else "no foveation"
-                work = counters["work_rendered"] / counters["work_full"]
+                work = counters["work_patched"] / counters["work_full"]
                 print(f"| {name} | {label} | {counters['tiles_patched']} | {counters['tiles_predicted']} | {work:.3f} | "
                       f"{psnr(picture, full, everywhere):.2f} | {psnr(picture, full, middle):.2f} |", flush=True)
 
