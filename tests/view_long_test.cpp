@@ -100,8 +100,8 @@ class Walk {
 public:
     Walk() {
         std::filesystem::create_directories(work_.path / "scenes");
-        for (const char* name : {"fence", "step-edge"}) {
-            const Outcome made = work_.run(fmt::format("scene {} --out scenes/{}.ply", name, *name == 'f' ? "a" : "b"));
+        for (const char* name : {"one-splat", "slanted-wall"}) {
+            const Outcome made = work_.run(fmt::format("scene {} --out scenes/{}.ply", name, *name == 'o' ? "a" : "b"));
             INFO(made.errors);
             REQUIRE(made.exit_code == 0);
         }

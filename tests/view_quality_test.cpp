@@ -49,7 +49,7 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
         // From side by side to angles of their own.
         const ViewRun run =
             runView(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
-                    "builtin:fence --load-first --hide-panel --mode predicted --frames 60",
+                    "builtin:slanted-wall --load-first --hide-panel --mode predicted --move-cost 0 --frames 60",
                     fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' "
                                 "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}'",
                                 kValidated, alive));
@@ -78,11 +78,12 @@ TEST_CASE("a load that comes and goes: less resolution at once, a method that wa
     std::ofstream(work.path / "load.toml") << "[view]\nquality = \"balanced\"\n";
     // Of 33 ms: everything fits, then both eyes take 42 and one made from the other 25, then everything fits again.
     constexpr int kComes = 40, kGoes = 170, kSecond = 30;
-    const ViewRun run = runView(work, "load", fmt::format("rate {}\nsize 128 128\nframes none\n", kSecond),
-                                "builtin:fence --load-first --hide-panel --hide-hands --mode predicted --frames 235 --config load.toml",
-                                fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                            "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LOAD=0:8/5,{}:42/25,{}:8/5",
-                                            kValidated, kComes, kGoes));
+    const ViewRun run = runView(
+        work, "load", fmt::format("rate {}\nsize 128 128\nframes none\n", kSecond),
+        "builtin:slanted-wall --load-first --hide-panel --hide-hands --mode predicted --move-cost 0 --frames 235 --config load.toml",
+        fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                    "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LOAD=0:8/5,{}:42/25,{}:8/5",
+                    kValidated, kComes, kGoes));
     checkClean(run);
     struct Change {
         int frame;

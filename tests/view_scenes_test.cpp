@@ -36,9 +36,9 @@ std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s) 
 
 TEST_CASE("the next scene comes while this one stays, and one that cannot be read gives a message and changes nothing") {
     const Workplace work;
-    REQUIRE(work.run("scene fence --out a.ply").exit_code == 0);
+    REQUIRE(work.run("scene one-splat --out a.ply").exit_code == 0);
     std::ofstream(work.path / "b.ply") << "ply\nnonsense\n";
-    REQUIRE(work.run("scene step-edge --out c.ply").exit_code == 0);
+    REQUIRE(work.run("scene slanted-wall --out c.ply").exit_code == 0);
     std::ofstream(work.path / "notes.txt") << "no scene";
     const Panel panel = startPanel(work);
     const glm::dvec2 next = placeOfScene("Next scene", work.path.string());
@@ -62,8 +62,8 @@ TEST_CASE("a scene is chosen on the panel, in the folder of the one that is show
     const std::string name = "\xd7\xa1\xd7\xa6\xd7\xa0\xd7\x95\xd7\xaa";
     const std::filesystem::path folder = work.path / name;
     std::filesystem::create_directory(folder);
-    REQUIRE(work.run("scene fence --out " + name + "/room10.ply").exit_code == 0);
-    REQUIRE(work.run("scene step-edge --out " + name + "/room9.ply").exit_code == 0);
+    REQUIRE(work.run("scene one-splat --out " + name + "/room10.ply").exit_code == 0);
+    REQUIRE(work.run("scene slanted-wall --out " + name + "/room9.ply").exit_code == 0);
     std::ofstream(folder / "room1.ply") << "ply\nnonsense\n";
     const Panel panel = startPanel(work);
     const glm::dvec2 broken = placeOfScene("room1.ply", folder.string()), other = placeOfScene("room9.ply", folder.string());
