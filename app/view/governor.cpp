@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace binosplat {
 
@@ -18,6 +19,9 @@ constexpr double kTarget = 0.9;
 constexpr double kUpwards = 0.85, kAgain = 0.7;
 // A lossy method that saves less than this is not worth what it loses.
 constexpr double kLeastSaving = 0.95;
+// The dominant eye takes some hundredths more where its picture is going to be moved: 1.0 to 1.08 (docs/results/README.md, "dominant /
+// mono").
+constexpr double kMovedDominant = 1.04;
 constexpr double kGuessedRatio = 0.75, kWorstGuess = 1.5;
 // Pixels are not all of a frame: fewer of them save less than their share, more of them are taken to cost all of it.
 constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
@@ -54,6 +58,14 @@ std::vector<double> sharesOf(Mode mode, Quality quality) {
     return quality == Quality::kSharp ? std::vector{1.0, 0.5} : std::vector{1.0, 0.5, 0.25};
 }
 
+double medianOf(const std::deque<double>& values, std::size_t newest) {
+    const std::size_t count = std::min(newest, values.size());
+    std::vector<double> last(values.end() - static_cast<std::ptrdiff_t>(count), values.end());
+    const auto middle = last.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(last.begin(), middle, last.end());
+    return *middle;
+}
+
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
 }  // namespace
@@ -62,10 +74,13 @@ void Governor::wish(Quality quality, const GovernedSettings& best) {
     if (quality == quality_ && best == best_) { return; }
     quality_ = quality;
     best_ = best;
+    forget();
+}
+
+void Governor::forget() {
     buildLadder();
     current_ = 0;
-    recent_ms_.clear();
-    recent_lost_.clear();
+    clearRecent();
     settling_ = kSettlingFrames;
     downs_ = 0;
     changed_s_ = now_s_;
@@ -104,12 +119,16 @@ void Governor::buildLadder() {
     }
 }
 
-double Governor::median(std::size_t frames) const {
-    const std::size_t count = std::min(frames, recent_ms_.size());
-    std::vector<double> last(recent_ms_.end() - static_cast<std::ptrdiff_t>(count), recent_ms_.end());
-    const auto middle = last.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(last.begin(), middle, last.end());
-    return *middle;
+void Governor::clearRecent() {
+    recent_ms_.clear();
+    recent_lost_.clear();
+    recent_ratios_.clear();
+}
+
+double Governor::median(std::size_t frames) const { return medianOf(recent_ms_, frames); }
+
+double Governor::ratioByOwnFrames(std::size_t frames) const {
+    return recent_ratios_.size() < kTrialFrames ? 0.0 : kMovedDominant * medianOf(recent_ratios_, frames);
 }
 
 std::size_t Governor::countOver(std::size_t of_last) const {
@@ -224,12 +243,23 @@ void Governor::learn(double now_ms, bool is_over) {
         return;
     }
     Ratio& ratio = ratios_[level.method];
-    // A trial that is over the period has said enough.
-    if (ratio.measured_s || lossless_ms_ <= 0.0 || (!is_over && recent_ms_.size() < kTrialFrames)) { return; }
-    ratio.value = full_ms / lossless_ms_;
+    const double by_own_frames = ratioByOwnFrames(is_over ? kOverAtOnce : kWindow);
+    const bool follows = ratio.measured_s.has_value();
+    // A trial that is over the period has said enough. What a method saves changes with the view: its own frames tell, if any do.
+    if (follows ? by_own_frames <= 0.0 : lossless_ms_ <= 0.0 || (!is_over && recent_ms_.size() < kTrialFrames)) { return; }
+    const double value = by_own_frames > 0.0 ? by_own_frames : full_ms / lossless_ms_;
+    if (follows) {
+        lossless_ms_ = full_ms / value;
+        // The others move their pixels as well.
+        for (std::size_t m = 1; m < ratios_.size(); ++m) {
+            if (ratios_[m].measured_s && m != level.method) { ratios_[m].value *= value / ratio.value; }
+        }
+    } else {
+        ratio.forget_s = std::min(std::max(2.0 * ratio.forget_s, kForgetRatioSeconds), kLongestBlockSeconds);
+    }
+    ratio.value = value;
     ratio.measured_s = now_s_;
     ratio.own_ms = full_ms;
-    ratio.forget_s = std::min(std::max(2.0 * ratio.forget_s, kForgetRatioSeconds), kLongestBlockSeconds);
 }
 
 void Governor::takeBack() {
@@ -273,6 +303,8 @@ void Governor::measure(const GovernedFrame& frame) {
     if (recent_ms_.size() > kWindow) { recent_ms_.pop_front(); }
     recent_lost_.push_back(frame.lost_periods);
     if (recent_lost_.size() > kWindow) { recent_lost_.pop_front(); }
+    if (frame.lossless_ms > 0.0) { recent_ratios_.push_back(frame.gpu_ms / frame.lossless_ms); }
+    if (recent_ratios_.size() > kWindow) { recent_ratios_.pop_front(); }
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
     const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
@@ -368,8 +400,7 @@ void Governor::step(std::size_t level, double now_ms, const std::string& why) {
     const double expected_ms = expectedMs(level, now_ms);
     trial_from_.reset();
     current_ = level;
-    recent_ms_.clear();
-    recent_lost_.clear();
+    clearRecent();
     settling_ = kSettlingFrames;
     changed_s_ = now_s_;
     why_ = why;

@@ -31,12 +31,16 @@ struct GovernedFrame {
     bool is_old = false;     // drawn with settings from before: it says nothing of the present ones, but time has passed
     // Periods that passed before the frame was displayed beyond its own, as the runtime shows: independent of the device's own times.
     double lost_periods = 0.0;
+    // Where one eye was made from the other: what both would have taken in full, by what this frame's own dominant eye took. 0: unknown.
+    double lossless_ms = 0.0;
 };
 
 class Governor {
 public:
     // From the next frame on. Another wish, or quality, begins anew.
     void wish(Quality quality, const GovernedSettings& best);
+    // From the next frame on another scene is shown: what was measured says nothing of it.
+    void forget();
     // Takes what the last frame cost. The settings change at most three times while a new load is found out, and then at most once a
     // second.
     void measure(const GovernedFrame& frame);
@@ -64,7 +68,10 @@ private:
     };
 
     void buildLadder();
+    void clearRecent();
     [[nodiscard]] double median(std::size_t frames) const;
+    // What a frame takes of what both eyes would in full, by the parts of so many frames of its own. 0: unknown.
+    [[nodiscard]] double ratioByOwnFrames(std::size_t frames) const;
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
     // Periods lost by so many frames: all together, none with more than counts; and by each of the two thirds that lost least.
     [[nodiscard]] double lostIn(std::size_t last) const;
@@ -111,6 +118,7 @@ private:
     std::size_t current_ = 0;
     double now_s_ = 0.0, period_ms_ = 0.0;
     std::deque<double> recent_ms_, recent_lost_;  // since the last change, newest last
+    std::deque<double> recent_ratios_;            // likewise: of frames that know what both eyes would have taken
     int settling_ = 0;                            // frames that still show what the change itself cost
     int downs_ = 0;                               // changes in a row that were not enough
     double changed_s_ = 0.0;

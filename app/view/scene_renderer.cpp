@@ -15,6 +15,16 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
+// What both eyes would have taken in full, by what the dominant one took; 0: it is not known.
+double losslessMs(const FrameResult& result) {
+    double shared_ms = 0.0, dominant_ms = 0.0;
+    for (const auto& [pass, ms] : result.gpu_ms) {
+        if (pass.starts_with("both ")) { shared_ms += ms; }
+        if (pass.starts_with("dominant ")) { dominant_ms += ms; }
+    }
+    return dominant_ms > 0.0 ? shared_ms + 2.0 * dominant_ms : 0.0;
+}
+
 }  // namespace
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
@@ -114,7 +124,11 @@ void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const ViewSett
         window != nullptr ? window->drawn() : vk::Semaphore());
     const bool is_of_now = known && known->mark == governed_count_;
     if (known) { last_ = std::move(*known); }
-    governor_.measure({last_.gpu_total_ms, stay.session.periodMs(), !is_of_now, stay.session.lostPeriods()});
+    governor_.measure({.gpu_ms = last_.gpu_total_ms,
+                       .period_ms = stay.session.periodMs(),
+                       .is_old = !is_of_now,
+                       .lost_periods = stay.session.lostPeriods(),
+                       .lossless_ms = losslessMs(last_)});
     sayGoverned();
     sayHidden(one_eye);
     sayShort();

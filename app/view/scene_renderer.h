@@ -48,6 +48,11 @@ public:
     // Of those that the device is done with. No counters before the first frame of a scene.
     [[nodiscard]] const FrameResult& lastFrame() const { return last_; }
     void forgetLastFrame() { last_ = {}; }
+    // Another scene is shown: neither its counters nor what it takes are those of the one before.
+    void forgetScene() {
+        forgetLastFrame();
+        governor_.forget();
+    }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 

@@ -278,7 +278,7 @@ void Viewer::takeScene() {
     const std::string complaint = scenes_.take(settings_);
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
-    renderer_.forgetLastFrame();
+    renderer_.forgetScene();
     try {
         rememberScene(scenes_.name());
     } catch (const Error& error) {

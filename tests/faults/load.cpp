@@ -1,6 +1,7 @@
 // Watching what is recorded.
 #include "tests/faults/load.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -18,6 +19,7 @@ struct Recording {
     VkQueryPool timestamps = VK_NULL_HANDLE;
     bool is_in_present = false, reprojects = false;
     std::uint64_t groups = 0;  // that present pixels
+    std::uint64_t both_passes = 0, dominant_passes = 0;
 };
 
 struct Load {
@@ -63,7 +65,10 @@ VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUti
         const std::lock_guard lock(g_load_mutex);
         Recording& recording = g_recordings[commands];
         recording.is_in_present = std::strcmp(label->pLabelName, "10_present") == 0;
-        recording.reprojects = recording.reprojects || std::string(label->pLabelName).find("8e_resample") != std::string::npos;
+        const std::string name = label->pLabelName;
+        recording.reprojects = recording.reprojects || name.find("8e_resample") != std::string::npos;
+        if (name.starts_with("both ")) { ++recording.both_passes; }
+        if (name.starts_with("dominant ")) { ++recording.dominant_passes; }
     }
     if (g_begin_label != nullptr) { g_begin_label(commands, label); }
 }
@@ -101,18 +106,27 @@ PFN_vkVoidFunction loadFunction(const char* name) {
     return nullptr;
 }
 
-std::optional<std::uint64_t> ticksOf(VkQueryPool pool) {
+std::uint64_t FrameTicks::at(std::uint64_t stamp, std::uint64_t stamps) const {
+    const std::uint64_t over = (stamp + 1) / 2, passes = stamps / 2, first_passes = both_passes + dominant_passes;
+    if (over <= both_passes) { return 0; }
+    if (over <= first_passes) { return dominant_ticks * (over - both_passes) / dominant_passes; }
+    return dominant_ticks + (ticks - dominant_ticks) * (over - first_passes) / (passes - first_passes);
+}
+
+std::optional<FrameTicks> ticksOf(VkQueryPool pool) {
     if (!hasLoad()) { return std::nullopt; }
     const std::lock_guard lock(g_load_mutex);
     for (const auto& [commands, recording] : g_recordings) {
         if (recording.timestamps != pool || recording.groups == 0) { continue; }
         if (g_first_groups == 0) { g_first_groups = recording.groups; }
         const auto after = loads().upper_bound(g_frames++);
-        if (after == loads().begin()) { return 1; }
+        if (after == loads().begin()) { return FrameTicks{.ticks = 1}; }
         const Load& load = std::prev(after)->second;
         const double share = static_cast<double>(recording.groups) / static_cast<double>(g_first_groups);
-        const double ms = share * (recording.reprojects ? load.reprojected_ms : load.rendered_ms);
-        return static_cast<std::uint64_t>(std::llround(ms * 1e6 / g_tick_ns));
+        const auto ticks = [&](double ms) { return static_cast<std::uint64_t>(std::llround(share * ms * 1e6 / g_tick_ns)); };
+        if (!recording.reprojects) { return FrameTicks{.ticks = ticks(load.rendered_ms)}; }
+        const double dominant_ms = std::min(0.5 * load.rendered_ms, load.reprojected_ms);
+        return FrameTicks{recording.both_passes, recording.dominant_passes, ticks(dominant_ms), ticks(load.reprojected_ms)};
     }
     return std::nullopt;
 }
