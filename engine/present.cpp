@@ -37,15 +37,19 @@ void Presenter::makeKernels(bool with_depth, bool can_see_through) {
     }
 }
 
-void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
-    const std::uint64_t pixel_count = std::uint64_t{eye.size_px.x} * eye.size_px.y;
-    const bool with_depth = eye.depth && eye.image->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
-    const auto makeRoom = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
+void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
+    const std::uint64_t pixel_count = std::uint64_t{size_px.x} * size_px.y;
+    const auto grow = [&](Buffer& buffer, const char* name, std::uint64_t bytes) {
         if (buffer.bytes() < bytes) { buffer = Buffer(context_, name, bytes); }
     };
+    grow(pixels_, "presented pixels", pixel_count * sizeof(gpu::uint));
+    if (with_depth) { grow(depths_, "presented depths", pixel_count * sizeof(float)); }
+}
+
+void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
+    const bool with_depth = eye.depth && eye.image->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
     // Only ever grown before anything of this submission uses them: both eyes have one size.
-    makeRoom(pixels_, "presented pixels", pixel_count * sizeof(gpu::uint));
-    makeRoom(depths_, "presented depths", with_depth ? pixel_count * sizeof(float) : 0);
+    makeRoom(eye.size_px, with_depth);
     gpu::PresentPass pass{};
     pass.colours = eye.image->colours.address<gpu::vec4>();
     pass.half_colours = eye.image->colours.address<gpu::uvec2>();

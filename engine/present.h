@@ -27,7 +27,9 @@ public:
 
     // Those that half floats want, before they are asked for: with and without a tint.
     void makeKernels(bool with_depth, bool can_see_through);
-    // Records pass 10. `near` in scene units.
+    // For pictures of that size, while nothing that was recorded is under way. Throws Error if there is no memory for it.
+    void makeRoom(glm::uvec2 size_px, bool with_depth);
+    // Records pass 10, making room first. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
     // Makes its kernels anew, see Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }

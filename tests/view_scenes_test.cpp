@@ -1,5 +1,8 @@
 // Facts about what is to be seen: the next scene, scenes that cannot be read, pictures, and where the wearer stands in them.
 #include "engine/picture/metrics.h"
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/scene.h"
 #include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
 
@@ -11,6 +14,8 @@
 
 using namespace binosplat;
 using namespace binosplat::test;
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -25,11 +30,6 @@ bool says(const ViewRun& run, const std::string& words) { return run.outcome.out
 const Panel& startPanel(const Workplace& work) {
     static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:one-splat --load-first"), 8);
     return panel;
-}
-
-std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s) {
-    return pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15) +
-           fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
 }
 
 }  // namespace
@@ -120,6 +120,22 @@ TEST_CASE("a picture of both eyes is a file that is not overwritten") {
     }
 }
 
+TEST_CASE("what the lenses hide is there in a picture all the same") {
+    const Workplace work;
+    const auto take = [&](const std::string& mask) {
+        const ViewRun run = runView(work, "whole",
+                                    "rate 90\nsize 160 160\nframes none\nvisibility-mask " + mask + "\n" + kLeftHand +
+                                        clickOn(startPanel(work), {placeOf("Picture"), kBeside}),
+                                    "builtin:slanted-wall --load-first --mode shared");
+        checkClean(run);
+        CHECK(says(run, "the lenses hide ") == (mask == "on"));
+        Image both = readPicture(work.path / "binosplat-0001.png");
+        fs::remove(work.path / "binosplat-0001.png");
+        return both;
+    };
+    CHECK(take("on").values == take("off").values);
+}
+
 TEST_CASE("a working directory that was deleted takes no picture, and is no end") {
     const Workplace work;
     const std::string script = kSmall + clickOn(startPanel(work), {placeOf("Picture"), kBeside});
@@ -175,4 +191,39 @@ TEST_CASE("a scene that two hands tilted is levelled again") {
     };
     CHECK(tiltAfter("tilted", clickAt(panel, placeOf("Save"), 0.5)) > 0.2);
     CHECK(tiltAfter("levelled", clickAt(panel, placeOf("Level"), 0.5) + clickAt(panel, placeOf("Save"), 0.7)) < 1e-6);
+}
+
+TEST_CASE("a trained scene is levelled by the up of its cameras, or else of its floor") {
+    const Workplace work;
+    // The room of the atelier lies with its floor some 30 degrees aside in the file.
+    const fs::path folder = work.path / "trained" / "point_cloud" / "iteration_30000";
+    fs::create_directories(folder);
+    const glm::dquat tilt = glm::angleAxis(0.5, glm::dvec3(0.0, 0.0, 1.0));
+    Scene scene = loadScene("builtin:atelier", 3000);
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        scene.positions[i] = glm::vec3(tilt * glm::dvec3(scene.positions[i]));
+        scene.rotations[i] = glm::quat(tilt * glm::dquat(scene.rotations[i]));
+    }
+    scene.sh.assign(scene.size() * 3, 0.5f);
+    scene.sh_degree = 0;
+    writePly(scene, (folder / "point_cloud.ply").string());
+    const auto upAfter = [&](const std::string& name) {
+        const Panel& panel = startPanel(work);
+        const ViewRun run =
+            runView(work, name, kSmall + clickAt(panel, placeOf("Level"), 0.2) + clickAt(panel, placeOf("Save"), 0.4) + "at 0.7 exit\n",
+                    (folder / "point_cloud.ply").string() + " --load-first --mode mono --hide-hands");
+        checkClean(run);
+        const auto q = savedNumbers(run, "scene-orientation").get<std::array<double, 4>>();
+        return glm::dquat(q[0], q[1], q[2], q[3]) * glm::dvec3(0.0, -1.0, 0.0);
+    };
+    // Its files' y is down as in all scenes with cameras.
+    const glm::dvec3 up = tilt * builtinView("builtin:atelier")->up;
+    CHECK(glm::dot(upAfter("floor"), up) > std::cos(glm::radians(2.0)));
+    // These cameras were held otherwise, and they know better.
+    std::ofstream(work.path / "trained" / "cameras.json")
+        << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0], "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
+    CHECK(glm::length(upAfter("cameras") - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
+    // One that cannot be read is as none.
+    std::ofstream(work.path / "trained" / "cameras.json") << "[{";
+    CHECK(glm::dot(upAfter("broken"), up) > std::cos(glm::radians(2.0)));
 }

@@ -51,6 +51,15 @@ TEST_CASE("sessions that are lost again and again before they show anything are 
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
 
+TEST_CASE("sessions that are lost now and then while the headset lies on the desk are no end") {
+    const Workplace work;
+    const ViewRun run = runTrouble(work,
+                                   "at 0.1 worn off\nat 1.5 lose-session\nat 3 lose-session\nat 4.5 lose-session\nat 6 lose-session\n"
+                                   "at 7.2 worn on\nat 7.4 exit\n");
+    CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
+    CHECK(run.layers(run.frames.size() - 4, "projection").size() == 1);
+}
+
 TEST_CASE("a lost runtime gives one line and exit code 3") {
     const Workplace work;
     for (const char* time : {"0", "0.02", "0.2"}) {

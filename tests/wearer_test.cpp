@@ -199,6 +199,36 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
     CHECK(glm::distance(scene_from_room.position, before.position) > 1.0);
 }
 
+TEST_CASE("the stick of the hand that points at the panel scrolls there, and the other hand's moves the wearer") {
+    for (const int pointing : {kLeft, kRight}) {
+        for (const bool teleports : {false, true}) {
+            CAPTURE(pointing);
+            CAPTURE(teleports);
+            OverlayPanel panel({800, 400}, 0.8);
+            WearerControls controls;
+            ViewSettings settings;
+            settings.teleport = teleports;
+            Similarity scene_from_room;
+            WearerNow now;
+            now.step_seconds = kTenth;
+            now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
+            now.hands[static_cast<std::size_t>(1 - pointing)] = pointingAway();
+            now.hands[static_cast<std::size_t>(pointing)].stick = {0.0, 1.0};
+            controls.update(now, panel, settings, scene_from_room);
+            CHECK(panel.isPointedAtBy(pointing));
+            CHECK_FALSE(panel.isPointedAtBy(1 - pointing));
+            CHECK(panel.pointer().wheel > 0.0);
+            CHECK(scene_from_room.position == glm::dvec3(0.0));
+            CHECK_FALSE(controls.aimingHand().has_value());
+            now.hands[static_cast<std::size_t>(pointing)].stick = {};
+            now.hands[static_cast<std::size_t>(1 - pointing)].stick = {0.0, 1.0};
+            controls.update(now, panel, settings, scene_from_room);
+            CHECK(controls.aimingHand().has_value() == (teleports && pointing == kRight));
+            CHECK((scene_from_room.position != glm::dvec3(0.0)) == !(teleports && pointing == kRight));
+        }
+    }
+}
+
 TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
     OverlayPanel panel({800, 400}, 0.8);
     WearerControls controls;

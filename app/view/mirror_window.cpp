@@ -158,12 +158,19 @@ void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
         context_.device(),
         vk::MemoryAllocateInfo(needs.size, context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal)));
     eye_.bindMemory(*eye_memory_, 0);
-    eye_px_ = size_px;
 }
 
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
     // Of another size than the frame before, which is over then.
-    if (eye_px_ != size_px) { makeEyeImage(size_px, format); }
+    if (eye_px_ != size_px) {
+        eye_px_ = size_px;
+        try {
+            makeEyeImage(size_px, format);
+        } catch (const vk::OutOfDeviceMemoryError&) {
+            eye_ = vk::raii::Image(nullptr);  // the window shows the panel alone: the headset matters more
+        }
+    }
+    if (!*eye_) { return; }
     commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
     changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
 }

@@ -76,8 +76,10 @@ void OverlayPanel::update(const std::array<xr::Hand, 2>& hands, bool shown) {
     }
     for (const int h : {kLeft, kRight}) { follow(hands[static_cast<std::size_t>(h)], h, shown); }
     pointer_ = {};
+    pointing_hand_.reset();
     const int pointer = of(clicked_last_).hit ? clicked_last_ : 1 - clicked_last_;
     if (!of(pointer).hit) { return; }
+    pointing_hand_ = pointer;
     const double scroll = hands[static_cast<std::size_t>(pointer)].stick.y;
     pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
 }

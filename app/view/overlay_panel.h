@@ -25,6 +25,8 @@ public:
     [[nodiscard]] const Pose& roomFromPanel() const { return room_from_panel_; }
     [[nodiscard]] glm::dvec2 sizeMetres() const { return size_m_; }
     [[nodiscard]] const CanvasPointer& pointer() const { return pointer_; }
+    // Whether this hand is the pointer.
+    [[nodiscard]] bool isPointedAtBy(int hand) const { return pointing_hand_ == hand; }
     // Whether this hand has just met the panel or clicked on it.
     [[nodiscard]] bool pulses(int hand) const { return of(hand).pulses; }
     // Whether the trigger of this hand is pulled, and was when it did not point at the panel.
@@ -62,7 +64,7 @@ private:
     CanvasPointer pointer_;
     std::array<HandNow, 2> hands_;
     int clicked_last_ = kRight;
-    std::optional<int> carrier_;
+    std::optional<int> pointing_hand_, carrier_;
     Pose hand_from_panel_;
 };
 

@@ -1,10 +1,15 @@
 // Side by side.
 #include "app/view/picture_pair.h"
 
+#include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>
+
+#include <chrono>
+#include <new>
+#include <utility>
 
 namespace binosplat {
 
@@ -32,16 +37,33 @@ std::string freePictureName(const std::filesystem::path& folder) {
     }
 }
 
+// What there is to say of it.
+std::string write(const Image& picture, const std::filesystem::path& folder) {
+    try {
+        OutputFiles files(folder);
+        const auto written = writePicture(files.staging() / freePictureName(folder), PictureKind::kDisplay, picture);
+        files.publish();
+        return "picture " + written.front().filename().string();
+    } catch (const Error& error) { return error.what(); } catch (const std::bad_alloc&) {
+        return "the picture cannot be written: there is no memory for it";
+    }
+}
+
 }  // namespace
 
-std::string savePicturePair(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder) {
-    Image both = frame.readPicture(0);
-    if (!one_eye) { both = besideOneAnother(both, frame.readPicture(1)); }
-    OutputFiles files(folder);
-    const std::string name =
-        writePicture(files.staging() / freePictureName(folder), PictureKind::kDisplay, both).front().filename().string();
-    files.publish();
-    return name;
+void PictureWriter::begin(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder) {
+    if (under_way_.valid()) { under_way_.wait(); }
+    Image left = frame.readPicture(0), right = one_eye ? Image() : frame.readPicture(1);
+    under_way_ = std::async(std::launch::async, [left = std::move(left), right = std::move(right), one_eye, folder] {
+        return write(one_eye ? left : besideOneAnother(left, right), folder);
+    });
 }
+
+std::optional<std::string> PictureWriter::takeOutcome() {
+    const bool is_done = under_way_.valid() && under_way_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return is_done ? std::optional(under_way_.get()) : std::nullopt;
+}
+
+std::optional<std::string> PictureWriter::finish() { return under_way_.valid() ? std::optional(under_way_.get()) : std::nullopt; }
 
 }  // namespace binosplat

@@ -4,12 +4,25 @@
 #include "engine/frame.h"
 
 #include <filesystem>
+#include <future>
+#include <optional>
 #include <string>
 
 namespace binosplat {
 
-// Writes what `frame` rendered last for each of its eyes into `folder`, under a name that is free there, and returns that name.
-// Waits for the device. Throws Error if the file cannot be written.
-std::string savePicturePair(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder);
+// Writes pictures on a thread of its own: frames must not wait for files.
+class PictureWriter {
+public:
+    // Begins to write what `frame` rendered last for each of its eyes into `folder`, under a name that is free there. Waits for the device,
+    // and for the picture before.
+    void begin(StereoFrame& frame, bool one_eye, const std::filesystem::path& folder);
+    // The name of a picture that was written since, once, or why it was not.
+    [[nodiscard]] std::optional<std::string> takeOutcome();
+    // Likewise, waiting for it.
+    [[nodiscard]] std::optional<std::string> finish();
+
+private:
+    std::future<std::string> under_way_;
+};
 
 }  // namespace binosplat

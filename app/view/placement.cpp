@@ -94,8 +94,8 @@ Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3
     return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});
 }
 
-Similarity levelledLike(const Similarity& scene_from_room, const Similarity& upright, const glm::dvec3& about) {
-    const glm::dquat scene_from_tilted = turnBetween(scene_from_room.orientation * kDown, upright.orientation * kDown);
+Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about) {
+    const glm::dquat scene_from_tilted = turnBetween(scene_from_room.orientation * kDown, -up);
     const glm::dvec3 fixed = transform(scene_from_room, about);
     Similarity level{glm::normalize(scene_from_tilted * scene_from_room.orientation), glm::dvec3(0.0), scene_from_room.scale};
     level.position = fixed - transform(level, about);

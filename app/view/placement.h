@@ -39,8 +39,8 @@ Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, c
 // changes stay within 1000 in all from `scene_from_room`.
 Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
                   bool tilted = false);
-// Stands as upright in the scene as `upright` does, with its heading; `about`, in the room, stays where it is.
-Similarity levelledLike(const Similarity& scene_from_room, const Similarity& upright, const glm::dvec3& about);
+// Stands upright where `up` is up in the scene, a unit vector, with the same heading; `about`, in the room, stays where it is.
+Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about);
 
 // How the wearer looks ahead, level: the horizontal part of `forward`, or straight ahead if there is none.
 glm::dvec3 levelled(const glm::dvec3& forward);

@@ -2,6 +2,7 @@
 #include "app/view/scene_loader.h"
 
 #include "app/load.h"
+#include "app/view/scene_up.h"
 
 #include <utility>
 
@@ -40,6 +41,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, const 
         drawAs(options.load, scene, notes);
         const Similarity start = startPlacement(options, scene);
         SceneFacts facts = factsOf(scene, notes, scene_);
+        const glm::dvec3 up = upOfScene(scene, scene_, options.camera.up.value_or(viewOfScene(scene, 60.0).up));
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
@@ -51,6 +53,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, const 
         }
         loaded_->name = scene_;
         loaded_->start = start;
+        loaded_->up = up;
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
     } catch (const Cancelled&) {

@@ -23,7 +23,8 @@ struct LoadedScene {
     std::string name;
     GpuScene gpu_scene;
     StereoFrame frame;
-    Similarity start;  // see startPlacement
+    Similarity start;               // see startPlacement
+    glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
     LoadNotes notes;
     SceneFacts facts;
 };

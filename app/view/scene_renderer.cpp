@@ -102,6 +102,7 @@ void SceneRenderer::prepare(HeadsetStay& stay, LoadedScene& scene, const Similar
     }
     try {
         scene.frame.makeRoom(eyes_, frame_);
+        presenter_.makeRoom(stay.images->partPx(), stay.images->takesDepth());
     } catch (const Error&) {
         forgetLastFrame();
         throw;

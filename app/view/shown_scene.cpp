@@ -45,6 +45,7 @@ std::string ShownScene::take(ViewSettings& settings) {
         // Drivers need many times a frame's time to make them.
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
         if (ahead_) { ahead_->known.insert(kindOf(*taken)); }
+        if (scene_) { left_[scene_->name] = scene_from_room; }
         scene_ = std::move(taken);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         return goOnWithout(error.what());
@@ -63,6 +64,10 @@ std::string ShownScene::goOnWithout(const std::string& why) {
 }
 
 std::string ShownScene::place(ViewSettings& settings) {
+    if (const auto left = left_.find(scene_->name); left != left_.end()) {
+        scene_from_room = left->second;
+        return {};
+    }
     const CameraOptions& camera = options_.run.camera;
     const bool is_asked_for = camera.eye || camera.look || camera.up || settings.scene_from_room;
     scene_from_room = settings.scene_from_room.value_or(scene_->start);

@@ -5,6 +5,7 @@
 #include "app/view/scene_loader.h"
 #include "app/view/view_settings.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,15 +32,17 @@ public:
     void begin(const std::string& scene);
     // The one `step` further on in the folder of the one that was asked for last.
     void beginBeside(int step);
-    // Shows the next one, waiting for it, and places the wearer: where `settings` say, which are of the first scene alone, or where
-    // the scene was saved. Returns what went wrong, empty if nothing did; throws it where that of the options cannot be loaded
-    // and none is there to stay.
+    // Shows the next one, waiting for it, and places the wearer: where it was left, where `settings` say, which are of the first scene
+    // alone, or where the scene was saved. Returns what went wrong, empty if nothing did; throws it where that of the options cannot be
+    // loaded and none is there to stay.
     [[nodiscard]] std::string take(ViewSettings& settings);
 
     Similarity scene_from_room;
 
 private:
     [[nodiscard]] std::string place(ViewSettings& settings);
+    // By name: where the wearer stood when another scene took the place of one.
+    std::map<std::string, Similarity> left_;
     // Within a handler: the next one cannot be shown. Returns `why`, or throws on.
     [[nodiscard]] std::string goOnWithout(const std::string& why);
 

@@ -3,7 +3,6 @@
 
 #include "app/interrupt.h"
 #include "app/view/panel_style.h"
-#include "app/view/picture_pair.h"
 #include "app/view/recent_scenes.h"
 #include "app/view/shader_reload.h"
 #include "app/view/view_eyes.h"
@@ -26,8 +25,13 @@ constexpr double kTimesSeconds = 0.25;
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
 // So many sessions lost in a row before one has shown a frame are too many.
 constexpr int kMostLosses = 3;
+// A session that has waited for its wearer so often is steady: those that were lost before it no longer count.
+constexpr int kSteadyRests = 100;
 // How often to look whether an unplugged headset is there again.
 constexpr std::chrono::milliseconds kBetweenSearches(200);
+// So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
+constexpr int kMostFailures = 10;
+constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
 }  // namespace
 
@@ -47,13 +51,20 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
     if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
     if (mirrored) { openWindow(); }
-    renderer_.fitImages(*stay_, settings_);
-    if (options.load_first) { takeScene(); }
 }
 
 void Viewer::run() {
     const Interrupt interrupt;
     try {
+        try {
+            renderer_.fitImages(*stay_, settings_);
+        } catch (const xr::Lost& lost) { loseStay(lost.what()); }
+        while (options_.load_first && !scenes_.get() && !leaving_) {
+            if (interrupt.came()) { leave(); }
+            if (scenes_.isNextReady()) { takeScene(); }
+            drawWindowAlone("The scene is on its way");
+            std::this_thread::sleep_for(kIdle);
+        }
         for (bool goes_on = true; goes_on;) {
             if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
@@ -67,6 +78,7 @@ void Viewer::run() {
         fmt::print("{} frames; {}\n", log_.frame, lost.what());
         throw;
     }
+    sayPicture(pictures_.finish());
     const std::string why = stay_ ? stay_->session.whyEnded() : "stopped while there was no headset";
     fmt::print("{} frames; {}\n", log_.frame, why.empty() ? "the session was lost as it ended" : why);
 }
@@ -78,6 +90,7 @@ bool Viewer::step() {
         case xr::FrameOutcome::kWait:
             drawWindowAlone("The headset rests: put it on");
             std::this_thread::sleep_for(kIdle);
+            if (++rests_ > kSteadyRests) { losses_ = 0; }
             return true;
         case xr::FrameOutcome::kRender:
             drawFrame();
@@ -101,6 +114,7 @@ void Viewer::loseStay(const std::string& why) {
     if (++losses_ > kMostLosses) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
     }
+    rests_ = 0;
     why_lost_ = why;
     is_gone_ = false;
     next_search_ = {};
@@ -125,7 +139,18 @@ bool Viewer::comeBack() {
         return true;
     }
     say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
-    stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
+    try {
+        stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
+        failures_ = 0;
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error& error) {
+        // It was found, but is not awake yet.
+        if (++failures_ > kMostFailures) { throw; }
+        why_lost_ = error.what();
+        next_search_ = now + kBetweenFailures;
+        return true;
+    }
     if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
     renderer_.fitImages(*stay_, settings_);
     return true;
@@ -135,6 +160,7 @@ void Viewer::settle() {
     xr::Session& session = stay_->session;
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
+    controls_.letGo();
     const std::optional<double> floor_m = session.floorBelowMetres();
     log_.say("the wearer's place is the room's" + (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
     panel_.hangBefore({});
@@ -173,9 +199,12 @@ void Viewer::drawFrame() {
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(*stay_, *scene, settings_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
     }
+    picture_asked_ = false;
+    sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::show);
     showFrame(views);
     sayChange(before);
@@ -186,7 +215,9 @@ bool Viewer::prepareScene(const FrameViews& views) {
     LoadedScene* scene = scenes_.get();
     try {
         renderer_.govern(*stay_, settings_);
-        if (scene != nullptr) { renderer_.prepare(*stay_, *scene, scenes_.scene_from_room, settings_, views); }
+        ViewSettings wished = settings_;
+        if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
+        if (scene != nullptr) { renderer_.prepare(*stay_, *scene, scenes_.scene_from_room, wished, views); }
         settings_that_fit_ = settings_;
         return true;
     } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
@@ -262,6 +293,8 @@ void Viewer::drawWindowAlone(const std::string& why) {
     obeyWindow(step_seconds);
     status_.state = why;
     layOutPanel(false, step_seconds);
+    if (std::exchange(picture_asked_, false)) { takePicture(); }  // of the last frame there was
+    sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::acquire);
     if (!window_) { return; }
     waitForQueue();  // what the panel is drawn from is that of the last frame
@@ -392,7 +425,7 @@ void Viewer::obey(const OverlayActions& actions) {
     if (actions.reload_shaders) { reloadShaders(); }
     Similarity& placement = scenes_.scene_from_room;
     if (actions.reset_scene) { placement = scenes_.get()->start; }
-    if (actions.level_scene) { placement = levelledLike(placement, scenes_.get()->start, room_from_head_.position); }
+    if (actions.level_scene) { placement = levelledAlong(placement, scenes_.get()->up, room_from_head_.position); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
     obeyFiles(actions);
     if (actions.quit) { leave(); }
@@ -412,7 +445,7 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
     }
     if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step); }
     if (!actions.chosen_scene.empty()) { scenes_.begin(actions.chosen_scene); }
-    if (actions.take_picture) { takePicture(); }
+    picture_asked_ = picture_asked_ || actions.take_picture;
 }
 
 void Viewer::reloadShaders() {
@@ -430,13 +463,18 @@ void Viewer::reloadShaders() {
 }
 
 void Viewer::takePicture() {
-    if (renderer_.lastFrame().counters.empty()) { return; }
+    if (scenes_.get() == nullptr || renderer_.lastFrame().counters.empty()) { return; }
     try {
         std::error_code error;
         const std::filesystem::path folder = std::filesystem::current_path(error);
         check(!error, "the picture cannot be written: the working directory is gone");
-        say("picture " + savePicturePair(scenes_.get()->frame, settings_.showsOneEye(), folder));
+        sayPicture(pictures_.finish());
+        pictures_.begin(scenes_.get()->frame, settings_.showsOneEye(), folder);
     } catch (const Error& error) { say(error.what()); }
+}
+
+void Viewer::sayPicture(const std::optional<std::string>& outcome) {
+    if (outcome) { say(*outcome); }
 }
 
 void Viewer::waitForQueue() const {

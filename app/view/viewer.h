@@ -6,6 +6,7 @@
 #include "app/view/mirror_window.h"
 #include "app/view/overlay.h"
 #include "app/view/overlay_panel.h"
+#include "app/view/picture_pair.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/shown_scene.h"
 #include "app/view/view_settings.h"
@@ -60,7 +61,9 @@ private:
     void obey(const OverlayActions& actions);
     void obeyFiles(const OverlayActions& actions);
     void reloadShaders();
+    // What was rendered last, as a file; and what became of that.
     void takePicture();
+    void sayPicture(const std::optional<std::string>& outcome);
     // Also on the panel.
     void say(const std::string& message);
     void sayChange(const ViewSettings& before) const;
@@ -88,13 +91,16 @@ private:
     GazeFollower gaze_;
     Commands commands_;
     OverlayStatus status_;
-    FrameResult shown_frame_;      // whose times the panel shows
+    FrameResult shown_frame_;  // whose times the panel shows
+    PictureWriter pictures_;
+    bool picture_asked_ = false;   // of the next frame
     std::vector<float> frame_ms_;  // see OverlayStatus
     double times_age_s_ = 0.0;
     OverlayPages pages_;
     Pose room_from_head_;  // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
-    int losses_ = 0;  // since a frame was shown
+    int losses_ = 0, rests_ = 0;  // since a frame was shown; and how often the session waited for its wearer since the last loss
+    int failures_ = 0;            // of sessions that were to come after it, in a row
     std::string why_lost_;
     bool is_gone_ = false;  // the headset, since then
     std::chrono::steady_clock::time_point last_end_{}, last_alone_{}, next_search_{};

@@ -44,10 +44,10 @@ void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSetti
 void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room) {
     const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
-    const glm::dvec2& left_stick = now.hands[kLeft].stick;
-    const glm::dvec2 walk = teleports ? glm::dvec2(0.0) : glm::dvec2(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
-    // Over the panel it scrolls.
-    const double rise = panel.pointer().place_px ? 0.0 : withoutShiver(dominantAxis(now.hands[kRight].stick).y);
+    const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
+    const glm::dvec2 left_stick = teleports ? glm::dvec2(0.0) : stickOf(kLeft);
+    const glm::dvec2 walk(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
+    const double rise = withoutShiver(dominantAxis(stickOf(kRight)).y);
     const glm::dvec3 step_m = kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
     moves_ = step_m != glm::dvec3(0.0);
     if (moves_) { scene_from_room = movedBy(scene_from_room, now.step_seconds * step_m); }
@@ -56,7 +56,7 @@ void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool 
 void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room) {
     const auto aims = [&](int h) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
-        const bool pushed = h == kLeft && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
+        const bool pushed = h == kLeft && !panel.isPointedAtBy(h) && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
         return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
     };
     if (aiming_ && !aims(*aiming_)) {

@@ -24,8 +24,12 @@ class WearerControls {
 public:
     // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, rise and sink. A hand squeezed: the scene moves
     // with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes. Where the wearer teleports, the
-    // left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there.
+    // left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there. The stick of the hand that
+    // points at the panel scrolls there instead, and moves nobody.
     void update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room);
+
+    // The room begins elsewhere now: what hands hold they hold from there on.
+    void letGo() { held_ = {}; }
 
     // Whether sticks moved the wearer in this frame.
     [[nodiscard]] bool isMoving() const { return moves_; }
