@@ -164,6 +164,11 @@ TEST_CASE("bash completes commands, options and the values of choices") {
     CHECK(complete("binosplat re", 1) == "render\n");
     CHECK(complete("binosplat render --mode pre", 3) == "predicted\n");
     CHECK(complete("binosplat compare --lp", 2) == "--lpips\n");
+    // Files where an option takes one, and only there.
+    std::ofstream(work.path / "poses.csv") << "x";
+    CHECK(complete("binosplat render --path pos", 3) == "poses.csv\n");
+    CHECK(complete("binosplat bench --motion pos", 3) == "poses.csv\n");
+    CHECK(complete("binosplat render --rate pos", 3) == "\n");
 }
 
 TEST_CASE("the man page has every command and no line that groff complains about") {

@@ -13,7 +13,11 @@ namespace binosplat {
 namespace {
 
 const OptionDescription kConfig{
-    {"config", "", kRender | kBench | kView, "FILE", "TOML file with any of these options; the command line wins"}, "", ""};
+    {"config", "", kRender | kBench | kView, "FILE", "TOML file with any of these options; the command line wins"},
+    "",
+    "",
+    {},
+    /*is_file*/ true};
 
 std::vector<OptionDescription> with(std::vector<OptionDescription> options, const OptionDescription& one) {
     options.push_back(one);

@@ -6,7 +6,6 @@
 #include "app/view/view_settings_table.h"
 #include "engine/error.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -15,23 +14,6 @@ namespace binosplat {
 namespace {
 
 bool isFlag(const OptionText& text) { return *text.value == '\0'; }
-bool isFile(const OptionText& text) {
-    const std::string_view value = text.value;
-    return value.find("FILE") != value.npos || value.find("DIR") != value.npos || value == "WEIGHTS" || value == "[SCRIPT]" ||
-           value == "TRACE.csv";
-}
-
-// "a, b, c" of an option that is one of these, as its range says.
-std::vector<std::string> choicesOf(const OptionDescription& option) {
-    std::vector<std::string> names;
-    if (option.range.find(", ") == std::string::npos) { return names; }
-    for (std::size_t begin = 0; begin < option.range.size();) {
-        const std::size_t end = std::min(option.range.find(", ", begin), option.range.size());
-        names.push_back(option.range.substr(begin, end - begin));
-        begin = end + 2;
-    }
-    return names;
-}
 
 std::string replaced(std::string text, std::string_view what, std::string_view by) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
@@ -146,12 +128,6 @@ std::string man() {
     return text;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) { text += (text.empty() ? "" : " ") + name; }
-    return text;
-}
-
 std::string bash() {
     std::string names, options, values;
     for (const Command* command : shownCommands()) {
@@ -159,16 +135,16 @@ std::string bash() {
         std::vector<std::string> keys;
         for (const OptionDescription& option : optionsOf(*command)) {
             keys.push_back(fmt::format("--{}", option.text.key));
-            const std::vector<std::string> choices = choicesOf(option);
-            if (!choices.empty()) {
+            if (!option.choices.empty()) {
                 values += fmt::format("        {}:--{}) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")); return ;;\n", command->name,
-                                      option.text.key, joined(choices));
+                                      option.text.key, fmt::join(option.choices, " "));
             } else if (!isFlag(option.text)) {
                 values += fmt::format("        {}:--{}) {} return ;;\n", command->name, option.text.key,
-                                      isFile(option.text) ? "COMPREPLY=($(compgen -f -- \"$word\"));" : "");
+                                      option.is_file ? "COMPREPLY=($(compgen -f -- \"$word\"));" : "");
             }
         }
-        options += fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command->name, joined(keys));
+        options +=
+            fmt::format("        {}) COMPREPLY=($(compgen -W \"{} --help\" -- \"$word\")) ;;\n", command->name, fmt::join(keys, " "));
     }
     return fmt::format(R"(# Completion of binosplat for bash.
 _binosplat() {{
@@ -202,13 +178,12 @@ std::string zsh() {
         cases += fmt::format("        {}) _arguments", command->name);
         for (const OptionDescription& option : optionsOf(*command)) {
             cases += fmt::format(" \\\n            '--{}[{}]", option.text.key, zshText(option.help()));
-            const std::vector<std::string> choices = choicesOf(option);
-            if (!choices.empty()) {
-                cases += fmt::format(":{}:({})'", option.text.value, joined(choices));
+            if (!option.choices.empty()) {
+                cases += fmt::format(":{}:({})'", option.text.value, fmt::join(option.choices, " "));
             } else if (isFlag(option.text)) {
                 cases += "'";
             } else {
-                cases += fmt::format(":{}:{}'", zshText(option.text.value), isFile(option.text) ? "_files" : "");
+                cases += fmt::format(":{}:{}'", zshText(option.text.value), option.is_file ? "_files" : "");
             }
         }
         cases += " \\\n            '*:file:_files' ;;\n";
@@ -226,11 +201,10 @@ std::string fish() {
     for (const Command* command : shownCommands()) {
         text += fmt::format("complete -c binosplat -n __fish_use_subcommand -f -a {} -d '{}'\n", command->name, quoted(command->help));
         for (const OptionDescription& option : optionsOf(*command)) {
-            const std::vector<std::string> choices = choicesOf(option);
-            const std::string value = isFlag(option.text)   ? ""
-                                      : !choices.empty()    ? fmt::format(" -x -a '{}'", joined(choices))
-                                      : isFile(option.text) ? " -r"
-                                                            : " -x";
+            const std::string value = isFlag(option.text)       ? ""
+                                      : !option.choices.empty() ? fmt::format(" -x -a '{}'", fmt::join(option.choices, " "))
+                                      : option.is_file          ? " -r"
+                                                                : " -x";
             text += fmt::format("complete -c binosplat -n '__fish_seen_subcommand_from {}' -l {}{} -d '{}'\n", command->name,
                                 option.text.key, value, quoted(option.help()));
         }

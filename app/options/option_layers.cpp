@@ -43,7 +43,7 @@ Settings configLayer(const std::filesystem::path& config, const std::vector<Sett
             check(!layer.contains(key), "{} is set twice, must be set once (also {})", setting.origin,
                   layer.contains(key) ? layer.at(key).origin : "");
             Setting resolved = setting;
-            const bool is_path = key == "cameras" || (key == "headset" && setting.text().ends_with(".toml"));
+            const bool is_path = row->field.is_file || (key == "headset" && setting.text().ends_with(".toml"));
             if (is_path && resolved.items.size() == 1) { resolved.items[0] = (config.parent_path() / resolved.items[0]).string(); }
             layer.emplace(key, resolved);
         }

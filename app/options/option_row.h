@@ -40,7 +40,9 @@ struct OptionField {
     std::function<void(const Setting&, Owner&)> read;  // throws Error (bad input)
     std::function<OptionValue(const Owner&)> value;
     std::string range;
-    std::optional<double> least, most;  // of a number
+    std::optional<double> least, most;      // of a number
+    std::vector<std::string_view> choices;  // where it is one of a few names
+    bool is_file = false;                   // the name of a file or a folder
 };
 
 // What people are told about an option.
@@ -109,11 +111,11 @@ template <auto... Members>
 auto make(std::string range, auto parse) {
     using At = Path<Members...>;
     using Owner = typename At::Owner;
-    return OptionField<Owner>{[parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); },
-                              [](const Owner& owner) { return toValue(At::in(owner)); },
-                              std::move(range),
-                              {},
-                              {}};
+    OptionField<Owner> made;
+    made.read = [parse](const Setting& setting, Owner& owner) { At::in(owner) = parse(setting); };
+    made.value = [](const Owner& owner) { return toValue(At::in(owner)); };
+    made.range = std::move(range);
+    return made;
 }
 
 template <auto... Members>
@@ -157,10 +159,20 @@ auto text() {
     return make<Members...>("", readText);
 }
 
-// Where the value may be left out.
+// The name of a file or a folder.
 template <auto... Members>
-auto textIfAny() {
-    return make<Members...>("", [](const Setting& s) { return s.text(); });
+auto file() {
+    auto made = text<Members...>();
+    made.is_file = true;
+    return made;
+}
+
+// Where it may be left out.
+template <auto... Members>
+auto fileIfAny() {
+    auto made = make<Members...>("", [](const Setting& s) { return s.text(); });
+    made.is_file = true;
+    return made;
 }
 
 template <auto... Members>
@@ -183,19 +195,23 @@ auto size() {
     return make<Members...>(fmt::format("1 to {} each", kMaxSide), readSize);
 }
 
+// `parse` makes what the field holds of a Setting that is one of `names`.
 template <auto... Members>
-auto choice(std::initializer_list<std::string_view> names) {
-    const std::vector<std::string_view> all(names);
-    std::string range;
-    for (const std::string_view name : names) { range += fmt::format("{}{}", range.empty() ? "" : ", ", name); }
-    return make<Members...>(range, [all](const Setting& s) { return readChoice(s, all); });
+auto oneOf(std::vector<std::string_view> names, auto parse) {
+    auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")), parse);
+    made.choices = std::move(names);
+    return made;
+}
+
+template <auto... Members>
+auto choice(const std::vector<std::string_view>& names) {
+    return oneOf<Members...>(names, [names](const Setting& s) { return readChoice(s, names); });
 }
 
 // By the table of the modes' names.
 template <auto... Members>
 auto mode() {
-    const std::vector<std::string_view> names(kModeNames.begin(), kModeNames.end());
-    return make<Members...>(fmt::format("{}", fmt::join(names, ", ")), readMode);
+    return oneOf<Members...>({kModeNames.begin(), kModeNames.end()}, readMode);
 }
 
 // Of an enum, or of a bool, by the names of its values from 0 on.
@@ -204,18 +220,20 @@ auto named(std::vector<std::string_view> names) {
     using At = Path<Members...>;
     using Owner = typename At::Owner;
     using Field = std::remove_cvref_t<decltype(At::in(std::declval<Owner&>()))>;
-    const auto read = [names](const Setting& s, Owner& owner) {
+    OptionField<Owner> made;
+    made.read = [names](const Setting& s, Owner& owner) {
         At::in(owner) = static_cast<Field>(std::ranges::find(names, readChoice(s, names)) - names.begin());
     };
-    const auto value = [names](const Owner& owner) -> OptionValue { return std::string(names[static_cast<std::size_t>(At::in(owner))]); };
-    return OptionField<Owner>{read, value, fmt::format("{}", fmt::join(names, ", ")), {}, {}};
+    made.value = [names](const Owner& owner) -> OptionValue { return std::string(names[static_cast<std::size_t>(At::in(owner))]); };
+    made.range = fmt::format("{}", fmt::join(names, ", "));
+    made.choices = std::move(names);
+    return made;
 }
 
 template <auto... Members>
 auto side() {
-    return make<Members...>("left, right", [](const Setting& s) {
-        return readChoice(s, std::vector<std::string_view>{"left", "right"}) == "left" ? kLeft : kRight;
-    });
+    const std::vector<std::string_view> names{"left", "right"};
+    return oneOf<Members...>(names, [names](const Setting& s) { return readChoice(s, names) == "left" ? kLeft : kRight; });
 }
 
 }  // namespace field

@@ -56,7 +56,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"size", "camera", kPictures, "WxH", "pixels per eye", "1024x1024, or what --cameras or --headset says"},
          field::size<kCamera, &CameraOptions::size_px>()},
         {{"cameras", "camera", kPictures, "FILE", "cameras.json of a 3DGS or 2DGS training"},
-         field::text<kCamera, &CameraOptions::cameras_file>()},
+         field::file<kCamera, &CameraOptions::cameras_file>()},
         {{"view", "camera", kPictures, "N", "which camera of --cameras, from 0"}, field::count<kCamera, &CameraOptions::view>(0, kAny32)},
         {{"headset", "camera", kPictures, "NAME", "angles, size and eye distance from configs/headsets/NAME.toml"},
          field::text<kCamera, &CameraOptions::headset>()},
@@ -130,9 +130,9 @@ const OptionRow<RunOptions>* findRunRow(std::string_view key) {
 
 std::span<const OptionRow<RenderOptions>> renderRows() {
     static const std::vector<OptionRow<RenderOptions>> rows{
-        {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::text<&RenderOptions::out>()},
+        {{"out", "", kRender, "DIR", "directory for pictures and report.json", "", /*required*/ true}, field::file<&RenderOptions::out>()},
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
-         field::text<&RenderOptions::path>()},
+         field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::choice<&RenderOptions::path_axes>({"openxr", "unity"})},
         {{"rate", "", kRender, "HZ", "frames in a second of --path, between its poses", "one for each pose"},
          field::number<&RenderOptions::rate_hz>(0.001, 10'000.0)},
@@ -143,11 +143,11 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
 std::span<const OptionRow<BenchOptions>> benchRows() {
     static const std::vector<OptionRow<BenchOptions>> rows{
         {{"out", "", kBench, "DIR", "directory for bench.json, bench.csv and bench.svg", "", /*required*/ true},
-         field::text<&BenchOptions::out>()},
-        {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::text<&BenchOptions::motion_file>()},
+         field::file<&BenchOptions::out>()},
+        {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::file<&BenchOptions::motion_file>()},
         {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::choice<&BenchOptions::motion_axes>({"openxr", "unity"})},
         {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
-         field::text<&BenchOptions::photos_folder>()},
+         field::file<&BenchOptions::photos_folder>()},
         {{"orders", "", kBench, "",
           "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels that pop"},
          field::flag<&BenchOptions::orders>()},
@@ -156,22 +156,22 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
         {{"repeats", "", kBench, "N", "frames of each method that count", "5, or what the config says"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
         {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
-         field::text<&BenchOptions::lpips_weights>()},
+         field::file<&BenchOptions::lpips_weights>()},
     };
     return rows;
 }
 
 std::span<const OptionRow<ViewOptions>> viewRows() {
     static const std::vector<OptionRow<ViewOptions>> rows{
-        {{"out", "", kView, "DIR", "where the simulated headset writes what its wearer sees"}, field::text<&ViewOptions::out>()},
+        {{"out", "", kView, "DIR", "where the simulated headset writes what its wearer sees"}, field::file<&ViewOptions::out>()},
         {{"frames", "", kView, "N", "stop after N frames", "never"}, noneIfZero(field::count<&ViewOptions::frames>(1, kMaxFrames))},
         {{"load-first", "", kView, "", "load the scene before the session starts, not during it"}, field::flag<&ViewOptions::load_first>()},
         {{"hide-panel", "", kView, "", "start without the panel"}, field::flag<&ViewOptions::hide_panel>()},
         {{"hide-hands", "", kView, "", "draw neither hands nor controllers"}, field::flag<&ViewOptions::hide_hands>()},
         {{"shaders", "", kView, "DIR", "for work on the shaders: a button of the panel, and F5, reload them from there"},
-         field::text<&ViewOptions::shaders>()},
+         field::file<&ViewOptions::shaders>()},
         {{"simulate", "", kView, "[SCRIPT]", "use the simulated headset, driven by SCRIPT if given"},
-         field::textIfAny<&ViewOptions::script>()},
+         field::fileIfAny<&ViewOptions::script>()},
     };
     return rows;
 }
@@ -180,7 +180,7 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
     static const std::vector<OptionRow<SceneOptions>> rows{
         {{"splats", "", kScene, "N", "how many splats", "the scene's own number"},
          noneIfZero(field::count<&SceneOptions::splats>(1, kMaxSplats))},
-        {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true}, field::text<&SceneOptions::out>()},
+        {{"out", "", kScene, "FILE.ply", "file to write", "", /*required*/ true}, field::file<&SceneOptions::out>()},
     };
     return rows;
 }
@@ -188,7 +188,7 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
 std::span<const OptionRow<CompareOptions>> compareRows() {
     static const std::vector<OptionRow<CompareOptions>> rows{
         {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
-         field::text<&CompareOptions::lpips_weights>()},
+         field::file<&CompareOptions::lpips_weights>()},
         {{"pixels-per-degree", "", kCompare, "N", "pixels per degree that FLIP assumes",
           "67.02; bench: focal length in pixels times pi / 180"},
          field::number<&CompareOptions::pixels_per_degree>(kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree)},
@@ -199,14 +199,14 @@ std::span<const OptionRow<CompareOptions>> compareRows() {
 std::span<const OptionRow<StabilityOptions>> stabilityRows() {
     static const std::vector<OptionRow<StabilityOptions>> rows{
         {{"out", "", kStability, "DIR", "directory for stability.txt, stability.csv and stability.svg", "", /*required*/ true},
-         field::text<&StabilityOptions::out>()},
+         field::file<&StabilityOptions::out>()},
     };
     return rows;
 }
 
 std::span<const OptionRow<KernelsOptions>> kernelsRows() {
     static const std::vector<OptionRow<KernelsOptions>> rows{
-        {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::text<&KernelsOptions::out>()},
+        {{"out", "", kKernels, "DIR", "directory for kernels.json"}, field::file<&KernelsOptions::out>()},
     };
     return rows;
 }

@@ -31,6 +31,8 @@ std::string textOf(const OptionValue& value);
 struct OptionDescription {
     OptionText text;
     std::string range, standard;  // what it may be and what it is if nobody says so; empty where the help says it, or nothing does
+    std::vector<std::string_view> choices{};  // as of its field
+    bool is_file = false;
 
     [[nodiscard]] std::string help() const;  // with both in brackets
 };
@@ -39,7 +41,7 @@ struct OptionDescription {
 template <typename Owner>
 OptionDescription describe(const OptionRow<Owner>& row) {
     const bool told = *row.text.standard != '\0' || *row.text.value == '\0';
-    return {row.text, row.field.range, told ? row.text.standard : textOf(row.field.value(Owner{}))};
+    return {row.text, row.field.range, told ? row.text.standard : textOf(row.field.value(Owner{})), row.field.choices, row.field.is_file};
 }
 template <typename Owner>
 std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) {
