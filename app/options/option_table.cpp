@@ -60,7 +60,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"view", "camera", kPictures, "N", "which camera of --cameras, from 0"}, field::count<kCamera, &CameraOptions::view>(0, kAny32)},
         {{"headset", "camera", kPictures, "NAME", "angles, size and eye distance from configs/headsets/NAME.toml"},
          field::text<kCamera, &CameraOptions::headset>()},
-        {{"near", "camera", kWearer, "Z", "nearest depth that is drawn, scene units"},
+        {{"near", "camera", kWearer, "Z", "nearest depth that is drawn, in scene units or, in view, in the wearer's metres"},
          field::number<kCamera, &CameraOptions::near>(1e-6, 1e6)},
         {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"}, field::colour<kCamera, &CameraOptions::background>()},
 
