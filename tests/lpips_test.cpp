@@ -174,9 +174,9 @@ TEST_CASE("picturesThatCannotBeComparedAreRefused") {
 
 TEST_CASE("brokenWeightsAreRefusedInOneLine") {
     CHECK(errorOf("/nonexistent/w.bin") ==
-          "/nonexistent/w.bin: cannot be read (No such file or directory), must be the weights of LPIPS (squeeze, 0.1)");
-    CHECK(errorOf("/tmp") == "/tmp: cannot be read (Is a directory), must be the weights of LPIPS (squeeze, 0.1)");
-    const std::string expected = " bytes, must have the 2898944 of the weights of LPIPS (squeeze, 0.1)";
+          "/nonexistent/w.bin: cannot be read (No such file or directory), must be the weights of LPIPS (SqueezeNet variant, version 0.1)");
+    CHECK(errorOf("/tmp") == "/tmp: cannot be read (Is a directory), must be the weights of LPIPS (SqueezeNet variant, version 0.1)");
+    const std::string expected = " bytes, must have the 2898944 of the weights of LPIPS (SqueezeNet variant, version 0.1)";
     checkRefused([](std::vector<float>& values) { values.clear(); }, "has 0" + expected);
     checkRefused([](std::vector<float>& values) { values.pop_back(); }, "has 2898940" + expected);
     checkRefused([](std::vector<float>& values) { values.push_back(0.0f); }, "has 2898948" + expected);

@@ -79,10 +79,11 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::count<kStereo, &StereoOptions::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
          field::choice<kStereo, &StereoOptions::depth>({"sum", "mean", "inverse"})},
-        {{"order", "stereo", kTried, "KIND", "splats are blended by their depth, or by their distance from the middle between the eyes"},
+        {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes"},
          field::choice<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
-          "reproject and paper modes: by a cubic kernel, or as the paper moves colours: copied, gaps interpolated"},
+          "reproject and paper modes: moved pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in the "
+          "paper"},
          field::choice<kStereo, &StereoOptions::resampling>({"cubic", "forward"})},
         {{"per-eye", "stereo", kTried, "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
          field::flag<kStereo, &StereoOptions::per_eye>()},
@@ -90,14 +91,15 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::count<kStereo, &StereoOptions::gap_px>(0, kMaxGapPx)},
         {{"edge-samples", "stereo", kTried, "N", "paper mode: samples along each edge of the picture"},
          field::count<kStereo, &StereoOptions::edge_samples>(1, kMaxSide)},
-        {{"edge-bounds", "stereo", kTried, "KIND", "paper mode: the paper's bounds, or at the edges also what near content uncovers"},
+        {{"edge-bounds", "stereo", kTried, "KIND",
+          "paper mode: how wide the re-rendered borders are, as in the paper, or also covering what near content uncovers"},
          field::choice<kStereo, &StereoOptions::edge_bounds>({"paper", "tight"})},
         {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the difference expected of a hole's pixel"},
          field::number<kStereo, &StereoOptions::hole_error>(0.0, kMaxExpectedError)},
         {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
          field::number<kStereo, &StereoOptions::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
-          "predicted mode: degrees around the gaze where errors count in full, beyond only what the eye resolves; 0: off"},
+          "predicted mode: angle around the gaze within which all errors count; beyond it, only those the eye can see; 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
         {{"gaze", "stereo", kPictures, "x,y,z", "where the eyes look, from the head: right, down, forward", "each lens's centre"},
          field::direction<kStereo, &StereoOptions::gaze>()},
@@ -153,9 +155,9 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
          field::flag<&BenchOptions::orders>()},
         {{"every", "", kBench, "N", "only every Nth pose of --motion or camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
-        {{"repeats", "", kBench, "N", "frames of each method that count", "5, or what the config says"},
+        {{"repeats", "", kBench, "N", "measured frames per method", "5, or what the config says"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},
-        {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
+        {{"lpips", "", kBench, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
          field::file<&BenchOptions::lpips_weights>()},
     };
     return rows;
@@ -187,7 +189,7 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
 
 std::span<const OptionRow<CompareOptions>> compareRows() {
     static const std::vector<OptionRow<CompareOptions>> rows{
-        {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (squeeze, 0.1)"},
+        {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
          field::file<&CompareOptions::lpips_weights>()},
         {{"pixels-per-degree", "", kCompare, "N", "pixels per degree that FLIP assumes",
           "67.02; bench: focal length in pixels times pi / 180"},

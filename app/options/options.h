@@ -92,7 +92,7 @@ struct BenchOptions {
     std::string motion_axes = "openxr";  // --motion-axes: of the recording
     std::string photos_folder;           // --photos: what the cameras of --cameras saw
     std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
-    std::uint32_t repeats = 0;           // --repeats: frames of each method that count; 0: as the config says
+    std::uint32_t repeats = 0;           // --repeats: measured frames per method; 0: as the config says
     bool orders = false;                 // --orders: how near each order of splats is to one that every pixel has of its own
     std::string lpips_weights;           // --lpips: LPIPS too is measured, whatever the config's scores are; empty: as the config says
 };

@@ -30,8 +30,10 @@ std::vector<float> readWeights(const std::filesystem::path& file) {
     constexpr std::size_t kBytes = Lpips::kValues * sizeof(float);
     std::error_code trouble;
     const std::uintmax_t bytes = std::filesystem::file_size(file, trouble);
-    check(!trouble, "{}: cannot be read ({}), must be the weights of LPIPS (squeeze, 0.1)", file.string(), trouble.message());
-    check(bytes == kBytes, "{}: has {} bytes, must have the {} of the weights of LPIPS (squeeze, 0.1)", file.string(), bytes, kBytes);
+    check(!trouble, "{}: cannot be read ({}), must be the weights of LPIPS (SqueezeNet variant, version 0.1)", file.string(),
+          trouble.message());
+    check(bytes == kBytes, "{}: has {} bytes, must have the {} of the weights of LPIPS (SqueezeNet variant, version 0.1)", file.string(),
+          bytes, kBytes);
     std::vector<float> values(Lpips::kValues);
     std::ifstream stream(file, std::ios::binary);
     stream.read(reinterpret_cast<char*>(values.data()), kBytes);
@@ -117,7 +119,8 @@ double Lpips::measure(const Image& a, const Image& b, int threads) const {
         of_b = network_.runStage(stage, std::move(of_b), threads);
         distance += compareFeatures(of_a, of_b, heads_[stage], threads);
     }
-    check(std::isfinite(distance), "{}: leads to values that are not finite, must be the weights of LPIPS (squeeze, 0.1)", file_);
+    check(std::isfinite(distance),
+          "{}: leads to values that are not finite, must be the weights of LPIPS (SqueezeNet variant, version 0.1)", file_);
     return distance;
 }
 
