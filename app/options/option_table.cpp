@@ -191,8 +191,7 @@ std::span<const OptionRow<CompareOptions>> compareRows() {
     static const std::vector<OptionRow<CompareOptions>> rows{
         {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},
          field::file<&CompareOptions::lpips_weights>()},
-        {{"pixels-per-degree", "", kCompare, "N", "pixels per degree that FLIP assumes",
-          "67.02; bench: focal length in pixels times pi / 180"},
+        {{"pixels-per-degree", "", kCompare, "N", "pixels per degree that FLIP assumes", "67.02"},
          field::number<&CompareOptions::pixels_per_degree>(kFlipLeastPixelsPerDegree, kFlipMostPixelsPerDegree)},
     };
     return rows;

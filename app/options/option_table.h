@@ -40,8 +40,9 @@ struct OptionDescription {
 // In a fresh `Owner` fields have the values that they have when nobody says otherwise.
 template <typename Owner>
 OptionDescription describe(const OptionRow<Owner>& row) {
-    const bool told = *row.text.standard != '\0' || *row.text.value == '\0';
-    return {row.text, row.field.range, told ? row.text.standard : textOf(row.field.value(Owner{})), row.field.choices, row.field.is_file};
+    std::string standard = *row.text.standard != '\0' ? row.text.standard : textOf(row.field.value(Owner{}));
+    if (*row.text.value == '\0' && standard == "false") { standard.clear(); }  // of a flag that goes without saying
+    return {row.text, row.field.range, standard, row.field.choices, row.field.is_file};
 }
 template <typename Owner>
 std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) {

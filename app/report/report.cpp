@@ -46,9 +46,9 @@ Json valueJson(const OptionValue& value) {
 
 // Every option under its own name with the value that was used; null for one that did not apply.
 Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
-    Json json{{"scene", options.scene},
-              {"out", options.out.string()},
-              {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};
+    Json json{{"scene", options.scene}, {"config", options.run.config.empty() ? Json() : Json(options.run.config)}};
+    for (const OptionRow<RenderOptions>& row : renderRows()) { json[row.text.key] = valueJson(row.field.value(options)); }
+    if (options.path.empty()) { json["path-axes"] = Json(); }
     for (const OptionRow<RunOptions>& row : runRows()) { json[row.text.key] = valueJson(row.field.value(options.run)); }
     // What the camera's options leave open comes from the scene, a headset or a camera file.
     json["eye"] = cameras.view ? vectorJson(cameras.view->eye) : Json();
@@ -58,9 +58,6 @@ Json optionsJson(const RenderOptions& options, const Cameras& cameras) {
     json["size"] = fmt::format("{}x{}", cameras.middle.size_px.x, cameras.middle.size_px.y);
     json["view"] = options.run.camera.cameras_file.empty() ? Json() : Json(options.run.camera.view);
     json["ipd"] = cameras.eye_distance * options.run.metres_per_unit;
-    json["path"] = options.path.empty() ? Json() : Json(options.path);
-    json["path-axes"] = options.path.empty() ? Json() : Json(options.path_axes);
-    json["rate"] = options.rate_hz ? Json(*options.rate_hz) : Json();
     return json;
 }
 
