@@ -1,6 +1,8 @@
 // Facts about the panel's pages: what can be read and pointed at, whatever stands on them.
+#include "app/options/option_table.h"
 #include "app/view/scene_facts.h"
 #include "app/view/shown_text.h"
+#include "app/view/view_settings_table.h"
 #include "engine/error.h"
 #include "tests/panel_sketch.h"
 #include "tests/run_program.h"
@@ -214,6 +216,42 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.click("Scene before").scene_step == -1);
     sketch.click("Settings");
     CHECK(sketch.pages.shown == Page::kSettings);
+}
+
+TEST_CASE("the panel has the names and ranges of the table of options") {
+    PanelSketch sketch;
+    const auto isChosen = [&](const auto& row, const auto& owner, std::string_view name) { return textOf(row.field.value(owner)) == name; };
+    for (const char* key : {"mode", "dominant", "depth"}) {
+        const OptionRow<RunOptions>& row = *findRunRow(key);
+        CHECK(row.field.choices.size() >= 2);
+        for (const std::string_view name : row.field.choices) {
+            sketch.click(std::string(name));
+            RunOptions options;
+            options.stereo = sketch.settings.stereo;
+            CHECK_MESSAGE(isChosen(row, options, name), name);
+        }
+    }
+    const OptionRow<ViewSettings>& quality = *findViewRow("quality");
+    for (const std::string_view name : quality.field.choices) {
+        sketch.click(std::string(name));
+        CHECK_MESSAGE(isChosen(quality, sketch.settings, name), name);
+    }
+    const auto slide = [&](const char* name, double to_px) {
+        glm::dvec2 place = sketch.draw().places.at(name);
+        sketch.draw(&place);
+        sketch.draw(&place, true);
+        place.x = to_px;
+        sketch.draw(&place, true);
+        sketch.draw(&place);
+    };
+    for (const char* name : {"margin (paper)", "budget (predicted)", "resolution"}) { slide(name, 0.0); }
+    CHECK(sketch.settings.stereo.margin_px == 0);
+    CHECK(sketch.settings.stereo.budget == 0.0);
+    CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.least);
+    for (const char* name : {"margin (paper)", "budget (predicted)", "resolution"}) { slide(name, kPanelPx.x); }
+    CHECK(sketch.settings.stereo.margin_px == 128);
+    CHECK(sketch.settings.stereo.budget == 1.0);
+    CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.most);
 }
 
 TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does nothing") {

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <imgui.h>
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <string>

@@ -175,13 +175,13 @@ TEST_CASE("sliders take a click, and the resolution changes once the trigger is 
         REQUIRE(at != std::string::npos);
         return std::stod(run.outcome.output.substr(at + key.size() + 3));
     };
-    // 0 to 128 pixels, 0 to 100 %, 0.25 to 1.5, all clicked at the same share of their length.
+    // 0 to 128 pixels, 0 to 100 %, 0.1 to 2, all clicked at the same share of their length.
     const double share = valueOf("budget");
     CHECK(share > 0.4);
     CHECK(share < 0.6);
     CHECK(valueOf("margin") == doctest::Approx(128.0 * share).epsilon(0.02));
     const double scale = valueOf("resolution-scale");
-    CHECK(scale == doctest::Approx(0.25 + 1.25 * share).epsilon(0.02));
+    CHECK(scale == doctest::Approx(0.1 + 1.9 * share).epsilon(0.02));
     const auto sizeIn = [&](std::size_t frame) {
         const auto rect = run.layers(frame, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>();
         return rect[2];

@@ -41,6 +41,7 @@ struct OptionField {
     std::function<OptionValue(const Owner&)> value;
     std::string range;
     std::optional<double> least, most;      // of a number
+    std::optional<double> slider_most;      // where a slider ends: beyond, up to `most`, lies what few want
     std::vector<std::string_view> choices;  // where it is one of a few names
     bool is_file = false;                   // the name of a file or a folder
 };

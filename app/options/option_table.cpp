@@ -41,6 +41,13 @@ OptionField<Owner> noneIfZero(OptionField<Owner> field) {
     return field;
 }
 
+// A number whose slider ends before what is allowed does.
+template <typename Owner>
+OptionField<Owner> slidesTo(double most, OptionField<Owner> field) {
+    field.slider_most = most;
+    return field;
+}
+
 }  // namespace
 
 std::span<const OptionRow<RunOptions>> runRows() {
@@ -72,7 +79,7 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"center-roi", "stereo", kTried, "", "paper mode: also render again what is still unfilled inside the picture"},
          field::flag<kStereo, &StereoOptions::center_roi>()},
         {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
-         field::count<kStereo, &StereoOptions::margin_px>(0, kMaxSide)},
+         slidesTo(128, field::count<kStereo, &StereoOptions::margin_px>(0, kMaxSide))},
         {{"budget", "stereo", kTried, "FRACTION", "predicted mode: share of an eye's work that is spent on what moving gets wrong"},
          field::number<kStereo, &StereoOptions::budget>(0.0, 1.0)},
         {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not moved"},

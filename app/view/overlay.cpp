@@ -1,20 +1,19 @@
 // The panel, top to bottom.
 #include "app/view/overlay.h"
 
-#include "app/options/modes.h"
 #include "app/options/option_table.h"
 #include "app/report/report.h"
 #include "app/view/comfort_widgets.h"
 #include "app/view/shown_text.h"
+#include "app/view/view_settings_table.h"
 #include "engine/platform.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -40,68 +39,81 @@ std::string endOf(std::string line) {
     return "..." + line;
 }
 
-// By the table of names; one eye last.
-void chooseMode(PanelWidgets& widgets, Mode& mode) {
-    std::string chosen(nameOf(mode));
-    std::array<const char*, kModeNames.size()> names{};
-    std::ranges::transform(kModeNames, names.begin(), [](std::string_view name) { return name.data(); });
-    std::ranges::rotate(names, names.begin() + 1);
-    widgets.chooseFrom("Method", names, chosen, 3);
-    mode = static_cast<Mode>(std::ranges::find(kModeNames, chosen) - kModeNames.begin());
+// One of the names that the table has for an option, in this order.
+template <typename Owner>
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, std::span<const std::string_view> names, Owner& owner,
+            std::size_t per_row) {
+    const auto pressed = widgets.chooseFrom(label, names, textOf(row.field.value(owner)), per_row);
+    if (pressed) { row.field.read({label, {std::string(*pressed)}}, owner); }
+}
+template <typename Owner>
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, Owner& owner, std::size_t per_row) {
+    choose(widgets, label, row, row.field.choices, owner, per_row);
 }
 
-double leastOf(std::string_view option) { return *findRunRow(option)->field.least; }
+// What the table says of a number; more than a slider has is for the command line.
+struct SliderRange {
+    double least, most;
+};
+template <typename Owner>
+SliderRange sliderOf(const OptionRow<Owner>& row) {
+    return {*row.field.least, row.field.slider_most.value_or(*row.field.most)};
+}
 
 void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
-    StereoOptions& stereo = settings.stereo;
-    chooseMode(widgets, stereo.mode);
-    std::string side = stereo.dominant == kLeft ? "left" : "right";
-    widgets.chooseFrom("Dominant eye", std::array{"left", "right"}, side, 3);
-    stereo.dominant = side == "left" ? kLeft : kRight;
+    RunOptions options;
+    options.stereo = settings.stereo;
+    StereoOptions& stereo = options.stereo;
+    const OptionRow<RunOptions>& methods = *findRunRow("mode");
+    std::vector<std::string_view> names = methods.field.choices;
+    std::ranges::rotate(names, names.begin() + 1);  // one eye last
+    choose(widgets, "Method", methods, names, options, 3);
+    choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 2.0f / 3.0f);  // the row's last third is free
     bool by_distance = stereo.order == "distance";
     if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? "distance" : "depth"; }
-    widgets.chooseFrom("Depth of a pixel", std::array{"sum", "mean", "inverse"}, stereo.depth, 3);
+    choose(widgets, "Depth of a pixel", *findRunRow("depth"), options, 3);
     widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
     widgets.checkbox("Show what made it", &settings.tint);
-    // More is for the command line.
-    static constexpr int kMostMarginPx = 128;
+    const SliderRange margins = sliderOf(*findRunRow("margin"));
+    const int least_px = static_cast<int>(margins.least), most_px = static_cast<int>(margins.most);
     int margin = static_cast<int>(stereo.margin_px);
-    if (ImGui::SliderInt("margin (paper)", &margin, static_cast<int>(leastOf("margin")), kMostMarginPx, "%d px")) {
-        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, static_cast<int>(leastOf("margin")), kMostMarginPx));
+    if (ImGui::SliderInt("margin (paper)", &margin, least_px, most_px, "%d px")) {
+        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, least_px, most_px));
     }
     widgets.noteSlider("margin (paper)");
+    const SliderRange budgets = sliderOf(*findRunRow("budget"));
     auto budget = static_cast<float>(100.0 * stereo.budget);
-    const double least = leastOf("budget"), most = *findRunRow("budget")->field.most;
-    if (ImGui::SliderFloat("budget (predicted)", &budget, static_cast<float>(100.0 * least), static_cast<float>(100.0 * most),
-                           "%.0f %% of an eye")) {
-        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, least, most);
+    if (ImGui::SliderFloat("budget (predicted)", &budget, static_cast<float>(100.0 * budgets.least),
+                           static_cast<float>(100.0 * budgets.most), "%.0f %% of an eye")) {
+        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
     }
     widgets.noteSlider("budget (predicted)");
+    settings.stereo = stereo;
 }
 
 // The images are made anew for another resolution, so it changes once the slider is let go.
 void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
-    static constexpr float kLeast = 0.25f, kMost = 1.5f;
+    const SliderRange scales = sliderOf(*findViewRow("resolution-scale"));
     ImGuiStorage* storage = ImGui::GetStateStorage();
     const ImGuiID id = ImGui::GetID("resolution being chosen");
     auto scale = storage->GetFloat(id, static_cast<float>(settings.resolution_scale));
-    ImGui::SliderFloat("resolution", &scale, kLeast, kMost, "%.2f");
+    ImGui::SliderFloat("resolution", &scale, static_cast<float>(scales.least), static_cast<float>(scales.most), "%.2f");
     widgets.noteSlider("resolution");
     if (ImGui::IsItemActive()) {
         storage->SetFloat(id, scale);
         return;
     }
-    // As many digits as are shown.
-    if (ImGui::IsItemDeactivatedAfterEdit()) { settings.resolution_scale = std::round(100.0 * std::clamp(scale, kLeast, kMost)) / 100.0; }
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        const double chosen = std::clamp(static_cast<double>(scale), scales.least, scales.most);
+        settings.resolution_scale = std::round(100.0 * chosen) / 100.0;  // as many digits as are shown
+    }
     storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
 }
 
 void drawQuality(PanelWidgets& widgets, ViewSettings& settings) {
-    std::string chosen = kQualityNames[static_cast<std::size_t>(settings.quality)];
-    widgets.chooseFrom("Hold the frame rate", std::array{"off", "sharp", "balanced", "fast"}, chosen, 4);
-    settings.quality = static_cast<Quality>(std::ranges::find(kQualityNames, chosen) - std::begin(kQualityNames));
+    choose(widgets, "Hold the frame rate", *findViewRow("quality"), settings, 4);
 }
 
 void drawTimes(const OverlayStatus& status) {

@@ -25,6 +25,19 @@ bool PanelWidgets::radio(const char* name, bool is_chosen) {
     return pressed;
 }
 
+std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std::span<const std::string_view> names,
+                                                         std::string_view chosen, std::size_t per_row) {
+    ImGui::TextUnformatted(label);
+    std::optional<std::string_view> pressed;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i % per_row != 0) {
+            ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
+        }
+        if (radio(std::string(names[i]).c_str(), chosen == names[i])) { pressed = names[i]; }
+    }
+    return pressed;
+}
+
 bool PanelWidgets::entry(const std::string& name, const std::string& trouble) {
     // ImGui takes ## in a label for the beginning of what is not shown: the text is drawn by itself, on a button without any.
     ImGui::PushID(name.c_str());

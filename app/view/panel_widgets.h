@@ -4,8 +4,9 @@
 #include <imgui.h>
 #include <glm/glm.hpp>
 
-#include <array>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,17 +26,9 @@ public:
     bool entry(const std::string& name, const std::string& trouble);
     // To be called after a slider: it is where the next column would begin.
     void noteSlider(const char* name);
-    // A row of names of which one is chosen.
-    template <std::size_t N>
-    void chooseFrom(const char* label, const std::array<const char*, N>& names, std::string& chosen, std::size_t per_row) {
-        ImGui::TextUnformatted(label);
-        for (std::size_t i = 0; i < N; ++i) {
-            if (i % per_row != 0) {
-                ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
-            }
-            if (radio(names[i], chosen == names[i])) { chosen = names[i]; }
-        }
-    }
+    // Rows of names of which one is chosen; gives the one that was pressed, if one was.
+    std::optional<std::string_view> chooseFrom(const char* label, std::span<const std::string_view> names, std::string_view chosen,
+                                               std::size_t per_row);
 
     [[nodiscard]] const WidgetPlaces& places() const { return places_; }
 

@@ -77,15 +77,17 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
     return rows;
 }
 
+const OptionRow<ViewSettings>* findViewRow(std::string_view key) {
+    const auto found = std::ranges::find(viewSettingsRows(), key, [](const auto& row) { return std::string_view(row.text.key); });
+    return found == viewSettingsRows().end() ? nullptr : &*found;
+}
+
 ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSettings settings) {
-    const std::span<const OptionRow<ViewSettings>> rows = viewSettingsRows();
     Similarity placement;
     int placed = 0;
     for (const SettingsTable& table : tables) {
         for (const auto& [key, setting] : table.settings) {
-            const auto row =
-                std::ranges::find(rows, key, [](const OptionRow<ViewSettings>& one) { return std::string_view(one.text.key); });
-            if (row != rows.end()) {
+            if (const OptionRow<ViewSettings>* row = findViewRow(key); row != nullptr) {
                 row->field.read(setting, settings);
             } else if (key == "scene-position") {
                 placement.position = readVector(setting);

@@ -5,10 +5,12 @@
 #include "app/view/view_settings.h"
 
 #include <span>
+#include <string_view>
 
 namespace binosplat {
 
 // All but those that place the scene.
 std::span<const OptionRow<ViewSettings>> viewSettingsRows();
+const OptionRow<ViewSettings>* findViewRow(std::string_view key);  // nullptr: there is none
 
 }  // namespace binosplat
