@@ -1,6 +1,7 @@
 // The Khronos example program hello_xr, unchanged, on the simulated runtime: run with a script, its frames and pictures read back.
 #pragma once
 
+#include "tests/installed.h"
 #include "tests/simulated_fixture.h"
 #include "xr/simulated/compose/picture_file.h"
 
@@ -19,12 +20,7 @@ namespace binosplat::test {
 
 using Json = nlohmann::json;
 
-// Debian's libopenxr-utils has it. Tests that need it are skipped, visibly, where it is absent.
-inline bool haveHelloXr() {
-    const bool have = std::system("command -v hello_xr > /dev/null") == 0;
-    if (!have) { MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)"); }
-    return have;
-}
+inline bool haveHelloXr() { return isInstalled("hello_xr", "libopenxr-utils"); }
 
 class HelloXr : public Headset {
 public:

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
 namespace {
@@ -34,11 +35,8 @@ Run shell(const std::string& command) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
 }
 
-bool isInstalled(const char* program) {
-    if (std::system((std::string("command -v ") + program + " > /dev/null").c_str()) == 0) return true;
-    MESSAGE("skipped: ", program, " is not installed");
-    return false;
-}
+bool haveHelloXr() { return binosplat::test::isInstalled("hello_xr", "libopenxr-utils"); }
+bool havePython() { return binosplat::test::isInstalled("python3", "python3"); }
 
 std::string pageText() {
     std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/test_your_openxr_program.md");
@@ -115,7 +113,7 @@ TEST_CASE("the folder builds alone and installs a library that its manifest find
 }
 
 TEST_CASE("a foreign program runs by the page's script, is seen, and runs the same again") {
-    if (!isInstalled("hello_xr") || !isInstalled("python3")) return;
+    if (!haveHelloXr() || !havePython()) return;
     const std::string script = blockWith("press right trigger 0.5 0.7");
     const Run first = runHello("first", script);
     CHECK_MESSAGE(first.exit_code == 0, first.output);
@@ -147,7 +145,7 @@ TEST_CASE("a foreign program runs by the page's script, is seen, and runs the sa
 }
 
 TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
-    if (!isInstalled("hello_xr") || !isInstalled("python3")) return;
+    if (!haveHelloXr() || !havePython()) return;
     REQUIRE(fs::exists(installedManifest()));
     // A home with the installed runtime, and hello_xr as the program to be tested.
     fs::remove_all(kWork / "home");
@@ -175,7 +173,7 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
 }
 
 TEST_CASE("the page's recipe for GitHub Actions does as it stands there") {
-    if (!isInstalled("hello_xr")) return;
+    if (!haveHelloXr()) return;
     REQUIRE(fs::exists(installedManifest()));
     // A project with the runtime as its step built and installed it, and hello_xr as the program to be tested.
     const fs::path workspace = kWork / "actions";
@@ -240,7 +238,7 @@ TEST_CASE("the page says where things are installed") {
 }
 
 TEST_CASE("the tool that compares logs says what differs, within what it was told") {
-    if (!isInstalled("python3")) return;
+    if (!havePython()) return;
     REQUIRE(fs::exists(installedManifest()));
     const auto write = [](const std::string& name, const std::string& lines, std::uint8_t red) {
         fs::remove_all(kWork / name);

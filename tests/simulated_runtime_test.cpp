@@ -1,4 +1,5 @@
 // The simulated runtime as a library that strangers load: what it shows, how it negotiates, and programs that were not written for it.
+#include "tests/installed.h"
 #include "tests/simulated_direct.h"
 #include "tests/simulated_fixture.h"
 
@@ -29,8 +30,6 @@ Run run(const Headset& headset, const std::string& command, const std::string& e
     std::ifstream stream(log);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, {std::istreambuf_iterator<char>(stream), {}}};
 }
-
-bool isInstalled(const std::string& program) { return std::system(("command -v " + program + " > /dev/null").c_str()) == 0; }
 
 bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
@@ -187,10 +186,7 @@ TEST_CASE("an instance empties the folder of an earlier run, one that is refused
 }
 
 TEST_CASE("openxr_runtime_list finds it") {
-    if (!isInstalled("openxr_runtime_list")) {
-        MESSAGE("skipped: openxr_runtime_list is not installed (libopenxr-utils)");
-        return;
-    }
+    if (!isInstalled("openxr_runtime_list", "libopenxr-utils")) return;
     const Headset headset(kLeaving);
     const Run listed = run(headset, "openxr_runtime_list");
     CHECK(listed.exit_code == 0);
@@ -199,10 +195,7 @@ TEST_CASE("openxr_runtime_list finds it") {
 }
 
 TEST_CASE("hello_xr runs on it from start to end, and neither validation layer has anything to say") {
-    if (!isInstalled("hello_xr")) {
-        MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)");
-        return;
-    }
+    if (!isInstalled("hello_xr", "libopenxr-utils")) return;
     const Headset headset(kLeaving);
     std::string environment = kValidation;
     SUBCASE("XR_KHR_vulkan_enable2") {
@@ -243,10 +236,7 @@ TEST_CASE("hello_xr runs on it from start to end, and neither validation layer h
 }
 
 TEST_CASE("a machine without GPU is told apart from one without headset and from a broken script") {
-    if (!isInstalled("hello_xr")) {
-        MESSAGE("skipped: hello_xr is not installed (libopenxr-utils)");
-        return;
-    }
+    if (!isInstalled("hello_xr", "libopenxr-utils")) return;
     const Headset headset(kLeaving);
     const Run no_gpu = run(headset, "hello_xr -g Vulkan2", "VK_ICD_FILENAMES=/nowhere.json VK_DRIVER_FILES=/nowhere.json");
     CHECK(contains(no_gpu.output, "simulated runtime: xrCreateVulkanInstanceKHR: no GPU: Vulkan has no driver"));

@@ -3,6 +3,7 @@
 #include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
+#include "tests/installed.h"
 #include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
 #include "tests/view_runs.h"
@@ -33,11 +34,7 @@ constexpr glm::ivec2 kScreenPx(1400, 800);
 constexpr int kEyePx = 720;
 const glm::dvec2 kPanelInWindowPx(kEyePx* static_cast<double>(kPanelPx.x) / kPanelPx.y, kEyePx);
 
-bool haveScreen() {
-    const bool have = std::system("command -v Xvfb xdotool > /dev/null") == 0;
-    if (!have) { MESSAGE("skipped: Xvfb or xdotool is not installed"); }
-    return have;
-}
+bool haveScreen() { return isInstalled("Xvfb", "xvfb") && isInstalled("xdotool", "xdotool"); }
 
 // A program on a terminal of its own, since there it does not keep what it prints.
 class Program {
