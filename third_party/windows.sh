@@ -1,9 +1,16 @@
 #!/bin/sh
 # Cross-compiles the portable build for Windows on Debian, into build/windows. Not part of CI; docs/windows.md says what was seen to work.
 #   third_party/windows.sh [targets...]     (without any: binosplat)
+#   third_party/windows.sh --try            (and runs it under Wine, if that is installed: Debian's wine64 and wine)
 # Debian packages, beside those of third_party/install.sh: g++-mingw-w64-x86-64-posix libz-mingw-w64-dev dpkg-dev xz-utils. Its sources give zstd.
 set -eu
 cd "$(dirname "$0")/.."
+is_tried=
+if [ "${1:-}" = --try ]; then
+    is_tried=yes
+    shift
+    [ $# -eq 0 ] || { echo "third_party/windows.sh: --try stands alone" >&2; exit 2; }
+fi
 folder=$PWD/build/windows
 needed=$folder/needed
 compiler=x86_64-w64-mingw32-g++-posix
@@ -66,3 +73,31 @@ cmake --preset portable -B "$folder" -DCMAKE_SYSTEM_NAME=Windows -DCMAKE_SYSTEM_
     -DZSTD_INCLUDE_DIR="$needed/include" -DZSTD_LIBRARY="$needed/lib/libzstd.a"
 [ $# -gt 0 ] || set -- binosplat
 cmake --build "$folder" --target "$@"
+
+[ -n "$is_tried" ] || exit 0
+wine=$(command -v wine || command -v wine64 || true)
+if [ -z "$wine" ]; then
+    echo "third_party/windows.sh: built, but not tried: Wine is not installed (apt-get install wine64 wine)"
+    exit 0
+fi
+# A Windows of its own, and nothing that asks for more of it.
+tried=$folder/tried
+mkdir -p "$tried"
+export WINEPREFIX="$tried/wine" WINEDEBUG=-all WINEDLLOVERRIDES=mscoree,mshtml=
+run_exe() { (cd "$tried" && "$wine" "$folder/bin/binosplat.exe" "$@"); }
+fail() { echo "third_party/windows.sh: under Wine $1" >&2; exit 1; }
+
+rm -f "$tried/one-splat.ply"
+run_exe info builtin:fence || fail "info did not end well"
+run_exe scene one-splat --out one-splat.ply || fail "scene did not end well"
+run_exe info one-splat.ply || fail "info did not read what scene wrote"
+status=0
+run_exe info nowhere.ply || status=$?
+[ "$status" -eq 1 ] || fail "info of a file that is not there ended with $status, not 1"
+same="info and scene do what they should"
+if [ -x build/release/bin/binosplat ]; then
+    build/release/bin/binosplat scene one-splat --out "$tried/linux.ply"
+    cmp "$tried/one-splat.ply" "$tried/linux.ply" || fail "scene wrote other bytes than on Linux"
+    same="$same, and scene writes the same bytes as on Linux"
+fi
+echo "third_party/windows.sh: under Wine $same"
