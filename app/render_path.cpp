@@ -44,7 +44,7 @@ std::vector<double> frameTimes(const HeadMotion& motion, const RenderOptions& op
     return times_s;
 }
 
-// The number and the eye of a picture that a path wrote; empty where it is something else.
+// Whether a path of so many frames writes a picture of this name over the one that is there.
 bool isReplaced(std::string_view name, std::size_t frames, bool mono) {
     static constexpr std::string_view kBegin = "frame_";
     const std::string_view number = name.substr(std::min(kBegin.size(), name.size()));

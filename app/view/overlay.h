@@ -50,7 +50,7 @@ struct OverlayActions {
 // All that a canvas shows of names and messages, as it shows them; see Canvas::bringLetters.
 std::string namesOn(const OverlayPages& pages, const OverlayStatus& status);
 
-// Says the widgets of a whole canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `pages` as the wearer does.
+// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `pages` as the wearer does.
 OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Settings from TOML files; the only place that knows toml++.
+// Settings from TOML files; the program's only place that knows toml++ (the simulated runtime has one of its own).
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
