@@ -1,3 +1,4 @@
+// The programs' instances, Vulkan devices, sessions and frames, and the messages of Vulkan's validation.
 #include "tests/simulated_fixture.h"
 
 #include <unistd.h>

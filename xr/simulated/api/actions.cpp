@@ -1,3 +1,4 @@
+// Action sets and actions: made, their names and subaction paths checked, and the bindings that an application suggests for them.
 #include "xr/simulated/api/actions.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The lock that every call takes, and what is said of calls that were refused or failed.
 #include "xr/simulated/api/answer.h"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// Which controls attached actions are bound to, which of those count, and what they read.
 #include "xr/simulated/api/attachment.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Inputs that a program's own test sets, checked against the profiles and laid over what the script says.
 #include "xr/simulated/api/automation.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// When each frame is shown: a period after the one before in lock-step, or by the machine's steady clock.
 #include "xr/simulated/api/clock.h"
 
 #include <utility>

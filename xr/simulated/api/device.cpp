@@ -1,3 +1,4 @@
+// The runtime's own Vulkan calls: images and their memory, layouts, and texels copied back.
 #include "xr/simulated/api/device.h"
 
 #include <dlfcn.h>

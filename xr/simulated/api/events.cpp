@@ -1,3 +1,4 @@
+// Events in and out of the queue, those of a session taken back, and xrPollEvent.
 #include "xr/simulated/api/events.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The table of all objects by their numbers.
 #include "xr/simulated/api/handles.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Instances: what their creation checks, which extensions there are, and names of results and structure types.
 #include "xr/simulated/api/instance.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Projections and quads: checked, composed and logged. Layers that surround the wearer are in surrounding_layers.cpp.
 #include "xr/simulated/api/layers.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Messengers, labels and objects' names of XR_EXT_debug_utils, and the messages that wait.
 #include "xr/simulated/api/messages.h"
 
 #include <cstring>

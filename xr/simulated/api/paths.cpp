@@ -1,3 +1,4 @@
+// Which strings are paths, their numbers, and xrStringToPath and xrPathToString.
 #include "xr/simulated/api/paths.h"
 
 #include <algorithm>

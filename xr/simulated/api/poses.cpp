@@ -1,3 +1,4 @@
+// Conversions, velocities from two poses, and the check of a pose that an application gives.
 #include "xr/simulated/api/poses.h"
 
 #include <cmath>

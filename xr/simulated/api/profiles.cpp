@@ -1,3 +1,4 @@
+// Searches in the tables of profile_tables.h.
 #include "xr/simulated/api/profiles.h"
 
 #include <algorithm>

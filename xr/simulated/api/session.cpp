@@ -1,3 +1,4 @@
+// Sessions: the calls that make, begin and end them, their states, and what the script's events do to them.
 #include "xr/simulated/api/session.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// A simulation begun as the variables of the environment say; after a loss it is kept for the instance that comes next.
 #include "xr/simulated/api/simulation.h"
 
 #include <cmath>

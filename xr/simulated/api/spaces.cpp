@@ -1,3 +1,4 @@
+// Spaces: made, checked, and located in one another, with their velocities.
 #include "xr/simulated/api/spaces.h"
 
 #include <algorithm>

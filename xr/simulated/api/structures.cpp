@@ -1,3 +1,4 @@
+// Next chains and strings in UTF-8, checked.
 #include "xr/simulated/api/structures.h"
 
 namespace simulated {

@@ -1,3 +1,4 @@
+// Cylinders, spheres and cubes: checked, composed and logged.
 #include "xr/simulated/api/surrounding_layers.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Swapchains: what is asked of their images, checked; and images made, acquired, waited for and released.
 #include "xr/simulated/api/swapchains.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// An earlier run's files, as its log names them, are removed; anything else that is in the way is refused.
 #include "xr/simulated/compose/old_output.h"
 
 #include "xr/simulated/compose/picture_file.h"

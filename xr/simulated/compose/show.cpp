@@ -1,3 +1,4 @@
+// A frame's line of the log, and its picture composed and written.
 #include "xr/simulated/compose/show.h"
 
 #include "xr/simulated/api/layers.h"

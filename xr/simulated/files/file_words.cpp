@@ -1,3 +1,4 @@
+// Words read as numbers, trimmed, and made fit for a message.
 #include "xr/simulated/files/file_words.h"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// Whether the inputs that a script moves are on the controllers it is written for.
 #include "xr/simulated/script/script_profile.h"
 
 #include "xr/simulated/script/script_inputs.h"
