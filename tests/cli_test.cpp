@@ -35,7 +35,8 @@ const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FIL
 TEST_CASE("usageErrorsExitWithTwo") {
     const Workplace work;
     checkRefused(work.run(""), 2, "subcommand");
-    checkRefused(work.run("frobnicate"), 2, "subcommand");
+    checkRefused(work.run("frobnicate"), 2,
+                 "frobnicate is not a command; must be one of: render, bench, view, info, scene, convert, compare");
     checkRefused(work.run("render"), 2, "SCENE");
     checkRefused(work.run("render builtin:one-splat"), 2, "--out");
     checkRefused(work.run("render builtin:one-splat --out out --bogus"), 2, "--bogus");
@@ -350,7 +351,7 @@ TEST_CASE("benchHasLpipsWhereItsWeightsAreGiven") {
     checkRefused(benchWith("", "--lpips none.bin"), 1, "none.bin: cannot be read");
     checkRefused(benchWith("lpips = \"none.bin\"\n", ""), 1, "none.bin: cannot be read");
     checkRefused(benchWith("scores = [\"ssim\", \"lpips\"]\n", ""), 1,
-                 "b.toml:5: scores holds lpips, must come with a file of its weights");
+                 "b.toml:5: scores lists lpips; name its weights with --lpips FILE or `lpips` in [bench]");
     checkRefused(benchWith("", "--lpips b.toml"), 1, "b.toml: has 54 bytes, must have the 2898944");
     CHECK(!fs::exists(work.path / "out"));
 

@@ -134,9 +134,9 @@ TEST_CASE("choicesAreListed") {
 }
 
 TEST_CASE("whatIsTooMuchIsRefused") {
-    refuses("rate 90 100", "a.script:1: 100 is too much, the line must end before it");
-    refuses("head 0 position 0 0 0 sideways", "sideways is too much");
-    refuses("frames none at all", "at is too much");
+    refuses("rate 90 100", "a.script:1: unexpected 100 at the end of the line");
+    refuses("head 0 position 0 0 0 sideways", "unexpected sideways at the end of the line");
+    refuses("frames none at all", "unexpected at at the end of the line");
 }
 
 TEST_CASE("gazesWithMistakesAreRefused") {

@@ -127,7 +127,7 @@ public:
                 << mebibytes(most(warm(), &Alive::resident_bytes)) << " and " << mebibytes(most(later(), &Alive::resident_bytes)));
         CHECK(count(outcome_.output, "another one begins") + 1 >= least);
         CHECK(count(outcome_.output, "shows ") >= least);
-        CHECK(count(outcome_.output, "the wearer's place is the room's") > least);
+        CHECK(count(outcome_.output, "the room now begins where the wearer stands") > least);
     }
 
     [[nodiscard]] const Outcome& outcome() const { return outcome_; }

@@ -156,7 +156,7 @@ TEST_CASE("the wearer recentres by the panel's button") {
     const ViewRun run =
         runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}), "builtin:one-splat --load-first");
     checkClean(run);
-    CHECK(says(run, "the wearer's place is the room's, 1.50 m above the floor"));
+    CHECK(says(run, "the room now begins where the wearer stands, 1.50 m above the floor"));
     const std::size_t last = run.frames.size() - 5;
     const auto left = run.layers(last, "projection").at(0).at("views").at(0).at("pose").at("position").get<std::array<double, 3>>();
     CHECK(glm::length(glm::dvec3(left[0], left[1], left[2]) - glm::dvec3(-0.0315, 0.0, 0.0)) < 1e-5);

@@ -67,7 +67,7 @@ TEST_CASE("of a runtime without a stage no floor is known") {
     const Workplace work;
     const ViewRun run = runView(work, "floorless", kSmall + "stage off\nextension XR_EXT_local_floor off\nat 0.1 exit\n", kScene);
     checkClean(run);
-    CHECK(says(run, "the wearer's place is the room's\n"));
+    CHECK(says(run, "the room now begins where the wearer stands\n"));
 }
 
 TEST_CASE("without a stage the floor is that of LOCAL_FLOOR") {
@@ -77,11 +77,11 @@ TEST_CASE("without a stage the floor is that of LOCAL_FLOOR") {
     const ViewRun run = runView(work, "local-floor", script, kScene, "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.errors.empty());
-    CHECK(says(run, "the wearer's place is the room's, 1.45 m above the floor"));
+    CHECK(says(run, "the room now begins where the wearer stands, 1.45 m above the floor"));
     // Who does not make it, though it is offered, keeps nobody out.
     const ViewRun refused = runView(work, "refused", script, kScene);
     CHECK(refused.outcome.exit_code == 0);
-    CHECK((says(refused, "the wearer's place is the room's\n") || says(refused, "1.45 m above the floor")));
+    CHECK((says(refused, "the room now begins where the wearer stands\n") || says(refused, "1.45 m above the floor")));
 }
 
 TEST_CASE("a head of which only the turn is known is placed by its turn, and again once its place is known") {
@@ -94,7 +94,7 @@ TEST_CASE("a head of which only the turn is known is placed by its turn, and aga
         checkAtTheBeginning(run, frame);
         CHECK(likeness(usual, 10, run, frame) > kSamePictureDb);
     }
-    CHECK(says(run, "frame 8: the wearer's place is the room's, 1.50 m above the floor"));
+    CHECK(says(run, "frame 8: the room now begins where the wearer stands, 1.50 m above the floor"));
 }
 
 TEST_CASE("when the runtime recentres, the wearer is back at the beginning and the panel before the eyes") {
@@ -108,7 +108,7 @@ TEST_CASE("when the runtime recentres, the wearer is back at the beginning and t
     CHECK(likeness(run, 5, run, 20) < kOtherPictureDb);
     for (const std::size_t frame : {5, 22, 23, 25}) { checkAtTheBeginning(run, frame); }
     CHECK(likeness(run, 5, run, 25) > kSamePictureDb);
-    CHECK(says(run, "frame 22: the wearer's place is the room's, 1.40 m above the floor"));
+    CHECK(says(run, "frame 22: the room now begins where the wearer stands, 1.40 m above the floor"));
     CHECK(glm::length(panelPlace(run, 5) - panelPlace(run, 25)) < 1e-5);
 }
 

@@ -51,8 +51,7 @@ std::string lpipsWeights(const SettingsTable& bench, const BenchOptions& options
     const bool chosen = scores != bench.settings.end();
     const bool asked = chosen && std::ranges::count(scores->second.items, "lpips") > 0;
     if (weights == bench.settings.end()) {
-        check(!asked, "{} holds lpips, must come with a file of its weights: --lpips, or lpips in [bench]",
-              asked ? scores->second.origin : "");
+        check(!asked, "{} lists lpips; name its weights with --lpips FILE or `lpips` in [bench]", asked ? scores->second.origin : "");
         return "";
     }
     const std::string file = readText(weights->second);

@@ -132,8 +132,8 @@ Options makeKernels(const Settings& line) {
 Options makeDocument(const Settings& line) { return HelpText{documentOf(wordOf(line, "KIND"))}; }
 
 constexpr const char* kCompareFooter =
-    "Prints a line for each score, its name and its value: psnr in dB, of R, G and B as they are stored, inf for equal\n"
-    "pictures; ssim, 1 for equal pictures; flip and lpips, 0 for equal pictures. The last three clamp values to 0 to 1.";
+    "Prints one `name value` per line. psnr: dB over the stored R, G, B values; inf if the pictures are equal. ssim: 1 if they\n"
+    "are equal. flip and lpips: 0 if they are equal. The last three clamp values to 0 to 1.";
 
 }  // namespace
 

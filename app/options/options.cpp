@@ -89,6 +89,17 @@ std::vector<std::string> readableArguments(int count, const char* const* argumen
     return reversed;
 }
 
+// CLI11 would say of a word that is no command that a command is missing.
+void refuseOtherCommands(int count, const char* const* arguments) {
+    const std::string_view word = count > 1 ? arguments[1] : "-";
+    if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return; }
+    std::string names;
+    for (const Command& command : commands()) {
+        if (!command.hidden) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
+    }
+    throw Error(ExitCode::kUsage, fmt::format("{} is not a command; must be one of: {} (see `binosplat --help`)", word, names));
+}
+
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
@@ -102,6 +113,7 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
 }
 
 Options parseOptions(int argument_count, const char* const* arguments) {
+    refuseOtherCommands(argument_count, arguments);
     CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));

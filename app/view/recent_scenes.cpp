@@ -45,7 +45,7 @@ std::vector<std::string> recentScenes() {
 void rememberScene(const std::string& scene) {
     std::error_code error;
     const std::string whole = isBuiltin(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
-    check(!error, "{}: not remembered, the working directory is gone", scene);
+    check(!error, "{}: cannot be added to the recent scenes: the working directory no longer exists", scene);
     if (whole.find('\n') != std::string::npos) { return; }  // it would be two
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);
     if (after == before) { return; }

@@ -161,7 +161,7 @@ void SceneRenderer::sayGoverned() {
 void SceneRenderer::sayShort() {
     const auto found = last_.counters.find("frames_cut_short");
     const std::uint64_t now = found == last_.counters.end() ? 0 : found->second;
-    if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown without what had no room in their lists: {}", now)); }
+    if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
 }
 
 void SceneRenderer::sayHidden(bool one_eye) {

@@ -28,8 +28,8 @@ fs::path findManifest() {
     const std::array candidates{folder / "simulated_runtime.json", folder.parent_path() / installed, "/usr" / installed};
     const auto* found = std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
     if (found == candidates.end()) {
-        throw Error(ExitCode::kNoDevice, fmt::format("no simulated headset: looked for {} and {}, which the build and the package "
-                                                     "binosplat-simulated-runtime have",
+        throw Error(ExitCode::kNoDevice, fmt::format("the simulated runtime is not installed: neither {} nor {} exists; install "
+                                                     "binosplat-simulated-runtime or run ./run build",
                                                      candidates[0].string(), candidates[1].string()));
     }
     return *found;

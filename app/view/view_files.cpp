@@ -44,7 +44,7 @@ std::vector<SettingsTable> viewTables(const std::vector<SettingsTable>& tables) 
 
 fs::path viewFolder() {
     const fs::path folder = userConfigFolder();
-    check(!folder.empty(), "HOME: no folder for settings, must be set");
+    check(!folder.empty(), "settings cannot be saved or loaded: neither XDG_CONFIG_HOME nor HOME is set");
     return folder / "binosplat";
 }
 

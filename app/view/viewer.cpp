@@ -162,7 +162,8 @@ void Viewer::settle() {
     recentre_asked_ = false;
     controls_.letGo();
     const std::optional<double> floor_m = session.floorBelowMetres();
-    log_.say("the wearer's place is the room's" + (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
+    log_.say("the room now begins where the wearer stands" +
+             (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
     panel_.hangBefore({});
 }
 

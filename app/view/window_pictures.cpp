@@ -34,7 +34,7 @@ WindowPictures::~WindowPictures() {
 void WindowPictures::make() {
     const vk::raii::PhysicalDevice& device = context_.physicalDevice();
     const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
-    check(format.has_value(), "the display takes no pictures of eight bits as they are");
+    check(format.has_value(), "this display offers no 8-bit UNORM format");
     // The headset sets the pace.
     const auto modes = device.getSurfacePresentModesKHR(*surface_);
     vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
@@ -42,7 +42,7 @@ void WindowPictures::make() {
         if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
     }
     const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
-    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "the display takes no copies");
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "this display's images cannot be copied to");
     window_px_ = window_size_px_();
     const auto extent = windowExtent(able, {window_px_.x, window_px_.y});
     is_stale_ = !extent;

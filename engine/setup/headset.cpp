@@ -58,8 +58,9 @@ fs::path findHeadset(const std::string& name) {
     }
     std::string list;
     for (const std::string& one : known) { list += (list.empty() ? "" : ", ") + one; }
-    fail("configs/headsets/{}.toml: not found, must be one of: {}", name,
-         list.empty() ? "(no configs/headsets here; BINOSPLAT_DATA may name the folder that holds configs)" : list);
+    check(!list.empty(), "configs/headsets/{}.toml: not found: there is no configs/headsets in the searched folders; set BINOSPLAT_DATA",
+          name);
+    fail("configs/headsets/{}.toml: not found, must be one of: {}", name, list);
 }
 
 std::array<Eye, 2> headsetEyes(const Headset& headset, const Pose& world_from_middle, double eye_distance, glm::uvec2 size_px) {

@@ -106,7 +106,7 @@ Fov Words::angles() {
 }
 
 void Words::requireEnd() const {
-    if (!isAtEnd()) { fail("{} is too much, the line must end before it", shown(words_[next_])); }
+    if (!isAtEnd()) { fail("unexpected {} at the end of the line", shown(words_[next_])); }
 }
 
 }  // namespace simulated
