@@ -77,19 +77,20 @@ void main() {
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
     const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0), all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
     const uint picture_cost = atomicOr(pass.counters.at[0].picture_cost, 0);
+    const DispatchSize rows = DispatchSize((stereo.size_px.y + stereo.rows_apart - 1) / stereo.rows_apart, 1, 1);
     const bool pays = movingPays(stereo, all_saved, picture_cost, shown);
     pass.counters.at[0].pays = pays ? 1 : 0;
     if (pays && kMayMove) {
         pass.counters.at[0].moves = 1;
         pass.counters.at[0].per_pixel_block = DispatchSize(stereo.size_tiles.x, 2 * stereo.size_tiles.y, 1);
-        pass.counters.at[0].per_row = DispatchSize(stereo.size_px.y, 1, 1);
+        pass.counters.at[0].per_row = rows;
         pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kNewcomersBlock);
     } else {
         pass.counters.at[0].moves = 0;
         pass.counters.at[0].moved_tiles = 0;
         pass.counters.at[0].per_pixel_block = DispatchSize(0, 0, 0);
         // Hidden tiles become background all the same.
-        pass.counters.at[0].per_row = shown < tiles ? DispatchSize(stereo.size_px.y, 1, 1) : DispatchSize(0, 0, 0);
+        pass.counters.at[0].per_row = shown < tiles ? rows : DispatchSize(0, 0, 0);
         pass.counters.at[0].per_visible = DispatchSize(0, 0, 0);
     }
     if (!kMayMove) {

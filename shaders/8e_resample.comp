@@ -5,6 +5,8 @@
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
 // their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
+// Errors are those of the even rows, which count for two. Where this pass moves rows itself it takes these first; the odd ones follow once
+// tiles are chosen, so that those to be rendered have half of their pixels sampled in vain and not all.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -281,10 +283,8 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(stereo, at, pixel_class, found.colour, resolved.inverse_depth);
-    if (!kPredictErrors) { return 0; }
-    if (pixel_class == kHole) { return holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
-    // These pixels are many and alike: every other row stands for two.
-    if ((at.y & 1) != 0) { return 0; }
+    if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
+    if (pixel_class == kHole) { return 2 * holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
     const float variance_px2 = min(uncertaintyOf(row, at.x, stereo.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
@@ -313,7 +313,8 @@ void hideTiles(uint y, uint first_tile, uint width) {
 
 void main() {
     const StereoView stereo = pass.stereo.at[0];
-    const uint y = spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
+    const uint y = pass.first_row + stereo.rows_apart * spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
+    if (y >= stereo.size_px.y) { return; }  // the last row may be an even one
     const uint width = stereo.size_px.x, tiles = stereo.size_tiles.x;
     const uint row = y * stereo.row_words;
     const uint first_tile = (y / kTileSize) * tiles;

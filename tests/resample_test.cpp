@@ -107,7 +107,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample finds the twin's colours, depths and classes
     CHECK(worst_depth <= 1e-6);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, to the bit") {
+TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, all rows at once or the odd ones later, to the bit") {
     std::size_t pictures = 0;
     for (StereoCase c : test::makeStereoCases()) {
         if (toDevice(*this, c).rectified() == 0) { continue; }
@@ -120,7 +120,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, to
                 CAPTURE(static_cast<int>(rows));
                 c.settings.gap_px = gap_px;
                 c.settings.forward = forward;
-                const auto resampled = [&](bool moves_row) {
+                const auto resampled = [&](bool moves_row, bool apart = false) {
                     StereoOnDevice device = toDevice(*this, c, rows);
                     if (hides) {
                         std::vector<std::uint8_t> hidden(device.tileCount(), 0);
@@ -130,29 +130,36 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, to
                     device.writeTileKinds(test::kindsOf(test::markSome(device.tileCount())));
                     if (!moves_row) { device.reproject(hides, forward); }
                     // What is left of the two planes lies in tiles that are rendered.
-                    device.resample({.errors = !forward,
-                                     .depths = true,
-                                     .classes = true,
-                                     .forward = forward,
-                                     .moves_row = moves_row,
-                                     .hidden_tiles = moves_row && hides});
+                    StereoOnDevice::ResampleParts parts{.errors = !forward,
+                                                        .depths = true,
+                                                        .classes = true,
+                                                        .forward = forward,
+                                                        .moves_row = moves_row,
+                                                        .hidden_tiles = moves_row && hides};
+                    if (apart) { device.takeRowsApart(); }
+                    device.resample(parts);
+                    parts.odd = true;
+                    parts.errors = false;
+                    if (apart) { device.resample(parts); }
                     return std::tuple(device.readAffiliated(), device.readDepths(), device.readClasses(), device.readTileErrors(),
                                       device.readTileDepths());
                 };
                 const auto [colours, depths, classes, errors, tile_depths] = resampled(false);
-                const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true);
-                const auto kinds = test::markSome(errors.size());
-                std::size_t other = 0;
-                for (std::size_t i = 0; i < colours.size(); ++i) {
-                    if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
-                    other += colours[i] == own_colours[i] && std::bit_cast<gpu::uint>(depths[i]) == std::bit_cast<gpu::uint>(own_depths[i])
-                                 ? 0
-                                 : 1;
+                for (const bool apart : {false, true}) {
+                    CAPTURE(apart);
+                    const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true, apart);
+                    const auto kinds = test::markSome(errors.size());
+                    std::size_t other = 0;
+                    for (std::size_t i = 0; i < colours.size(); ++i) {
+                        if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
+                        const auto bitsOf = [](float depth) { return std::bit_cast<gpu::uint>(depth); };
+                        other += colours[i] == own_colours[i] && bitsOf(depths[i]) == bitsOf(own_depths[i]) ? 0 : 1;
+                    }
+                    CHECK(other == 0);
+                    CHECK(own_classes == classes);
+                    CHECK(own_errors == errors);
+                    CHECK(own_tile_depths == tile_depths);
                 }
-                CHECK(other == 0);
-                CHECK(own_classes == classes);
-                CHECK(own_errors == errors);
-                CHECK(own_tile_depths == tile_depths);
                 ++pictures;
             }
         }

@@ -128,7 +128,13 @@ public:
         bool errors = false, depths = false, classes = false, components = false, forward = false;
         bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what 8d left
         glm::vec3 background{0.0f};
+        bool odd = false;  // rows alone, of two dispatches: see takeRowsApart
     };
+    // From here on resample takes half of the rows at a time.
+    void takeRowsApart() {
+        view_.rows_apart = 2;
+        gpu_.upload(view_buffer_, std::vector{view_});
+    }
     void resample(const ResampleParts& parts) {
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
@@ -149,8 +155,9 @@ public:
                                    .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
                                    .counters = counters(),
                                    .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
-                                   .background = parts.background},
-                 {view_.size_px.y, 1});
+                                   .background = parts.background,
+                                   .first_row = parts.odd ? 1u : 0u},
+                 {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});
     }
     // All steps of the pass, whatever the counters say of holes.
     void findComponents() {
@@ -349,7 +356,7 @@ private:
 };
 
 inline gpu::StereoView viewOfCase(const StereoCase& c) {
-    return stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+    return stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, false, settingsOf(c.settings));
 }
 inline StereoOnDevice toDevice(Gpu& gpu, const StereoCase& c, Rows rows = Rows::kOwn) {
     StereoOnDevice device(gpu, viewOfCase(c), coloursOf(c.dominant), movingOf(c.dominant, c.settings), rows);

@@ -12,12 +12,14 @@ constexpr gpu::uint kMarkGroups = 64;
 
 }  // namespace
 
-gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
+gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, bool moves_rows,
+                             const StereoSettings& settings) {
     return {.affiliated_from_dominant = relation.affiliated_from_dominant,
             .dominant_from_affiliated = relation.dominant_from_affiliated,
             .size_px = size_px,
             .size_tiles = tilesOf(size_px),
             .row_words = row_words,
+            .rows_apart = moves_rows && settings.patching == Patching::kPredicted ? 2u : 1u,
             .gap_px = settings.gap_px,
             .margin_px = settings.margin_px,
             .edge_samples = settings.edge_samples,
@@ -92,13 +94,16 @@ public:
     void findDepthBounds();
     void findEdgeRois();
     void reproject();
+    // Of every row, or of the even ones; resampleOdd: of the others, if there are any left.
     void resample();
+    void resampleOdd();
     void findNewcomers();
     void groupHoles();
     void price();
     void select();
 
 private:
+    void resampleFrom(gpu::uint first_row, bool predict_errors);
     template <typename Pass>
     const Kernel& kernel(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) {
         return kernels_.get(name, sizeof(Pass), constants);
@@ -179,7 +184,13 @@ void StereoRecorder::reproject() {
                       offsetof(gpu::StereoCounters, per_pixel_block));
 }
 
-void StereoRecorder::resample() {
+void StereoRecorder::resample() { resampleFrom(0, predicts()); }
+
+void StereoRecorder::resampleOdd() {
+    if (predicts() && movesRows() != 0) { resampleFrom(1, false); }
+}
+
+void StereoRecorder::resampleFrom(gpu::uint first_row, bool predict_errors) {
     commands_.beginPass("affiliated 8e_resample");
     const gpu::ResamplePass pass{.stereo = view(),
                                  .dominant = in_.dominant.colours.address<gpu::vec4>(),
@@ -195,11 +206,12 @@ void StereoRecorder::resample() {
                                  .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),
                                  .shown_mask = in_.dominant_shown.mask(),
-                                 .background = in_.background};
+                                 .background = in_.background,
+                                 .first_row = first_row};
     const std::uint32_t keeps_classes = in_.stereo.needs().classes || groupsHoles() ? 1 : 0;
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
     const Kernel& resample_kernel = kernel("8e_resample", pass,
-                                           {alongRows(), predicts(), with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
+                                           {alongRows(), predict_errors, with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
                                             halfFloats(), copiesColours(), movesRows()});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
@@ -286,6 +298,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
     if (passes.groupsHoles()) { passes.groupHoles(); }
     if (passes.predicts()) { passes.price(); }
     if (passes.followsPaper() || passes.predicts()) { passes.select(); }
+    passes.resampleOdd();
 }
 
 }  // namespace binosplat

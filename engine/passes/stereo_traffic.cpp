@@ -31,8 +31,8 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
         traffic.emplace_back("8c_edge_rois", perTile(2));
     }
     if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
-    // A row of pixels reads its tiles' kinds, and adds to their errors; every other row to their depths.
-    const double of_rows = perTile(gpu::kTileSize * (predict ? 4 : 1));
+    // A row of pixels reads its tiles' kinds; every other row adds to their errors and their depths.
+    const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
     traffic.emplace_back(
         "8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (predict) {

@@ -79,15 +79,15 @@ std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<c
             const Resolved& pixel = resolved[static_cast<std::size_t>(y * size.x + x)];
             const std::size_t tile = static_cast<std::size_t>(y / kTileSize) * tiles.x + static_cast<std::size_t>(x / kTileSize);
             if (kinds[tile] != TileKind::kNone) { continue; }
-            const bool hole = pixel.pixel_class == PixelClass::kHole;
-            if (!hole && y % 2 != 0) { continue; }  // rows are sampled in pairs
+            if (y % 2 != 0) { continue; }  // rows are sampled in pairs
             const int column = static_cast<int>(pixel.column);
             const glm::dvec2 place = source_from_target.move({column + 0.5, y + 0.5}, pixel.inverse_depth).place_px;
             const glm::dvec2 in_reach = glm::clamp(glm::floor(place), glm::dvec2(-1e6), glm::dvec2(1e6));
-            const double error = hole ? holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
-                                      : 2.0 * (uncertainDepthError(dominant, target_from_source, uncertainty(row, x, pixel),
-                                                                   glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1)) +
-                                               resamplingError(dominant, place));
+            const double error = pixel.pixel_class == PixelClass::kHole
+                                     ? 2.0 * holeError(dominant, glm::ivec2(in_reach), column - x, settings.hole_error)
+                                     : 2.0 * (uncertainDepthError(dominant, target_from_source, uncertainty(row, x, pixel),
+                                                                  glm::clamp(glm::ivec2(in_reach), glm::ivec2(0), size - 1)) +
+                                              resamplingError(dominant, place));
             errors[tile] += std::min(error, kMaxPixelError);
         }
     }

@@ -157,6 +157,7 @@ struct ResamplePass {
     StereoCounterss counters;
     Uints shown_mask;  // where the dominant eye has hidden tiles: the others; null where it has none
     vec3 background;   // of tiles that are hidden
+    uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
 // 8f_newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.

@@ -113,6 +113,7 @@ struct StereoView {
     uvec2 size_px;  // of both eyes
     uvec2 size_tiles;
     uint row_words;        // from a row of moving pixels or of arrivals to the next
+    uint rows_apart;       // 2: 8e takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
     uint gap_px;           // runs of uncovered pixels up to this long are gaps; longer ones are holes
     uint margin_px;        // paper: around what needs rendering
     uint edge_samples;     // paper: N, along each edge
