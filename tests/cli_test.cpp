@@ -109,7 +109,7 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--newcomer-error -1"), 1, "--newcomer-error is -1, must be a number from 0 to 8");
     checkRefused(work.run(render + "--foveation 91"), 1, "--foveation is 91, must be a number from 0 to 90");
     checkRefused(work.run(render + "--gaze 0,0,0"), 1, "--gaze is 0,0,0, must be a direction x,y,z, not 0,0,0");
-    checkRefused(work.run(render + "--headset nobody"), 1, "must be one of");
+    checkRefused(work.run(render + "--headset nobody"), 1, "nobody.toml: not found");
     CHECK(work.isEmpty());
 }
 
