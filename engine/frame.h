@@ -18,12 +18,6 @@
 
 namespace binosplat {
 
-// What splats are blended by, front to back.
-enum class Order {
-    kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
-    kDistance,  // distance of their centres from the middle between the eyes: one order for both eyes, however they turn
-};
-
 struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;

@@ -1,4 +1,4 @@
-// The ways to make two eyes' pictures, and their names.
+// The ways to make two eyes' pictures, and their names; and in which order splats are blended.
 #pragma once
 
 #include <array>
@@ -26,5 +26,11 @@ constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std
 constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
 // Whether each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
+
+// What splats are blended by, front to back.
+enum class Order {
+    kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
+    kDistance,  // distance of their centres from the middle between the eyes: one order for both eyes, however they turn
+};
 
 }  // namespace binosplat

@@ -143,13 +143,13 @@ TEST_CASE("eyesLookAtTheirLensesOrWhereTheyAreSaidTo") {
 TEST_CASE("splatsGoByDepthOrByDistance") {
     const Workplace work;
     writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
-    CHECK(render({}).stereo.order == "depth");
+    CHECK(render({}).stereo.order == Order::kDepth);
     CHECK(frameSettings({}, render({}).stereo).order == Order::kDepth);
     const RunOptions by_distance = render({"--config", (work.path / "a.toml").string()});
-    CHECK(by_distance.stereo.order == "distance");
+    CHECK(by_distance.stereo.order == Order::kDistance);
     CHECK(frameSettings({}, by_distance.stereo).order == Order::kDistance);
-    CHECK(render({"--config", (work.path / "a.toml").string(), "--order", "depth"}).stereo.order == "depth");
-    CHECK(parse<ViewOptions>({"view", "a", "--order", "distance"}).run.stereo.order == "distance");
+    CHECK(render({"--config", (work.path / "a.toml").string(), "--order", "depth"}).stereo.order == Order::kDepth);
+    CHECK(parse<ViewOptions>({"view", "a", "--order", "distance"}).run.stereo.order == Order::kDistance);
     CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders"}).orders);
     CHECK_THROWS_AS(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders", "--motion", "m.csv"}), Error);
 }
@@ -391,8 +391,8 @@ TEST_CASE("methodsSweepTheirSettings") {
                                             "p budget=0.5 depth=mean", "p budget=0.5 depth=sum", "mono"});
     CHECK(plan.methods[4].stereo.budget == 0.5);
     CHECK(plan.methods[4].stereo.gap_px == 3);
-    CHECK(plan.methods[4].stereo.order == "distance");
-    CHECK(plan.methods[0].stereo.order == "depth");
+    CHECK(plan.methods[4].stereo.order == Order::kDistance);
+    CHECK(plan.methods[0].stereo.order == Order::kDepth);
     CHECK(plan.methods[4].stereo.margin_px == 16);
     CHECK(!plan.ssim);
     const std::vector<DrawnViews> drawn = viewsOf(plan, "/some/where/a.ply", options.run);
@@ -487,9 +487,9 @@ TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralW
     const BenchOptions options = parse<BenchOptions>({"bench", "b", "--out", "out", "--config", (work.path / "a.toml").string()});
     const BenchPlan plan = planBench(options);
     REQUIRE(plan.methods.size() == 4);
-    CHECK(plan.methods[2].stereo.resampling == "forward");
+    CHECK(plan.methods[2].stereo.resampling == Resampling::kForward);
     CHECK(plan.methods[2].stereo.per_eye);
-    CHECK(plan.methods[3].stereo.resampling == "cubic");
+    CHECK(plan.methods[3].stereo.resampling == Resampling::kCubic);
     CHECK_FALSE(plan.methods[3].stereo.per_eye);
     const auto namesOf = [&](const std::string& scene) {
         std::string names;

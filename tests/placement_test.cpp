@@ -204,7 +204,7 @@ TEST_CASE("what the panel is set to survives its file") {
     settings.stereo.center_roi = true;
     settings.stereo.margin_px = 48;
     settings.stereo.budget = 0.25;
-    settings.stereo.depth = "mean";
+    settings.stereo.depth = PixelDepth::kMean;
     settings.resolution_scale = 0.7;
     settings.tint = true;
     settings.panel = false;

@@ -103,7 +103,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
 bool needSame(const StereoOptions& a, const StereoOptions& b) {
     if (a.mode != b.mode) { return false; }
     if (a.mode == Mode::kPredicted) { return a == b; }
-    return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == "inverse") == (b.depth == "inverse"));
+    return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == PixelDepth::kInverse) == (b.depth == PixelDepth::kInverse));
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOption
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
     MethodFrames frames(context, point.gpu_scene);
-    std::map<std::string, Image> full_by_order;
+    std::map<Order, Image> full_by_order;
     for (const BenchMethod& method : plan.methods) {
         Image& full = full_by_order[method.stereo.order];
         if (full.values.empty()) { full = renderFull(method.stereo, point, frames); }

@@ -7,6 +7,22 @@
 
 namespace binosplat {
 
+namespace {
+
+gpu::uint depthChoice(PixelDepth depth) {
+    switch (depth) {
+        case PixelDepth::kSum:
+            return gpu::kDepthSum;
+        case PixelDepth::kMean:
+            return gpu::kDepthMean;
+        case PixelDepth::kInverse:
+            break;
+    }
+    return gpu::kDepthInverse;
+}
+
+}  // namespace
+
 Mode readMode(const Setting& setting) {
     const std::string name = readChoice(setting, {kModeNames.begin(), kModeNames.end()});
     return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
@@ -18,14 +34,14 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.dominant = stereo.dominant;
     settings.near = camera.near;
     settings.background = camera.background;
-    settings.order = stereo.order == "distance" ? Order::kDistance : Order::kDepth;
+    settings.order = stereo.order;
     settings.per_eye = stereo.per_eye;
-    settings.stereo.depth_choice = stereo.depth == "sum" ? gpu::kDepthSum : stereo.depth == "mean" ? gpu::kDepthMean : gpu::kDepthInverse;
-    settings.stereo.forward = stereo.resampling == "forward";
+    settings.stereo.depth_choice = depthChoice(stereo.depth);
+    settings.stereo.forward = stereo.resampling == Resampling::kForward;
     settings.stereo.gap_px = stereo.gap_px;
     settings.stereo.margin_px = stereo.margin_px;
     settings.stereo.edge_samples = stereo.edge_samples;
-    settings.stereo.tight_edges = stereo.edge_bounds == "tight";
+    settings.stereo.tight_edges = stereo.edge_bounds == EdgeBounds::kTight;
     settings.stereo.center_rois = stereo.center_roi;
     settings.stereo.budget = stereo.budget;
     settings.stereo.move_cost = stereo.move_cost;

@@ -93,8 +93,6 @@ OptionValue toValue(const Value& value) {
         return static_cast<std::uint64_t>(value);
     } else if constexpr (std::is_floating_point_v<Value>) {
         return static_cast<double>(value);
-    } else if constexpr (std::is_same_v<Value, Side>) {
-        return std::string(value == kLeft ? "left" : "right");
     } else if constexpr (std::is_same_v<Value, Mode>) {
         return std::string(nameOf(value));
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
@@ -229,12 +227,6 @@ auto named(std::vector<std::string_view> names) {
     made.range = fmt::format("{}", fmt::join(names, ", "));
     made.choices = std::move(names);
     return made;
-}
-
-template <auto... Members>
-auto side() {
-    const std::vector<std::string_view> names{"left", "right"};
-    return oneOf<Members...>(names, [names](const Setting& s) { return readChoice(s, names) == "left" ? kLeft : kRight; });
 }
 
 }  // namespace field

@@ -29,6 +29,13 @@ struct CameraOptions {
 // What moving a tile costs, in pairs of tile and splat, where nobody has measured it.
 inline constexpr std::uint32_t kDefaultMoveCost = 32;
 
+// The depth that moves a pixel, of what was blended: D, D/A or A/I (docs/how-it-works.md).
+enum class PixelDepth { kSum, kMean, kInverse };
+// How moved pixels are sampled: with a cubic kernel, or copied forward with gaps interpolated, as in the paper.
+enum class Resampling { kCubic, kForward };
+// How wide the paper's borders are: as there, or also covering what near content uncovers.
+enum class EdgeBounds { kPaper, kTight };
+
 struct StereoOptions {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
@@ -37,13 +44,13 @@ struct StereoOptions {
     std::uint32_t margin_px = 32;
     double budget = 0.2;
     std::uint32_t move_cost = kDefaultMoveCost;
-    std::string depth = "inverse";
-    std::string order = "depth";
-    std::string resampling = "cubic";
+    PixelDepth depth = PixelDepth::kInverse;
+    Order order = Order::kDepth;
+    Resampling resampling = Resampling::kCubic;
     bool per_eye = false;
     std::uint32_t gap_px = 2;
     std::uint32_t edge_samples = 64;
-    std::string edge_bounds = "paper";
+    EdgeBounds edge_bounds = EdgeBounds::kPaper;
     double hole_error = 1.0;
     double newcomer_error = 0.3;
     double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere

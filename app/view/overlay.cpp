@@ -70,8 +70,8 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     choose(widgets, "Method", methods, names, options, 3);
     choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 2.0f / 3.0f);  // the row's last third is free
-    bool by_distance = stereo.order == "distance";
-    if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? "distance" : "depth"; }
+    bool by_distance = stereo.order == Order::kDistance;
+    if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
     choose(widgets, "Depth of a pixel", *findRunRow("depth"), options, 3);
     widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 0.55f);
