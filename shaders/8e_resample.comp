@@ -367,6 +367,8 @@ void main() {
     if (!kClasses) { return; }
     barrier();
     for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { pass.pixel_classes.at[y * tiles + tile] = tile_classes[tile]; }
+    // As if no tile were chosen yet: the even rows count for the odd ones.
+    classes *= stereo.rows_apart == 1 ? 1 : pass.first_row == 0 ? min(2, stereo.size_px.y - y) : 0;
     const uint covered = subgroupAdd(classes.x), gaps = subgroupAdd(classes.y), holes = subgroupAdd(classes.z);
     if (subgroupElect()) {
         if (covered > 0) { atomicAdd(pass.counters.at[0].covered_pixels, covered); }

@@ -34,6 +34,7 @@ StereoPair loadPair(const std::filesystem::path& folder) {
 // Eyes side by side with fx b = 1 px, so that the inverse depth is the disparity in pixels.
 gpu::StereoView makeView(glm::uvec2 size_px, gpu::uint gap_px) {
     gpu::StereoView view{};
+    view.rows_apart = 1;
     view.affiliated_from_dominant.shift = {-1.0f, 0.0f, 0.0f};
     view.dominant_from_affiliated.shift = {1.0f, 0.0f, 0.0f};
     view.size_px = size_px;

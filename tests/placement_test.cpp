@@ -1,5 +1,6 @@
 // Facts about the wearer's place in the scene, and about keeping it.
 #include "app/view/placement.h"
+#include "app/view/losses.h"
 #include "app/view/overlay_panel.h"
 #include "app/view/view_eyes.h"
 #include "app/view/view_files.h"
@@ -195,6 +196,16 @@ TEST_CASE("rounding between parallel eyes is taken out, canting is not") {
     CHECK(alike[1].fov.angleLeft == -0.8f);
     views[1].fov.angleUp = 0.8501f;
     CHECK(withoutNoise(views)[1].fov.angleUp == 0.8501f);
+}
+
+TEST_CASE("sessions that are lost one after the other are too many after three, those lost now and then are not") {
+    Losses losses;
+    Losses::Time now{};
+    for (int i = 0; i < 3; ++i) { CHECK(losses.add(now += std::chrono::seconds(1))); }
+    CHECK_FALSE(losses.add(now += std::chrono::seconds(1)));
+    losses.forget();
+    for (int i = 0; i < 20; ++i) { CHECK(losses.add(now += std::chrono::seconds(11))); }
+    CHECK(losses.count() == 1);
 }
 
 TEST_CASE("what the panel is set to survives its file") {

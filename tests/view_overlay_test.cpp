@@ -21,7 +21,8 @@ const std::string kSmall = "rate 90\nsize 160 160\nframes every 4\n" + kLeftHand
 // Where nobody looks at what the headset shows.
 const std::string kBlind = "rate 90\nsize 64 64\nframes none\n" + kLeftHand;
 // Few splats where any picture will do; bars with holes between them where it is looked at.
-const std::string kScene = "builtin:slanted-wall --load-first --hide-hands", kFence = "builtin:fence --load-first --hide-hands";
+const std::string kWall = "builtin:slanted-wall --load-first --hide-hands", kScene = kWall + " --mode mono",
+                  kFence = "builtin:fence --load-first --hide-hands";
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {
@@ -195,7 +196,7 @@ TEST_CASE("a resolution that the device has no memory for is refused on the pane
     std::ofstream(work.path / "small.toml") << "[view]\nresolution-scale = 0.25\n";
     const std::string large = "rate 90\nsize 1024 1024\nframes every 8\n" + kLeftHand;
     const ViewRun run = runView(work, "full", large + clickOn(startPanel(work), {placeOf("resolution"), {0.9, 0.95}}),
-                                kScene + " --config small.toml --memory-limit 16");
+                                kWall + " --config small.toml --memory-limit 16");
     checkClean(run);
     CHECK(says(run, "does not fit: "));
     CHECK(says(run, "the limit is 16.0 MiB (memory-limit)"));
@@ -289,23 +290,24 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     CHECK(says(saved, "loaded " + file.string()));
     CHECK(output.find("mode = \"predicted\"") < output.rfind("mode = \"reproject\""));
     // The viewer and `render` take the file.
-    const ViewRun again = runView(work, "again", kBlind + "at 0.1 exit\n", kScene + " --config '" + file.string() + "'");
+    const ViewRun again = runView(work, "again", kBlind + "at 0.1 exit\n", kWall + " --config '" + file.string() + "'");
     checkClean(again);
     CHECK(work.run("render builtin:slanted-wall --out rendered --size 32x32 --config '" + file.string() + "'").exit_code == 0);
     std::ifstream report(work.path / "rendered" / "report.json");
     CHECK(nlohmann::json::parse(report).at("options").at("mode") == "reproject");
     // The wearer stands there again, unless told where to.
-    const ViewRun there = runView(work, "there", kSmall + "at 0.1 exit\n", kScene + " --mode reproject --hide-panel");
+    const ViewRun there = runView(work, "there", kSmall + "at 0.1 exit\n", kWall + " --mode reproject --hide-panel");
     checkClean(there);
     CHECK(says(there, "the wearer stands where this scene was saved"));
     const ViewRun before =
-        runView(work, "before", kSmall + "at 0.1 exit\n", kScene + " --mode reproject --hide-panel --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+        runView(work, "before", kSmall + "at 0.1 exit\n", kWall + " --mode reproject --hide-panel --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
     CHECK_FALSE(says(before, "where this scene was saved"));
-    const ViewRun named = runView(work, "named", kSmall + "at 0.1 exit\n", kScene + " --hide-panel --config '" + file.string() + "'");
+    const ViewRun named = runView(work, "named", kSmall + "at 0.1 exit\n", kWall + " --hide-panel --config '" + file.string() + "'");
     CHECK(compare(there.eye(8, kLeft), named.eye(8, kLeft)).psnrDb() > 60.0);
     CHECK(compare(there.eye(8, kLeft), before.eye(8, kLeft)).psnrDb() < 40.0);
     // Another scene has another place, and one that cannot be read is said and does not keep anybody out.
-    CHECK_FALSE(says(runView(work, "other", kBlind + "at 0.1 exit\n", "builtin:step-edge --load-first"), "where this scene was saved"));
+    CHECK_FALSE(
+        says(runView(work, "other", kBlind + "at 0.1 exit\n", "builtin:step-edge --load-first --mode mono"), "where this scene was saved"));
     std::ofstream(file) << "[view]\nnonsense = 1\n";
     const ViewRun broken = runView(work, "broken", kBlind + "at 0.1 exit\n", kScene);
     checkClean(broken);
@@ -331,7 +333,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
     const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
     const auto click = [&](const std::string& name, const std::string& folder) {
-        const ViewRun run = runView(work, name, script, kScene + " --mode shared --shaders '" + folder + "'");
+        const ViewRun run = runView(work, name, script, kWall + " --mode shared --shaders '" + folder + "'");
         checkClean(run);
         return run;
     };
@@ -370,10 +372,10 @@ TEST_CASE("nobody reloads shaders who was not told where they are") {
     const Workplace work;
     const Panel panel = startPanel(work);
     const std::string script = kBlind + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
-    const ViewRun run = runView(work, "none", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
+    const ViewRun run = runView(work, "none", script, kWall + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
-    const ViewRun told = runView(work, "told", script, kScene + " --mode shared", kValidated + " BINOSPLAT_SHADERS=nowhere");
+    const ViewRun told = runView(work, "told", script, kWall + " --mode shared", kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK(says(told, "shaders stay as they were: nowhere/1_cull.comp is not there"));
 }
 
@@ -411,7 +413,7 @@ TEST_CASE("a squeezed hand that points carries the panel") {
 
 TEST_CASE("sticks move and turn the wearer, both grips move the scene") {
     const Workplace work;
-    const std::string hidden = kScene + " --hide-panel --mode mono";
+    const std::string hidden = kScene + " --hide-panel";
     const ViewRun rest = runView(work, "rest", kSmall + "at 0.5 exit\n", hidden);
     const std::size_t last = 40;
     const auto moved = [&](const std::string& name, const std::string& lines) {
@@ -444,7 +446,7 @@ glm::dvec3 savedPosition(const ViewRun& run) {
     return {position[0], position[1], position[2]};
 }
 
-const std::string kPlaced = kScene + " --mode mono --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
+const std::string kPlaced = kScene + " --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
 
 }  // namespace
 

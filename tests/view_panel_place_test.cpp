@@ -27,7 +27,7 @@ TEST_CASE("the documented line of a script clicks on Quit, on a panel of the doc
     const Workplace work;
     const std::string script =
         "rate 90\nsize 64 64\nframes none\ncontroller left 0 turn 0 -80\n" + pointing[1].str() + "\n" + clicking[1].str() + "\nat 3 exit\n";
-    const ViewRun run = runView(work, "quit", script, "builtin:slanted-wall --load-first");
+    const ViewRun run = runView(work, "quit", script, "builtin:slanted-wall --load-first --mode mono");
     checkClean(run);
     CHECK(run.frames.size() > 18);
     CHECK(run.frames.size() < 60);
@@ -59,7 +59,7 @@ TEST_CASE("the documented places of widgets are where they are") {
 
 TEST_CASE("what the command line says of the simulated headset counts before the environment") {
     const Workplace work;
-    const ViewRun run = runView(work, "own", "size 64 64\nframes none\nat 0.1 exit\n", "builtin:slanted-wall --load-first",
+    const ViewRun run = runView(work, "own", "size 64 64\nframes none\nat 0.1 exit\n", "builtin:slanted-wall --load-first --mode mono",
                                 kValidated + " SIMULATED_OPENXR_OUT=elsewhere SIMULATED_OPENXR_SCRIPT=nowhere.script");
     checkClean(run);
     CHECK(run.frames.size() > 8);

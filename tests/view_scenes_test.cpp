@@ -28,7 +28,7 @@ const glm::dvec2 kBeside(0.9, 0.95);
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
 
 const Panel& startPanel(const Workplace& work) {
-    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:one-splat --load-first"), 8);
+    static const Panel panel = panelOf(runView(work, "look", kSmall + "at 0.1 exit\n", "builtin:one-splat --load-first --mode mono"), 8);
     return panel;
 }
 
@@ -45,7 +45,7 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     const ViewRun run =
         runView(work, "next",
                 kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, next, 0.4) + clickAt(panel, next, 1.5) + "at 6 exit\n",
-                "a.ply --load-first");
+                "a.ply --load-first --mode mono");
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::size_t first = output.find("shows a.ply"), broken = output.find("b.ply:"), third = output.find("shows c.ply");
@@ -70,7 +70,7 @@ TEST_CASE("a scene is chosen on the panel, in the folder of the one that is show
     const ViewRun run =
         runView(work, "choose",
                 kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, broken, 0.4) + clickAt(panel, other, 1.5) + "at 6 exit\n",
-                name + "/room10.ply --load-first");
+                name + "/room10.ply --load-first --mode mono");
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::string place = (folder / "room9.ply").string(), bad = (folder / "room1.ply").string();
@@ -142,7 +142,7 @@ TEST_CASE("a working directory that was deleted takes no picture, and is no end"
     std::ofstream(work.path / "gone.script") << script;
     const Outcome outcome = work.runCommand(
         fmt::format("mkdir gone && cd gone && rmdir ../gone && DISPLAY= WAYLAND_DISPLAY= XDG_CONFIG_HOME='{0}/config' '" BINOSPLAT_PROGRAM
-                    "' view builtin:one-splat --load-first --simulate '{0}/gone.script' --out '{0}/seen'",
+                    "' view builtin:one-splat --load-first --mode mono --simulate '{0}/gone.script' --out '{0}/seen'",
                     work.path.string()));
     CHECK(outcome.exit_code == 0);
     CHECK(outcome.errors == "");
@@ -153,8 +153,8 @@ TEST_CASE("the wearer recentres by the panel's button") {
     const Workplace work;
     const Panel panel = startPanel(work);
     const std::string head = "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.4 1.5 0.3 turn 50 0\n";
-    const ViewRun run =
-        runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}), "builtin:one-splat --load-first");
+    const ViewRun run = runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}),
+                                "builtin:one-splat --load-first --mode mono");
     checkClean(run);
     CHECK(says(run, "the room now begins where the wearer stands, 1.50 m above the floor"));
     const std::size_t last = run.frames.size() - 5;

@@ -314,7 +314,8 @@ public:
           connection_(screen_),
           program_((connection_.setDpi(dpi), work.path),
                    {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first " + options}, screen_.name) {
-        REQUIRE(program_.waitFor("per eye, on ") != "");
+        // While it loads, the panel has another layout.
+        REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         // The keys go to the window that the mouse is in.
         hands("search --sync --onlyvisible --name '^binosplat$' mousemove --window %1 20 20");
     }
@@ -516,7 +517,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
 TEST_CASE("a mouse that lies on the panel leaves it to the hands") {
     if (!haveScreen()) { return; }
     const Workplace work;
-    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:slanted-wall --load-first";
+    const std::string small = "rate 90\nsize 96 96\nframes none\n", scene = "builtin:slanted-wall --load-first --mode mono";
     const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", scene), 8);
     std::filesystem::create_directory(work.base / "screen");
     const Screen screen(work.base / "screen");
@@ -575,10 +576,11 @@ TEST_CASE("a lost device ends the viewer with three, also beside a window") {
     const Workplace work;
     std::filesystem::create_directory(work.base / "screen");
     const Screen screen(work.base / "screen");
-    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:slanted-wall --load-first",
-                                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:30:lost DISPLAY=" +
-                                    screen.name);
+    const ViewRun run =
+        runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 2 exit\n", "builtin:slanted-wall --load-first --mode mono",
+                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=submit:30:lost DISPLAY=" +
+                    screen.name);
     INFO(run.outcome.output);
     INFO(run.outcome.errors);
     CHECK(run.outcome.exit_code == 3);
@@ -591,10 +593,11 @@ TEST_CASE("a window whose display is lost is gone, and the headset goes on") {
     const Workplace work;
     std::filesystem::create_directory(work.base / "screen");
     const Screen screen(work.base / "screen");
-    const ViewRun run = runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 1 exit\n", "builtin:slanted-wall --load-first",
-                                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=present:5:surface-lost DISPLAY=" +
-                                    screen.name);
+    const ViewRun run =
+        runView(work, "lost", "rate 90\nsize 96 96\nframes none\nat 1 exit\n", "builtin:slanted-wall --load-first --mode mono",
+                "WAYLAND_DISPLAY= VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT=present:5:surface-lost DISPLAY=" +
+                    screen.name);
     INFO(run.outcome.output);
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.errors == "");

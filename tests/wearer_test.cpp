@@ -229,6 +229,24 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, and the
     }
 }
 
+TEST_CASE("a throw that passes over the panel goes on") {
+    OverlayPanel panel({800, 400}, 0.8);
+    WearerControls controls;
+    ViewSettings settings;
+    settings.teleport = true;
+    Similarity scene_from_room;
+    WearerNow now;
+    now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {1.5, 0.4, 0.3}};
+    now.hands[kLeft].stick = {0.0, 1.0};
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(controls.aimingHand() == kLeft);
+    now.hands[kLeft].aim = pointingAt(panel, {0.1, 0.1}).aim;
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK(panel.isPointedAtBy(kLeft));
+    CHECK(controls.aimingHand() == kLeft);
+    CHECK(scene_from_room.position == glm::dvec3(0.0));
+}
+
 TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
     OverlayPanel panel({800, 400}, 0.8);
     WearerControls controls;

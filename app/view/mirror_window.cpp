@@ -145,10 +145,15 @@ WindowInput MirrorWindow::poll() {
     return input;
 }
 
+void MirrorWindow::dropEyeImage() {
+    eye_ = vk::raii::Image(nullptr);
+    eye_memory_ = vk::raii::DeviceMemory(nullptr);
+}
+
 void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
     using Usage = vk::ImageUsageFlagBits;
     const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
-    eye_ = vk::raii::Image(nullptr);
+    dropEyeImage();
     eye_ = vk::raii::Image(context_.device(),
                            vk::ImageCreateInfo({}, vk::ImageType::e2D, blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm,
                                                {size_px.x, size_px.y, 1}, 1, 1, vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
@@ -166,8 +171,8 @@ void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 
         eye_px_ = size_px;
         try {
             makeEyeImage(size_px, format);
-        } catch (const vk::OutOfDeviceMemoryError&) {
-            eye_ = vk::raii::Image(nullptr);  // the window shows the panel alone: the headset matters more
+        } catch (const vk::OutOfDeviceMemoryError&) { dropEyeImage(); } catch (const vk::OutOfHostMemoryError&) {
+            dropEyeImage();  // the window shows the panel alone: the headset matters more
         }
     }
     if (!*eye_) { return; }

@@ -51,6 +51,7 @@ public:
     void show() { pictures_->show(); }
 
 private:
+    void dropEyeImage();
     void makeEyeImage(glm::uvec2 size_px, vk::Format format);
 
     const Context& context_;

@@ -15,14 +15,20 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
-// What both eyes would have taken in full, by what the dominant one took; 0: it is not known.
+// What the frame would have taken with both eyes in full, by what the dominant one took; 0: it is not known, since each eye was culled and
+// sorted by itself, or there is one alone.
 double losslessMs(const FrameResult& result) {
-    double shared_ms = 0.0, dominant_ms = 0.0;
+    double once_ms = 0.0, dominant_ms = 0.0;
+    bool culls_both = false;
     for (const auto& [pass, ms] : result.gpu_ms) {
-        if (pass.starts_with("both ")) { shared_ms += ms; }
-        if (pass.starts_with("dominant ")) { dominant_ms += ms; }
+        culls_both = culls_both || pass.starts_with("both ");
+        if (pass.starts_with("dominant ")) {
+            dominant_ms += ms;
+        } else if (!pass.starts_with("affiliated ")) {
+            once_ms += ms;  // for both, or after them: the way to the headset, the panel
+        }
     }
-    return dominant_ms > 0.0 ? shared_ms + 2.0 * dominant_ms : 0.0;
+    return culls_both ? once_ms + 2.0 * dominant_ms : 0.0;
 }
 
 }  // namespace
@@ -170,7 +176,8 @@ void SceneRenderer::sayHidden(bool one_eye) {
         return found == last_.counters.end() ? 0 : found->second;
     };
     const std::array<std::uint64_t, 2> hidden{count("tiles_hidden_left"), count("tiles_hidden_right")};
-    if (one_eye || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
+    // None, where the lenses hid some before: that frame was for a picture.
+    if (one_eye || hidden == std::array<std::uint64_t, 2>{} || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
     log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], count("tiles_left")));
 }
 

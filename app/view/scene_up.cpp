@@ -19,7 +19,9 @@ constexpr std::size_t kMostSplats = 262144;
 constexpr double kMostMedians = 4.0;
 
 std::filesystem::path cameraFileOf(const std::filesystem::path& source) {
-    const std::filesystem::path folder = std::filesystem::absolute(source).parent_path();
+    std::filesystem::path whole = std::filesystem::absolute(source).lexically_normal();
+    if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
+    const std::filesystem::path folder = whole.parent_path();
     const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
     return (is_trained ? folder.parent_path().parent_path() : folder) / "cameras.json";
 }

@@ -4,11 +4,24 @@
 #include "app/view/view_files.h"
 #include "app/view/view_scenes.h"
 #include "engine/error.h"
+#include "engine/scene/procedural.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace binosplat {
+
+namespace {
+
+// One name for a file, however it is spelled.
+std::string sameNameOf(const std::string& scene) {
+    if (isBuiltin(scene)) { return scene; }
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(scene, error);
+    return error ? scene : whole.string();
+}
+
+}  // namespace
 
 ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead)
     : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
@@ -45,7 +58,7 @@ std::string ShownScene::take(ViewSettings& settings) {
         // Drivers need many times a frame's time to make them.
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
         if (ahead_) { ahead_->known.insert(kindOf(*taken)); }
-        if (scene_) { left_[scene_->name] = scene_from_room; }
+        if (scene_) { left_[sameNameOf(scene_->name)] = scene_from_room; }
         scene_ = std::move(taken);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         return goOnWithout(error.what());
@@ -64,7 +77,7 @@ std::string ShownScene::goOnWithout(const std::string& why) {
 }
 
 std::string ShownScene::place(ViewSettings& settings) {
-    if (const auto left = left_.find(scene_->name); left != left_.end()) {
+    if (const auto left = left_.find(sameNameOf(scene_->name)); left != left_.end()) {
         scene_from_room = left->second;
         return {};
     }

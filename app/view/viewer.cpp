@@ -23,10 +23,6 @@ constexpr std::size_t kPlottedFrames = 120;
 constexpr double kTimesSeconds = 0.25;
 // How often to look whether the session has begun to run, and how often the window is drawn meanwhile.
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
-// So many sessions lost in a row before one has shown a frame are too many.
-constexpr int kMostLosses = 3;
-// A session that has waited for its wearer so often is steady: those that were lost before it no longer count.
-constexpr int kSteadyRests = 100;
 // How often to look whether an unplugged headset is there again.
 constexpr std::chrono::milliseconds kBetweenSearches(200);
 // So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
@@ -90,11 +86,10 @@ bool Viewer::step() {
         case xr::FrameOutcome::kWait:
             drawWindowAlone("The headset rests: put it on");
             std::this_thread::sleep_for(kIdle);
-            if (++rests_ > kSteadyRests) { losses_ = 0; }
             return true;
         case xr::FrameOutcome::kRender:
             drawFrame();
-            losses_ = 0;
+            losses_.forget();
             break;
         case xr::FrameOutcome::kSkip:
             drawWindowAlone("The headset shows something else, or nothing");
@@ -111,10 +106,9 @@ void Viewer::leave() {
 }
 
 void Viewer::loseStay(const std::string& why) {
-    if (++losses_ > kMostLosses) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_));
+    if (!losses_.add(std::chrono::steady_clock::now())) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
     }
-    rests_ = 0;
     why_lost_ = why;
     is_gone_ = false;
     next_search_ = {};
@@ -294,7 +288,6 @@ void Viewer::drawWindowAlone(const std::string& why) {
     obeyWindow(step_seconds);
     status_.state = why;
     layOutPanel(false, step_seconds);
-    if (std::exchange(picture_asked_, false)) { takePicture(); }  // of the last frame there was
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::acquire);
     if (!window_) { return; }

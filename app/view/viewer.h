@@ -3,6 +3,7 @@
 
 #include "app/view/canvas.h"
 #include "app/view/gaze_follower.h"
+#include "app/view/losses.h"
 #include "app/view/mirror_window.h"
 #include "app/view/overlay.h"
 #include "app/view/overlay_panel.h"
@@ -99,8 +100,8 @@ private:
     OverlayPages pages_;
     Pose room_from_head_;  // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
-    int losses_ = 0, rests_ = 0;  // since a frame was shown; and how often the session waited for its wearer since the last loss
-    int failures_ = 0;            // of sessions that were to come after it, in a row
+    Losses losses_;     // since a frame was shown
+    int failures_ = 0;  // of sessions that were to come after it, in a row
     std::string why_lost_;
     bool is_gone_ = false;  // the headset, since then
     std::chrono::steady_clock::time_point last_end_{}, last_alone_{}, next_search_{};

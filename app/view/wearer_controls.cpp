@@ -56,7 +56,9 @@ void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool 
 void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room) {
     const auto aims = [&](int h) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
-        const bool pushed = h == kLeft && !panel.isPointedAtBy(h) && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
+        // Who aims may pass over the panel.
+        const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
+        const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
         return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
     };
     if (aiming_ && !aims(*aiming_)) {
