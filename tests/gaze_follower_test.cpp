@@ -1,5 +1,5 @@
 // Facts about where the viewer takes the eyes to look.
-#include "app/view/gaze_follower.h"
+#include "app/view/wearer/gaze_follower.h"
 
 #include <doctest/doctest.h>
 

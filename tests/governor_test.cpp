@@ -1,5 +1,5 @@
 // Facts about holding the frame rate, on machines that are made up: what a frame costs is a function of time, method and resolution.
-#include "app/view/governor.h"
+#include "app/view/governor/governor.h"
 #include "app/plot/svg_plot.h"
 
 #include <doctest/doctest.h>

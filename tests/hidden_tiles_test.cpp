@@ -1,6 +1,6 @@
 // Facts about the tiles that a headset's lens never shows.
 #include "xr/hidden_tiles.h"
-#include "app/view/lens_mask.h"
+#include "app/view/headset/lens_mask.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Facts about the panel's pages: what can be read and pointed at, whatever stands on them.
 #include "app/options/option_table.h"
-#include "app/view/scene_facts.h"
-#include "app/view/shown_text.h"
+#include "app/view/panel/shown_text.h"
+#include "app/view/scenes/scene_facts.h"
 #include "app/view/view_settings_table.h"
 #include "engine/error.h"
 #include "tests/panel_sketch.h"

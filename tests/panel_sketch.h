@@ -1,9 +1,9 @@
 // The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them does.
 #pragma once
 
-#include "app/view/overlay.h"
-#include "app/view/panel_font.h"
-#include "app/view/panel_style.h"
+#include "app/view/panel/overlay.h"
+#include "app/view/panel/panel_font.h"
+#include "app/view/panel/panel_style.h"
 
 #include <doctest/doctest.h>
 #include <imgui.h>

@@ -1,10 +1,10 @@
 // Facts about the wearer's place in the scene, and about keeping it.
-#include "app/view/placement.h"
-#include "app/view/losses.h"
-#include "app/view/overlay_panel.h"
-#include "app/view/view_eyes.h"
+#include "app/view/wearer/placement.h"
+#include "app/view/headset/losses.h"
+#include "app/view/panel/overlay_panel.h"
 #include "app/view/view_files.h"
 #include "app/view/view_settings.h"
+#include "app/view/wearer/view_eyes.h"
 #include "engine/error.h"
 #include "xr/convert.h"
 

@@ -1,8 +1,8 @@
 // Facts about looking for a scene: what a folder holds, in which order, and which scenes were shown last.
-#include "app/view/scene_list.h"
-#include "app/view/natural_order.h"
-#include "app/view/recent_scenes.h"
-#include "app/view/view_scenes.h"
+#include "app/view/scenes/scene_list.h"
+#include "app/view/scenes/natural_order.h"
+#include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/view_scenes.h"
 #include "engine/error.h"
 #include "tests/run_program.h"
 

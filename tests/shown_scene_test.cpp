@@ -1,5 +1,5 @@
 // Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
-#include "app/view/shown_scene.h"
+#include "app/view/scenes/shown_scene.h"
 #include "app/view/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"

@@ -1,5 +1,5 @@
 // Facts about the window beside the headset, on a display without a screen (Xvfb) and with a mouse and keys without hands (xdotool).
-#include "app/view/mirror_window.h"
+#include "app/view/window/mirror_window.h"
 #include "engine/error.h"
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"

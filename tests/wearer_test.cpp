@@ -1,7 +1,7 @@
 // Facts about the wearer's hands without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn.
-#include "app/view/hand_picture.h"
-#include "app/view/vignette.h"
-#include "app/view/wearer_controls.h"
+#include "app/view/room/hand_picture.h"
+#include "app/view/room/vignette.h"
+#include "app/view/wearer/wearer_controls.h"
 
 #include <doctest/doctest.h>
 

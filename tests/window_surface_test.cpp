@@ -1,5 +1,5 @@
 // Facts about what a window takes of what displays offer.
-#include "app/view/window_surface.h"
+#include "app/view/window/window_surface.h"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 #include "app/view/scene_renderer.h"
 
 #include "app/options/modes.h"
-#include "app/view/view_eyes.h"
+#include "app/view/wearer/view_eyes.h"
 
 #include <utility>
 

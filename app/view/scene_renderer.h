@@ -2,10 +2,10 @@
 #pragma once
 
 #include "app/view/frame_log.h"
-#include "app/view/headset_stay.h"
-#include "app/view/mirror_window.h"
-#include "app/view/scene_loader.h"
+#include "app/view/headset/headset_stay.h"
+#include "app/view/scenes/scene_loader.h"
 #include "app/view/view_settings.h"
+#include "app/view/window/mirror_window.h"
 
 #include <array>
 #include <functional>

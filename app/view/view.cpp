@@ -2,10 +2,10 @@
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/options/device_options.h"
-#include "app/view/mirror_window.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
-#include "app/view/waiting_window.h"
+#include "app/view/window/mirror_window.h"
+#include "app/view/window/waiting_window.h"
 #include "engine/error.h"
 #include "engine/platform.h"
 

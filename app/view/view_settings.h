@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "app/view/governor.h"
-#include "app/view/placement.h"
+#include "app/view/governor/governor.h"
+#include "app/view/wearer/placement.h"
 
 #include <optional>
 #include <string>

@@ -2,11 +2,11 @@
 #include "app/view/viewer.h"
 
 #include "app/interrupt.h"
-#include "app/view/panel_style.h"
-#include "app/view/recent_scenes.h"
+#include "app/view/panel/panel_style.h"
+#include "app/view/scenes/recent_scenes.h"
 #include "app/view/shader_reload.h"
-#include "app/view/view_eyes.h"
 #include "app/view/view_files.h"
+#include "app/view/wearer/view_eyes.h"
 #include "engine/error.h"
 
 #include <thread>

@@ -1,18 +1,18 @@
 // The viewer's loop: what the wearer sees, frame by frame.
 #pragma once
 
-#include "app/view/canvas.h"
-#include "app/view/gaze_follower.h"
-#include "app/view/losses.h"
-#include "app/view/mirror_window.h"
-#include "app/view/overlay.h"
-#include "app/view/overlay_panel.h"
+#include "app/view/headset/losses.h"
+#include "app/view/panel/canvas.h"
+#include "app/view/panel/overlay.h"
+#include "app/view/panel/overlay_panel.h"
 #include "app/view/picture_pair.h"
+#include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
-#include "app/view/shown_scene.h"
+#include "app/view/scenes/shown_scene.h"
 #include "app/view/view_settings.h"
-#include "app/view/vignette.h"
-#include "app/view/wearer_controls.h"
+#include "app/view/wearer/gaze_follower.h"
+#include "app/view/wearer/wearer_controls.h"
+#include "app/view/window/mirror_window.h"
 
 #include <chrono>
 #include <memory>

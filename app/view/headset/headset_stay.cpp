@@ -1,0 +1,14 @@
+// A session and its images.
+#include "app/view/headset/headset_stay.h"
+
+namespace binosplat {
+
+HeadsetStay::HeadsetStay(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
+    : session(instance, context),
+      format(chooseEyeFormat(session)),
+      refresh_rates(session.refreshRates()),
+      input(session),
+      panel_images(session, "the panel", panel_px, format, xr::ImageUse::kFar),
+      things(session, context, format) {}
+
+}  // namespace binosplat

@@ -1,0 +1,178 @@
+// Dear ImGui's Vulkan backend, set up for one picture.
+#include "app/view/panel/canvas.h"
+
+#include "app/view/panel/panel_font.h"
+#include "app/view/panel/panel_style.h"
+#include "engine/error.h"
+
+#include <imgui.h>
+
+#include <backends/imgui_impl_vulkan.h>
+
+#include <limits>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the overlay cannot be drawn: {}", vk::to_string(vk::Result(result))); }
+
+}  // namespace
+
+Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : context_(context), size_px_(size_px) {
+    const auto families = context.physicalDevice().getQueueFamilyProperties();
+    if (!(families[context.queueFamily()].queueFlags & vk::QueueFlagBits::eGraphics)) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: the overlay needs a queue that draws", context.deviceName()));
+    }
+    const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
+    const vk::Format raw = blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
+    makeImage(raw);
+    makeRenderPass(raw);
+    startImGui();
+}
+
+Canvas::~Canvas() {
+    ImGui_ImplVulkan_Shutdown();
+    ImGui::DestroyContext();
+}
+
+const std::string& Canvas::fontComplaint() const { return font_->complaint(); }
+
+void Canvas::makeImage(vk::Format format) {
+    using Usage = vk::ImageUsageFlagBits;
+    const vk::raii::Device& device = context_.device();
+    image_ = vk::raii::Image(
+        device, vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px_.x, size_px_.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
+                                    vk::ImageTiling::eOptimal, Usage::eColorAttachment | Usage::eTransferSrc));
+    const auto needs = image_.getMemoryRequirements();
+    const std::uint32_t type = context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
+    memory_ = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
+    image_.bindMemory(*memory_, 0);
+    view_ = vk::raii::ImageView(
+        device, vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
+    context_.name(image_, "canvas");
+}
+
+void Canvas::makeRenderPass(vk::Format format) {
+    using Stage = vk::PipelineStageFlagBits;
+    using Access = vk::AccessFlagBits;
+    const vk::AttachmentDescription attachment({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eClear,
+                                               vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
+                                               vk::AttachmentStoreOp::eDontCare, vk::ImageLayout::eUndefined,
+                                               vk::ImageLayout::eTransferSrcOptimal);
+    const vk::AttachmentReference reference(0, vk::ImageLayout::eColorAttachmentOptimal);
+    const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, {}, reference);
+    const vk::SubpassDependency dependencies[] = {
+        {VK_SUBPASS_EXTERNAL, 0, Stage::eTransfer, Stage::eColorAttachmentOutput, Access::eTransferRead, Access::eColorAttachmentWrite},
+        {0, VK_SUBPASS_EXTERNAL, Stage::eColorAttachmentOutput, Stage::eTransfer, Access::eColorAttachmentWrite, Access::eTransferRead}};
+    render_pass_ = vk::raii::RenderPass(context_.device(), vk::RenderPassCreateInfo({}, attachment, subpass, dependencies));
+    framebuffer_ =
+        vk::raii::Framebuffer(context_.device(), vk::FramebufferCreateInfo({}, *render_pass_, *view_, size_px_.x, size_px_.y, 1));
+}
+
+void Canvas::startImGui() {
+    const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 1);
+    descriptors_ = vk::raii::DescriptorPool(context_.device(),
+                                            vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, size));
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = ImVec2(static_cast<float>(size_px_.x), static_cast<float>(size_px_.y));
+    stylePanel();
+    font_ = std::make_unique<PanelFont>();
+    startBackend();
+}
+
+void Canvas::startBackend() {
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = *context_.instance();
+    info.PhysicalDevice = *context_.physicalDevice();
+    info.Device = *context_.device();
+    info.QueueFamily = context_.queueFamily();
+    info.Queue = *context_.queue();
+    info.DescriptorPool = *descriptors_;
+    info.MinImageCount = info.ImageCount = 2;
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+    info.CheckVkResultFn = requireSuccess;
+    ImGui_ImplVulkan_Init(&info, *render_pass_);
+    Commands commands(context_);
+    commands.begin();
+    ImGui_ImplVulkan_CreateFontsTexture(*commands.buffer());
+    commands.submitAndWait();
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+void Canvas::bringLetters(std::string_view text) {
+    if (!font_->add(text)) { return; }
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();  // frames under way read the letters there were
+    }
+    ImGui_ImplVulkan_Shutdown();
+    descriptors_.reset();
+    startBackend();
+    draw_list_.clear();  // letters may have moved
+}
+
+void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {
+    ImGuiIO& io = ImGui::GetIO();
+    constexpr float kNowhere = -std::numeric_limits<float>::max();
+    io.MousePos = pointer.place_px ? ImVec2(static_cast<float>(pointer.place_px->x), static_cast<float>(pointer.place_px->y))
+                                   : ImVec2(kNowhere, kNowhere);
+    io.MouseDown[0] = pointer.pressed;
+    io.MouseWheel = static_cast<float>(pointer.wheel);
+    io.DeltaTime = std::max(static_cast<float>(step_seconds), 1e-4f);
+    ImGui_ImplVulkan_NewFrame();
+    ImGui::NewFrame();
+    is_begun_ = true;
+}
+
+void Canvas::end() {
+    ImGui::Render();
+    is_begun_ = false;
+    DrawList now = drawList();
+    is_new_ = !is_recorded_ || now != draw_list_;
+    if (!is_new_) { return; }
+    draw_list_ = std::move(now);
+    is_recorded_ = false;
+    ++revision_;
+}
+
+void Canvas::giveUp() {
+    if (std::exchange(is_begun_, false)) { ImGui::EndFrame(); }
+    is_recorded_ = false;
+}
+
+Canvas::DrawList Canvas::drawList() {
+    DrawList bytes;
+    const auto add = [&](const void* data, std::size_t size) {
+        const auto* begin = static_cast<const unsigned char*>(data);
+        bytes.insert(bytes.end(), begin, begin + size);
+    };
+    const ImDrawData& drawn = *ImGui::GetDrawData();
+    for (int i = 0; i < drawn.CmdListsCount; ++i) {
+        const ImDrawList& list = *drawn.CmdLists[i];
+        add(list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
+        add(list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            add(&command.ClipRect, sizeof command.ClipRect);
+            add(&command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return bytes;
+}
+
+void Canvas::record(Commands& commands) {
+    if (!is_new_) { return; }
+    is_recorded_ = true;
+    const vk::ClearValue black(vk::ClearColorValue(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f}));
+    const vk::raii::CommandBuffer& buffer = commands.buffer();
+    buffer.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffer_, vk::Rect2D({0, 0}, {size_px_.x, size_px_.y}), black),
+                           vk::SubpassContents::eInline);
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *buffer);
+    buffer.endRenderPass();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,99 @@
+// Rays against the panel.
+#include "app/view/panel/overlay_panel.h"
+
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kScrolls = 0.5;  // of the stick
+constexpr double kRayWidthMetres = 0.006, kFadingRayMetres = 0.4;
+// In front of the eyes: 27 degrees to the left, a little below, within arm's reach.
+const glm::dvec3 kPlaceMetres(-0.45, 0.1, 0.9);
+const glm::dvec3 kUp(0.0, -1.0, 0.0);
+
+}  // namespace
+
+OverlayPanel::OverlayPanel(glm::uvec2 size_px, double width_m)
+    : size_px_(size_px), size_m_(width_m, width_m * static_cast<double>(size_px.y) / static_cast<double>(size_px.x)) {
+    hangBefore({});
+}
+
+void OverlayPanel::hangBefore(const Pose& room_from_head) {
+    const glm::dvec3 forward = room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0);
+    const glm::dvec3 level(forward.x, 0.0, forward.z);
+    const glm::dvec3 ahead = glm::length(level) > 1e-6 ? level : glm::dvec3(0.0, 0.0, 1.0);
+    const Pose upright = lookAt(room_from_head.position, room_from_head.position + ahead, kUp);
+    const glm::dvec3 place = transform(upright, kPlaceMetres);
+    room_from_panel_ = lookAt(place, place + (place - room_from_head.position), kUp);
+}
+
+std::optional<OverlayPanel::Hit> OverlayPanel::meet(const Pose& room_from_aim) const {
+    const Pose panel_from_aim = compose(inverse(room_from_panel_), room_from_aim);
+    const glm::dvec3 direction = panel_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0), &from = panel_from_aim.position;
+    if (direction.z < 1e-3 || from.z >= 0.0) { return std::nullopt; }  // from behind, or alongside
+    const double distance = -from.z / direction.z;
+    const glm::dvec2 share = glm::dvec2(from + distance * direction) / size_m_ + 0.5;
+    if (share.x < 0.0 || share.y < 0.0 || share.x > 1.0 || share.y > 1.0) { return std::nullopt; }
+    return Hit{share * size_px_, distance};
+}
+
+void OverlayPanel::carry(const std::array<xr::Hand, 2>& hands) {
+    if (!carrier_) { return; }
+    const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
+    if (hand.grabs && hand.aim) {
+        room_from_panel_ = compose(*hand.aim, hand_from_panel_);
+    } else {
+        carrier_.reset();
+    }
+}
+
+void OverlayPanel::follow(const xr::Hand& hand, int h, bool shown) {
+    HandNow& now = hands_[static_cast<std::size_t>(h)];
+    const HandNow before = now;
+    now = {};
+    now.squeezes = hand.grabs;
+    now.clicks = hand.clicks;
+    if (hand.aim && (shown || hand.clicks)) { now.aim = hand.aim; }
+    if (hand.aim && shown) { now.hit = meet(*hand.aim); }
+    const bool begins_click = now.clicks && !before.clicks;
+    now.clicks_here = now.clicks && (begins_click ? now.hit.has_value() : before.clicks_here);
+    if (!now.hit) { return; }
+    now.pulses = !before.hit || begins_click;
+    if (begins_click) { clicked_last_ = h; }
+    if (now.squeezes && !before.squeezes && !carrier_) {
+        carrier_ = h;
+        hand_from_panel_ = compose(inverse(*hand.aim), room_from_panel_);
+    }
+}
+
+void OverlayPanel::update(const std::array<xr::Hand, 2>& hands, bool shown) {
+    if (shown) {
+        carry(hands);
+    } else {
+        carrier_.reset();
+    }
+    for (const int h : {kLeft, kRight}) { follow(hands[static_cast<std::size_t>(h)], h, shown); }
+    pointer_ = {};
+    pointing_hand_.reset();
+    const int pointer = of(clicked_last_).hit ? clicked_last_ : 1 - clicked_last_;
+    if (!of(pointer).hit) { return; }
+    pointing_hand_ = pointer;
+    const double scroll = hands[static_cast<std::size_t>(pointer)].stick.y;
+    pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
+}
+
+std::vector<OverlayPanel::Ray> OverlayPanel::rays(const glm::dvec3& eye, std::optional<int> without) const {
+    std::vector<Ray> rays;
+    for (const int h : {kLeft, kRight}) {
+        const HandNow& hand = of(h);
+        if (!hand.aim || without == h) { continue; }
+        const double length_m = hand.hit ? hand.hit->distance_m : kFadingRayMetres;
+        const glm::dvec3 end = transform(*hand.aim, glm::dvec3(0.0, 0.0, length_m));
+        if (const auto strip = stripBetween(hand.aim->position, end, kRayWidthMetres, eye)) { rays.push_back({*strip, !hand.hit}); }
+    }
+    return rays;
+}
+
+}  // namespace binosplat

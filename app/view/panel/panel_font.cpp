@@ -1,0 +1,165 @@
+// ImGui's atlas of letters, made anew when there are more.
+#include "app/view/panel/panel_font.h"
+
+#include "engine/error.h"
+#include "engine/platform.h"
+#include "engine/setup/text_file.h"
+
+#include <fmt/format.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr ImWchar kBox = 0x25a1;
+// Latin with all its marks (also those that stand alone, as some systems write names), Greek, Cyrillic, punctuation, currencies, the box.
+constexpr std::array<ImWchar, 15> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e,
+                                          0x20a0, 0x20bf, 0x2190, 0x2193, kBox,   kBox,   0};
+// Fonts of all of Unicode take 20 MB.
+constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
+// With them the atlas stays below 4096x2048, which every device can sample.
+constexpr std::size_t kMostAdded = 3000;
+
+bool isThereFromTheBeginning(ImWchar letter) {
+    for (std::size_t i = 0; kRanges[i] != 0; i += 2) {
+        if (letter >= kRanges[i] && letter <= kRanges[i + 1]) { return true; }
+    }
+    return letter < kRanges[0];
+}
+
+std::uint64_t numberAt(std::span<const unsigned char> bytes, std::size_t at, std::size_t length) {
+    std::uint64_t number = 0;
+    for (const unsigned char byte : bytes.subspan(at, length)) { number = number * 256 + byte; }
+    return number;
+}
+
+// Its bytes, or why there are none.
+std::string readFont(const fs::path& file, std::string& complaint) {
+    try {
+        std::string bytes = readTextFile(file, "a TrueType font", kMostFontBytes);
+        if (looksLikeFont({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()})) { return bytes; }
+        complaint = fmt::format("{}: is no whole TrueType font", file.string());
+    } catch (const Error& error) { complaint = error.what(); }
+    return {};
+}
+
+// With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
+bool buildAtlas(std::span<const std::string> fonts, const std::set<ImWchar>& added) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    atlas.Clear();
+    std::vector<ImWchar> ranges;
+    for (const ImWchar letter : added) { ranges.insert(ranges.end(), {letter, letter}); }
+    ranges.insert(ranges.end(), kRanges.begin(), kRanges.end());
+    for (const std::string& bytes : fonts) {
+        ImFontConfig config;
+        config.FontDataOwnedByAtlas = false;
+        config.OversampleH = 2;  // a headset's pixels do not lie on the font's
+        config.MergeMode = &bytes != &fonts.front();
+        atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), kFontPx, &config, ranges.data());
+    }
+    if (!atlas.Build()) {
+        atlas.Clear();
+        return false;
+    }
+    // The fonts' bytes are not asked for again.
+    atlas.ClearInputData();
+    atlas.Fonts[0]->FallbackChar = kBox;
+    atlas.Fonts[0]->BuildLookupTable();
+    return true;
+}
+
+std::vector<fs::path> dejavuFiles() {
+    std::vector<fs::path> files;
+    for (const char* folder : {"truetype/dejavu", "TTF", "dejavu-sans-fonts", "dejavu"}) {
+        files.push_back(fs::path("/usr/share/fonts") / folder / "DejaVuSans.ttf");
+    }
+    return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> fontFiles() {
+    if (const std::string chosen = environment("BINOSPLAT_FONT"); !chosen.empty()) { return {chosen}; }
+    return dejavuFiles();
+}
+
+std::vector<fs::path> furtherFontFiles() {
+    std::vector<fs::path> files = dejavuFiles();
+    for (const char* file :
+         {"opentype/noto/NotoSansCJK-Regular.ttc", "noto-cjk/NotoSansCJK-Regular.ttc", "google-noto-cjk/NotoSansCJK-Regular.ttc",
+          "truetype/wqy/wqy-microhei.ttc", "truetype/droid/DroidSansFallbackFull.ttf"}) {
+        files.push_back(fs::path("/usr/share/fonts") / file);
+    }
+    return files;
+}
+
+bool looksLikeFont(std::span<const unsigned char> bytes) {
+    constexpr std::size_t kHeader = 12, kRecord = 16, kFirstOfCollection = 12;
+    std::size_t header = 0;
+    if (bytes.size() >= kFirstOfCollection + 4 && numberAt(bytes, 0, 4) == 0x74746366) {  // ttcf
+        const std::uint64_t version = numberAt(bytes, 4, 4);
+        if ((version != 0x00010000 && version != 0x00020000) || numberAt(bytes, 8, 4) == 0) { return false; }
+        header = numberAt(bytes, kFirstOfCollection, 4);
+    }
+    if (bytes.size() < header + kHeader) { return false; }
+    const std::uint64_t kind = numberAt(bytes, header, 4);
+    if (kind != 0x00010000 && kind != 0x4f54544f && kind != 0x74727565) { return false; }  // 1.0, OTTO, true
+    const std::size_t first = header + kHeader, tables = numberAt(bytes, header + 4, 2);
+    if (bytes.size() < first + tables * kRecord) { return false; }
+    std::vector<std::string_view> names;
+    for (std::size_t at = first; at < first + tables * kRecord; at += kRecord) {
+        const std::uint64_t offset = numberAt(bytes, at + 8, 4), length = numberAt(bytes, at + 12, 4);
+        if (offset > bytes.size() || length > bytes.size() - offset) { return false; }
+        names.emplace_back(reinterpret_cast<const char*>(bytes.data()) + at, 4);
+    }
+    const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
+    return has("cmap") && has("head") && has("hhea") && has("hmtx") && has("maxp") && ((has("glyf") && has("loca")) || has("CFF "));
+}
+
+PanelFont::PanelFont() {
+    for (const fs::path& file : fontFiles()) {
+        fonts_ = {readFont(file, complaint_)};
+        if (!fonts_[0].empty() && buildAtlas(fonts_, {})) {
+            complaint_.clear();
+            return;
+        }
+    }
+    fonts_.clear();
+    complaint_ = fmt::format("the panel is written in a small built-in font: {}", complaint_);
+    ImFontConfig font;
+    font.SizePixels = kFontPx;
+    ImGui::GetIO().Fonts->AddFontDefault(&font);
+}
+
+bool PanelFont::add(std::string_view text) {
+    if (fonts_.empty()) { return false; }
+    std::set<ImWchar> brought;
+    for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
+        unsigned int letter = 0;
+        at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
+        const auto wanted = static_cast<ImWchar>(letter);
+        const bool is_letter = letter <= IM_UNICODE_CODEPOINT_MAX && letter != IM_UNICODE_CODEPOINT_INVALID;
+        const bool is_there = isThereFromTheBeginning(wanted) && ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
+        if (is_letter && !is_there) { brought.insert(wanted); }
+    }
+    if (brought.size() > kMostAdded || std::ranges::includes(added_, brought)) { return false; }
+    if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
+    added_.merge(brought);
+    // They are large, and only now needed.
+    if (fonts_.size() == 1) {
+        for (const fs::path& file : furtherFontFiles()) {
+            std::string complaint, bytes = readFont(file, complaint);
+            if (!bytes.empty()) { fonts_.push_back(std::move(bytes)); }
+        }
+    }
+    return buildAtlas(fonts_, added_) || buildAtlas(std::span(fonts_).first(1), {});
+}
+
+}  // namespace binosplat

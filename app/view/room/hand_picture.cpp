@@ -1,0 +1,96 @@
+// Bones with round ends, seen by one eye.
+#include "app/view/room/hand_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kPictureMetres = 0.3;  // a hand that is spread, and its wrist
+constexpr glm::dvec3 kSkinLight(0.3, 0.42, 0.55);
+constexpr double kLeastRadiusMetres = 0.004;  // of joints whose runtime does not say
+constexpr double kRimTexels = 1.2;            // over which a border fades
+
+struct Bone {
+    std::size_t from, to;
+};
+
+// From the wrist to each fingertip. Joints of a finger follow one another.
+std::vector<Bone> makeBones() {
+    std::vector<Bone> bones{{XR_HAND_JOINT_WRIST_EXT, XR_HAND_JOINT_PALM_EXT}};
+    for (const auto& [first, tip] : {std::pair(XR_HAND_JOINT_THUMB_METACARPAL_EXT, XR_HAND_JOINT_THUMB_TIP_EXT),
+                                     std::pair(XR_HAND_JOINT_INDEX_METACARPAL_EXT, XR_HAND_JOINT_INDEX_TIP_EXT),
+                                     std::pair(XR_HAND_JOINT_MIDDLE_METACARPAL_EXT, XR_HAND_JOINT_MIDDLE_TIP_EXT),
+                                     std::pair(XR_HAND_JOINT_RING_METACARPAL_EXT, XR_HAND_JOINT_RING_TIP_EXT),
+                                     std::pair(XR_HAND_JOINT_LITTLE_METACARPAL_EXT, XR_HAND_JOINT_LITTLE_TIP_EXT)}) {
+        bones.push_back({XR_HAND_JOINT_WRIST_EXT, static_cast<std::size_t>(first)});
+        for (std::size_t joint = first; joint < static_cast<std::size_t>(tip); ++joint) { bones.push_back({joint, joint + 1}); }
+    }
+    return bones;
+}
+
+// A joint as the picture shows it, in texels.
+struct SeenJoint {
+    glm::dvec2 at;
+    double radius, depth;  // the depth counts texels, too
+};
+
+struct Hit {
+    double depth = std::numeric_limits<double>::infinity(), brightness = 0.0, alpha = 0.0;
+};
+
+void drawBone(const SeenJoint& a, const SeenJoint& b, const glm::uvec2& size_px, std::vector<Hit>& hits) {
+    const double reach = std::max(a.radius, b.radius) + kRimTexels;
+    const glm::dvec2 last = glm::dvec2(size_px) - 1.0;
+    const glm::dvec2 low = glm::clamp(glm::floor(glm::min(a.at, b.at) - reach), glm::dvec2(0.0), last);
+    const glm::dvec2 high = glm::clamp(glm::ceil(glm::max(a.at, b.at) + reach), glm::dvec2(0.0), last);
+    const glm::dvec2 along = b.at - a.at;
+    const double length2 = std::max(glm::dot(along, along), 1e-9);
+    for (auto y = static_cast<std::uint32_t>(low.y); y <= static_cast<std::uint32_t>(high.y); ++y) {
+        for (auto x = static_cast<std::uint32_t>(low.x); x <= static_cast<std::uint32_t>(high.x); ++x) {
+            const glm::dvec2 at(x + 0.5, y + 0.5);
+            const double t = std::clamp(glm::dot(at - a.at, along) / length2, 0.0, 1.0);
+            const double radius = glm::mix(a.radius, b.radius, t), aside = glm::distance(at, a.at + t * along);
+            const double alpha = std::clamp((radius - aside) / kRimTexels + 0.5, 0.0, 1.0);
+            if (alpha == 0.0) { continue; }
+            const double facing_eye = std::sqrt(std::max(0.0, 1.0 - aside * aside / (radius * radius)));
+            const double depth = glm::mix(a.depth, b.depth, t) - radius * facing_eye;
+            Hit& hit = hits[std::size_t{y} * size_px.x + x];
+            // A rim lets what was drawn behind it through.
+            if (alpha == 1.0 ? depth < hit.depth : hit.alpha < 1.0) { hit = {depth, 0.3 + 0.7 * facing_eye, std::max(alpha, hit.alpha)}; }
+        }
+    }
+}
+
+}  // namespace
+
+Strip handPicturePlace(const xr::HandJoints& joints, const glm::dvec3& eye) {
+    return facing(joints[XR_HAND_JOINT_PALM_EXT].place, glm::dvec2(kPictureMetres), eye);
+}
+
+TexelPicture drawHand(const xr::HandJoints& joints, const Strip& place, const glm::dvec3& eye, const TexelLayout& layout) {
+    static const std::vector<Bone> bones = makeBones();
+    TexelPicture picture{kHandPicturePx, {}};
+    const glm::dvec2 size(picture.size_px), texels_per_metre = size / place.size_m;
+    const Pose picture_from_room = inverse(place.room_from_strip);
+    const glm::dvec3 eye_there = transform(picture_from_room, eye);
+    std::array<SeenJoint, XR_HAND_JOINT_COUNT_EXT> seen{};
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        // Through the picture's plane, z = 0; the eye is before it, at negative z.
+        const glm::dvec3 joint = transform(picture_from_room, joints[i].place);
+        const double depth_m = std::max(joint.z - eye_there.z, 0.02), growth = -eye_there.z / depth_m;
+        const glm::dvec2 at = glm::dvec2(eye_there) + growth * (glm::dvec2(joint) - glm::dvec2(eye_there));
+        const double radius_m = std::max(joints[i].radius_m, kLeastRadiusMetres);
+        seen[i] = {at * texels_per_metre + 0.5 * size, radius_m * growth * texels_per_metre.x, joint.z * texels_per_metre.x};
+    }
+    std::vector<Hit> hits(std::size_t{picture.size_px.x} * picture.size_px.y);
+    for (const Bone& bone : bones) { drawBone(seen[bone.from], seen[bone.to], picture.size_px, hits); }
+    picture.texels.reserve(hits.size());
+    for (const Hit& hit : hits) { picture.texels.push_back(texelOf(hit.brightness * kSkinLight, hit.alpha, layout)); }
+    return picture;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,106 @@
+// Choosing, uploading and laying out the small pictures of the room.
+#include "app/view/room/room_things.h"
+
+#include "app/view/room/vignette.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
+// A controller of no particular make: a handle in the fist, and a knob before it.
+constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
+
+}  // namespace
+
+RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format) : layout_(texelLayoutOf(format)) {
+    const TexelPicture sheet = drawSprites(layout_);
+    sheet_ = xr::Swapchain(session, "what hangs in the room", sheet.size_px, format, xr::ImageUse::kDraw);
+    const std::uint64_t bytes = sheet.texels.size() * sizeof(std::uint32_t);
+    const Buffer upload(context, "what hangs in the room", bytes, MemoryKind::kUpload);
+    std::ranges::copy(sheet.texels, upload.mapped<std::uint32_t>().begin());
+    Commands commands(context);
+    commands.begin();
+    commands.copyToImage(upload, sheet_.acquire(), sheet.size_px, vk::ImageAspectFlagBits::eColor);
+    commands.submitAndWait();
+    sheet_.release();
+    if (!session.instance().tracksHands()) { return; }
+    for (HandImage& hand : hands_) {
+        hand.images = xr::Swapchain(session, "a hand", kHandPicturePx, format, xr::ImageUse::kDraw);
+        hand.texels = Buffer(context, "a hand", std::uint64_t{kHandPicturePx.x} * kHandPicturePx.y * sizeof(std::uint32_t));
+    }
+}
+
+void RoomThings::add(Sprite sprite, const Strip& strip) {
+    const SpritePlace place = placeOf(sprite);
+    quads_.push_back({strip.room_from_strip, strip.size_m, &sheet_, place.from_px, place.size_px});
+}
+
+void RoomThings::add(Sprite sprite, const std::optional<Strip>& strip) {
+    if (strip) { add(sprite, *strip); }
+}
+
+void RoomThings::choose(const RoomSight& sight) {
+    quads_.clear();
+    vignette_.reset();
+    if (sight.vignette_m) {
+        const SpritePlace place = placeOf(Sprite::kVignette);
+        vignette_ = xr::LayerQuad{{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}},
+                                  glm::dvec2(*sight.vignette_m),
+                                  &sheet_,
+                                  place.from_px,
+                                  place.size_px,
+                                  true};
+    }
+    for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
+    for (const OverlayPanel::Ray& ray : sight.rays) { add(ray.fades ? Sprite::kFadingRay : Sprite::kRay, ray.strip); }
+    const std::vector<glm::dvec3>& arc = sight.teleport.arc;
+    for (std::size_t i = 0; i + 1 < arc.size(); ++i) { add(Sprite::kRay, stripBetween(arc[i], arc[i + 1], kArcWidthMetres, sight.eye)); }
+    if (sight.teleport.target) {
+        add(Sprite::kTarget, lying(*sight.teleport.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres));
+    }
+}
+
+void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
+    if (hand.joints && image.texels.bytes() > 0) {
+        const Strip place = handPicturePlace(*hand.joints, eye);
+        image.picture = drawHand(*hand.joints, place, eye, layout_);
+        image.now = image.images.acquire();
+        quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx});
+    } else if (hand.grip) {
+        const auto along = [&](double metres) { return transform(*hand.grip, glm::dvec3(0.0, 0.0, metres)); };
+        const Strip knob = facing(along(kHandleAheadMetres), glm::dvec2(kKnobMetres), eye);
+        const std::optional<Strip> handle = stripBetween(along(-kHandleBehindMetres), along(kHandleAheadMetres), kHandleWidthMetres, eye);
+        // The farther one first.
+        const bool knob_is_behind = glm::distance(along(kHandleAheadMetres), eye) > glm::distance(along(-kHandleBehindMetres), eye);
+        if (knob_is_behind) { add(Sprite::kKnob, knob); }
+        add(Sprite::kHandle, handle);
+        if (!knob_is_behind) { add(Sprite::kKnob, knob); }
+    }
+}
+
+void RoomThings::record(Commands& commands) {
+    for (HandImage& hand : hands_) {
+        if (!hand.now) { continue; }
+        commands.update(hand.texels, hand.picture.texels.data(), hand.texels.bytes());
+        commands.copyToImage(hand.texels, hand.now, kHandPicturePx, vk::ImageAspectFlagBits::eColor);
+    }
+}
+
+void RoomThings::release() {
+    for (HandImage& hand : hands_) {
+        if (std::exchange(hand.now, nullptr)) { hand.images.release(); }
+    }
+}
+
+void RoomThings::addBehindPanel(xr::Layers& layers) const {
+    if (vignette_) { layers.addQuad(*vignette_); }
+}
+
+void RoomThings::addBeforePanel(xr::Layers& layers) const {
+    for (const xr::LayerQuad& quad : quads_) { layers.addQuad(quad); }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,94 @@
+// Small frames that nobody draws.
+#include "app/view/scenes/kernels_ahead.h"
+
+#include "app/options/modes.h"
+#include "engine/error.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+// The governor's shares of the resolution, each way.
+constexpr std::array kShares{1.0, 0.8, 0.6, 0.4};
+
+std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
+    Eye middle{};
+    middle.size_px = {width_px, 16};  // kernels depend on how wide a picture is alone
+    middle.intrinsics = intrinsicsFromFovX(1.5, middle.size_px);
+    std::array<Eye, 2> eyes = stereoPair(middle, 0.063);
+    if (canted) { eyes[kRight].world_from_camera.orientation = glm::angleAxis(0.1, glm::dvec3(0.0, 1.0, 0.0)); }
+    return eyes;
+}
+
+// Of widths with the same steps one is enough, see 8e.
+std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
+    std::vector<std::uint32_t> widths, steps;
+    for (const double share : kShares) {
+        const auto width = std::max(static_cast<std::uint32_t>(share * width_px), 16u);
+        const std::uint32_t its = std::min((width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep, gpu::kMostRowSteps + 1);
+        if (std::ranges::find(steps, its) != steps.end()) { continue; }
+        steps.push_back(its);
+        widths.push_back(width);
+    }
+    return widths;
+}
+
+// What may come up without a click: the method that was chosen, and what the governor has in its place.
+std::vector<Mode> modesAhead(Mode chosen) { return reprojects(chosen) ? std::vector{chosen, Mode::kShared} : std::vector{chosen}; }
+
+// A method in all its variants, for eyes such as these.
+void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<const Eye> eyes) {
+    const auto seen = settings.mode == Mode::kMono ? eyes.first(1) : eyes;
+    small.makeKernels(seen, settings);
+    FrameSettings other = settings;
+    if (settings.mode == Mode::kPaper) {
+        other.stereo.center_rois = !settings.stereo.center_rois;
+    } else if (settings.mode == Mode::kPredicted) {
+        other.gazes = {Gaze{}, Gaze{}};
+    } else if (settings.mode == Mode::kShared) {
+        other.order = settings.order == Order::kDepth ? Order::kDistance : Order::kDepth;
+    } else {
+        return;
+    }
+    small.makeKernels(seen, other);
+}
+
+void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptions& camera, const FramesAhead& ahead,
+                   const std::function<void()>& between) {
+    const glm::uvec2 tiles = tilesOf({width_px, 16});
+    std::vector<std::uint8_t> hidden(std::size_t{tiles.x} * tiles.y, 0);
+    hidden[0] = 1;
+    for (unsigned variant = 0; variant < 4; ++variant) {
+        const bool canted = (variant & 1) != 0, hides = (variant & 2) != 0;
+        const std::array<Eye, 2> eyes = smallEyes(width_px, canted);
+        for (const Mode mode : modesAhead(ahead.stereo.mode)) {
+            between();
+            FrameSettings settings = frameSettings(camera, ahead.stereo);
+            settings.mode = mode;
+            settings.half_floats = true;
+            settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
+            settings.keep_classes = ahead.tint;
+            settings.square_boxes = false;
+            // One eye's picture for both is seen through either lens.
+            if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
+            makeKernelsOf(small, settings, eyes);
+        }
+    }
+}
+
+}  // namespace
+
+void makeKernelsAhead(const Context& context, const GpuScene& scene, StereoFrame& frame, const CameraOptions& camera,
+                      const FramesAhead& ahead, const std::function<void()>& between) {
+    StereoFrame small(context, scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    try {
+        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) { makeKernelsAt(width, small, camera, ahead, between); }
+    } catch (const Error&) {}  // said when a frame wants it
+    frame.takeKernels(small);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,78 @@
+// Looking into folders.
+#include "app/view/scenes/scene_list.h"
+
+#include "app/view/scenes/natural_order.h"
+#include "app/view/scenes/view_scenes.h"
+#include "engine/platform.h"
+#include "engine/scene/procedural.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string troubleOf(const fs::path& place) {
+    std::error_code error;
+    if (!fs::exists(place, error)) { return error ? error.message() : "is not there"; }
+    if (fs::is_directory(place, error)) {
+        static_cast<void>(fs::directory_iterator(place, error));
+        return error ? error.message() : "";
+    }
+    std::string reason;
+    return openRegularFile(place, reason) ? "" : reason;
+}
+
+SceneList listBuiltinScenes() {
+    SceneList list{"Built-in scenes", {}, {}, {}};
+    for (const BuiltinInfo& info : listBuiltins()) {
+        list.entries.push_back({std::string(info.name), "builtin:" + std::string(info.name), false, {}});
+    }
+    return list;
+}
+
+// Without a slash at its end, which would be a name of its own.
+fs::path wholePath(const fs::path& place) {
+    std::error_code ignored;
+    fs::path whole = fs::absolute(place, ignored).lexically_normal();
+    return whole.has_filename() || !whole.has_relative_path() ? whole : whole.parent_path();
+}
+
+}  // namespace
+
+std::string folderOf(const std::string& scene) { return isBuiltin(scene) ? kBuiltinFolder : wholePath(scene).parent_path().string(); }
+
+SceneList listFolder(const std::string& folder) {
+    if (folder == kBuiltinFolder) { return listBuiltinScenes(); }
+    const fs::path whole = wholePath(folder);
+    SceneList list{whole.string(), whole.has_relative_path() ? whole.parent_path().string() : "", {}, {}};
+    std::error_code error;
+    for (fs::directory_iterator entry(whole, error), end; !error && entry != end; entry.increment(error)) {
+        const fs::path& place = entry->path();
+        const std::string name = place.filename().string();
+        std::error_code ignored;
+        const bool is_scene = looksLikeScene(place), is_folder = !is_scene && fs::is_directory(place, ignored);
+        if (name.starts_with('.') || (!is_scene && !is_folder)) { continue; }
+        list.entries.push_back({name, place.string(), is_folder, troubleOf(place)});
+    }
+    if (error) { list.trouble = error.message(); }
+    std::ranges::sort(list.entries, [](const SceneEntry& a, const SceneEntry& b) {
+        return a.is_folder != b.is_folder ? a.is_folder : comesBefore(a.name, b.name);
+    });
+    return list;
+}
+
+SceneList listScenes(const std::string& title, const std::vector<std::string>& scenes) {
+    SceneList list{title, {}, {}, {}};
+    for (const std::string& scene : scenes) {
+        const bool builtin = isBuiltin(scene);
+        list.entries.push_back({builtin ? scene : wholePath(scene).filename().string(), scene, false, builtin ? "" : troubleOf(scene)});
+    }
+    return list;
+}
+
+}  // namespace binosplat

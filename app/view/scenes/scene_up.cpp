@@ -1,0 +1,76 @@
+// From cameras, or from the floor.
+#include "app/view/scenes/scene_up.h"
+
+#include "engine/error.h"
+#include "engine/setup/camera_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+// Splats that are looked at, at most.
+constexpr std::size_t kMostSplats = 262144;
+// A splat counts as so many median ones at most: the largest are hills and sky.
+constexpr double kMostMedians = 4.0;
+
+std::filesystem::path cameraFileOf(const std::filesystem::path& source) {
+    std::filesystem::path whole = std::filesystem::absolute(source).lexically_normal();
+    if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
+    const std::filesystem::path folder = whole.parent_path();
+    const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
+    return (is_trained ? folder.parent_path().parent_path() : folder) / "cameras.json";
+}
+
+// Empty where there are none, or they look every way.
+std::optional<glm::dvec3> upOfCameras(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) { return std::nullopt; }
+    try {
+        glm::dvec3 sum(0.0);
+        const std::vector<FileCamera> cameras = readCameraFile(file);
+        for (const FileCamera& camera : cameras) { sum += camera.eye.world_from_camera.orientation * glm::dvec3(0.0, -1.0, 0.0); }
+        if (glm::length(sum) > 0.5 * static_cast<double>(cameras.size())) { return glm::normalize(sum); }
+    } catch (const Error&) {}  // the scene may well be without
+    return std::nullopt;
+}
+
+}  // namespace
+
+glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
+    const std::size_t step = scene.size() / kMostSplats + 1;
+    const auto areaOf = [&](std::size_t i) { return static_cast<double>(scene.scales[i].x) * static_cast<double>(scene.scales[i].y); };
+    std::vector<double> areas;
+    for (std::size_t i = 0; i < scene.size(); i += step) { areas.push_back(areaOf(i)); }
+    if (areas.empty()) { return glm::normalize(usual); }
+    const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::nth_element(areas.begin(), median, areas.end());
+    glm::dvec3 up = glm::normalize(usual);
+    for (const double reach_deg : {45.0, 30.0, 20.0, 15.0, 10.0, 10.0}) {
+        const double least_cosine = std::cos(glm::radians(reach_deg));
+        glm::dvec3 sum(0.0);
+        for (std::size_t i = 0; i < scene.size(); i += step) {
+            const glm::dvec3 normal = glm::dquat(scene.rotations[i]) * glm::dvec3(0.0, 0.0, 1.0);
+            const double cosine = glm::dot(normal, up);
+            if (!(std::abs(cosine) >= least_cosine)) { continue; }
+            const double weight = static_cast<double>(scene.opacities[i]) * std::min(areaOf(i), kMostMedians * *median);
+            sum += std::copysign(weight, cosine) * normal;
+        }
+        const double length = glm::length(sum);
+        if (!(length > 0.0) || !std::isfinite(length)) { return glm::normalize(usual); }
+        up = sum / length;
+    }
+    return up;
+}
+
+glm::dvec3 upOfScene(const Scene& scene, const std::filesystem::path& source, const glm::dvec3& usual) {
+    if (isBuiltin(scene.name)) { return glm::normalize(usual); }
+    if (const auto up = upOfCameras(cameraFileOf(source))) { return *up; }
+    return upOfFloor(scene, usual);
+}
+
+}  // namespace binosplat

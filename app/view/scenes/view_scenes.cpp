@@ -1,0 +1,62 @@
+// Looking about in a folder.
+#include "app/view/scenes/view_scenes.h"
+
+#include "app/view/scenes/natural_order.h"
+#include "engine/scene/procedural.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+bool looksLikeScene(const fs::path& path) {
+    static constexpr std::array<std::string_view, 4> kExtensions{".ply", ".splat", ".spz", ".sog"};
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) { return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored); }
+    std::string extension = path.extension().string();
+    for (char& letter : extension) {
+        if (letter >= 'A' && letter <= 'Z') { letter = static_cast<char>(letter - 'A' + 'a'); }
+    }
+    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+std::vector<std::string> scenesBeside(const std::string& scene) {
+    std::vector<std::string> scenes;
+    if (isBuiltin(scene)) {
+        for (const BuiltinInfo& info : listBuiltins()) { scenes.push_back("builtin:" + std::string(info.name)); }
+    } else {
+        fs::path place = scene;
+        if (!place.has_filename()) { place = place.parent_path(); }
+        const fs::path folder = place.has_parent_path() ? place.parent_path() : ".";
+        std::error_code ignored;
+        for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+            if (!entry.path().filename().string().starts_with('.') && looksLikeScene(entry.path())) {
+                scenes.push_back((place.parent_path() / entry.path().filename()).string());
+            }
+        }
+        if (std::ranges::find(scenes, place.string()) == scenes.end()) { scenes.push_back(place.string()); }
+    }
+    std::ranges::sort(scenes, comesBefore);
+    return scenes;
+}
+
+std::string sceneBeside(const std::string& scene, int step) {
+    const std::vector<std::string> scenes = scenesBeside(scene);
+    std::filesystem::path place = scene;
+    if (!isBuiltin(scene) && !place.has_filename()) { place = place.parent_path(); }
+    const auto found = std::ranges::find(scenes, place.string());
+    const auto count = static_cast<std::ptrdiff_t>(scenes.size());
+    if (count == 0) { return scene; }
+    const std::ptrdiff_t at = found == scenes.end() ? 0 : found - scenes.begin();
+    return scenes[static_cast<std::size_t>(((at + step) % count + count) % count)];
+}
+
+}  // namespace binosplat

@@ -1,0 +1,110 @@
+// Placing the scene about the wearer.
+#include "app/view/wearer/placement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+const glm::dvec3 kDown(0.0, 1.0, 0.0);
+// Hands nearer to one another than this say nothing about size, and level ones nearer than this nothing about direction.
+constexpr double kLeastSpanMetres = 0.02;
+constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+
+// About the vertical; x turns towards z.
+glm::dquat turnAboutDown(double angle_rad) { return glm::angleAxis(angle_rad, kDown); }
+
+// The shortest one that brings `from` to the direction of `to`.
+glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
+    const glm::dvec3 a = glm::normalize(from), b = glm::normalize(to);
+    const double cosine = glm::dot(a, b);
+    if (cosine > -0.999999) { return glm::normalize(glm::dquat(1.0 + cosine, glm::cross(a, b))); }
+    // Half a turn, about any axis across.
+    const glm::dvec3 across = glm::cross(a, std::abs(a.x) < 0.7 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0));
+    return glm::angleAxis(3.14159265358979323846, glm::normalize(across));
+}
+
+// Of a level direction: 0 ahead, positive to the right.
+double headingOf(const glm::dvec3& direction) { return std::atan2(direction.x, direction.z); }
+
+}  // namespace
+
+glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source) {
+    return target_from_source.scale * (target_from_source.orientation * point_source) + target_from_source.position;
+}
+
+Pose transform(const Similarity& target_from_source, const Pose& pose) {
+    return {glm::normalize(target_from_source.orientation * pose.orientation), transform(target_from_source, pose.position)};
+}
+
+Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c) {
+    return {glm::normalize(a_from_b.orientation * b_from_c.orientation), transform(a_from_b, b_from_c.position),
+            a_from_b.scale * b_from_c.scale};
+}
+
+Similarity startPlacement(const RunOptions& options, const Scene& scene) {
+    const CameraOptions& camera = options.camera;
+    View view = viewOfScene(scene, 60.0);
+    view = {camera.eye.value_or(view.eye), camera.look.value_or(view.look), camera.up.value_or(view.up), view.fov_x_deg};
+    const Pose looking = lookAt(view.eye, view.look, view.up);
+    // The wearer stands upright: gravity is against `up`, whatever the view's tilt.
+    const glm::dvec3 up = glm::normalize(view.up), forward = view.look - view.eye;
+    const glm::dvec3 level = forward - glm::dot(forward, up) * up;
+    return {lookAt(glm::dvec3(0.0), glm::length(level) > 0.0 ? level : looking.orientation * glm::dvec3(0.0, 0.0, 1.0), up).orientation,
+            view.eye, 1.0 / options.metres_per_unit};
+}
+
+Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m) {
+    return compose(scene_from_room, {glm::dquat(1.0, 0.0, 0.0, 0.0), step_m, 1.0});
+}
+
+Similarity turnedBy(const Similarity& scene_from_room, double angle_rad, const glm::dvec3& about) {
+    const glm::dquat turn = turnAboutDown(angle_rad);
+    return compose(scene_from_room, {turn, about - turn * about, 1.0});
+}
+
+Similarity grownBy(const Similarity& scene_from_room, double growth, const glm::dvec3& about) {
+    const double old_from_new = std::clamp(scene_from_room.scale / growth, kLeastScale, kMostScale) / scene_from_room.scale;
+    return compose(scene_from_room, {glm::dquat(1.0, 0.0, 0.0, 0.0), about - old_from_new * about, old_from_new});
+}
+
+Similarity tiltedBy(const Similarity& scene_from_room, const glm::dquat& turn, const glm::dvec3& about) {
+    const glm::dquat old_from_new = glm::conjugate(turn);
+    return compose(scene_from_room, {old_from_new, about - old_from_new * about, 1.0});
+}
+
+Similarity heldBy(const Similarity& scene_from_room, const std::array<glm::dvec3, 2>& from, const std::array<glm::dvec3, 2>& to,
+                  bool tilted) {
+    const glm::dvec3 span_from = from[1] - from[0], span_to = to[1] - to[0];
+    const auto level = [](const glm::dvec3& v) { return glm::dvec3(v.x, 0.0, v.z); };
+    double growth = 1.0, turn = 0.0;
+    if (std::min(glm::length(span_from), glm::length(span_to)) > kLeastSpanMetres) {
+        growth = glm::length(span_from) / glm::length(span_to);
+    }
+    if (std::min(glm::length(level(span_from)), glm::length(level(span_to))) > kLeastSpanMetres) {
+        turn = headingOf(span_from) - headingOf(span_to);
+    }
+    growth = std::clamp(scene_from_room.scale * growth, kLeastScale, kMostScale) / scene_from_room.scale;
+    // The room as it was, seen from the room as it is: `to` must lie where `from` lay.
+    const bool is_free = tilted && std::min(glm::length(span_from), glm::length(span_to)) > kLeastSpanMetres;
+    const glm::dquat old_from_new = is_free ? turnBetween(span_to, span_from) : turnAboutDown(turn);
+    const glm::dvec3 middle_from = 0.5 * (from[0] + from[1]), middle_to = 0.5 * (to[0] + to[1]);
+    return compose(scene_from_room, {old_from_new, middle_from - growth * (old_from_new * middle_to), growth});
+}
+
+Similarity levelledAlong(const Similarity& scene_from_room, const glm::dvec3& up, const glm::dvec3& about) {
+    const glm::dquat scene_from_tilted = turnBetween(scene_from_room.orientation * kDown, -up);
+    const glm::dvec3 fixed = transform(scene_from_room, about);
+    Similarity level{glm::normalize(scene_from_tilted * scene_from_room.orientation), glm::dvec3(0.0), scene_from_room.scale};
+    level.position = fixed - transform(level, about);
+    return level;
+}
+
+glm::dvec3 levelled(const glm::dvec3& forward) {
+    const glm::dvec3 level(forward.x, 0.0, forward.z);
+    return glm::length(level) > 1e-6 ? glm::normalize(level) : glm::dvec3(0.0, 0.0, 1.0);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,24 @@
+// From the headset's eyes in the room to the eyes of a frame in the scene.
+#pragma once
+
+#include "app/view/wearer/placement.h"
+#include "xr/session.h"
+
+#include <array>
+
+namespace binosplat {
+
+// Angles up and down that differ by rounding alone are made equal: rows of parallel eyes are one row then.
+std::array<xr::EyeView, 2> withoutNoise(std::array<xr::EyeView, 2> views);
+
+// Both eyes in room axes. What float32 added to parallel, side-by-side eyes is taken out again, so that they are exactly that: under
+// 2 micrometres and microradians, hundredths of a pixel.
+std::array<Pose, 2> roomFromEyes(const std::array<xr::EyeView, 2>& views);
+
+// The middle between the eyes.
+Pose roomFromHead(const std::array<Pose, 2>& room_from_eyes);
+
+// An eye as frames take it.
+Eye eyeInScene(const Similarity& scene_from_room, const Pose& room_from_eye, const XrFovf& fov, glm::uvec2 size_px);
+
+}  // namespace binosplat

@@ -1,0 +1,108 @@
+// Sticks and grips.
+#include "app/view/wearer/wearer_controls.h"
+
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+constexpr double kWalkMetresPerSecond = 1.5, kRiseMetresPerSecond = 0.8;
+constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
+constexpr double kStickTurns = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
+// Where the runtime knows no floor: below the head of a wearer who stands at the start.
+constexpr double kUsualFloorMetres = 1.6;
+
+// Thumbs push aside a little when they push ahead: the larger part counts alone.
+glm::dvec2 dominantAxis(const glm::dvec2& stick) {
+    return std::abs(stick.x) > std::abs(stick.y) ? glm::dvec2(stick.x, 0.0) : glm::dvec2(0.0, stick.y);
+}
+
+double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0.0 : stick; }
+
+}  // namespace
+
+void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room) {
+    const bool menu = now.hands[kLeft].menu || now.hands[kRight].menu;
+    if (menu && !menu_) {
+        settings.panel = !settings.panel;
+        if (settings.panel) { panel.hangBefore(now.room_from_head); }
+    }
+    menu_ = menu;
+    panel.update(now.hands, settings.panel);
+    walk(now, panel, settings.teleport, scene_from_room);
+    if (settings.teleport) {
+        teleport(now, panel, scene_from_room);
+    } else {
+        aiming_.reset();
+        teleport_ = {};
+    }
+    turn(now, scene_from_room);
+    hold(now, panel, settings.tilt, scene_from_room);
+}
+
+void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room) {
+    const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
+    const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
+    const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
+    const glm::dvec2 left_stick = teleports ? glm::dvec2(0.0) : stickOf(kLeft);
+    const glm::dvec2 walk(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
+    const double rise = withoutShiver(dominantAxis(stickOf(kRight)).y);
+    const glm::dvec3 step_m = kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
+    moves_ = step_m != glm::dvec3(0.0);
+    if (moves_) { scene_from_room = movedBy(scene_from_room, now.step_seconds * step_m); }
+}
+
+void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room) {
+    const auto aims = [&](int h) {
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        // Who aims may pass over the panel.
+        const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
+        const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickTurns);
+        return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
+    };
+    if (aiming_ && !aims(*aiming_)) {
+        // A hand that was lost did not let go.
+        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && teleport_.target) {
+            glm::dvec3 step_m = *teleport_.target - now.room_from_head.position;
+            step_m.y = 0.0;
+            scene_from_room = movedBy(scene_from_room, step_m);
+        }
+        aiming_.reset();
+    }
+    for (const int h : {kRight, kLeft}) {
+        if (!aiming_ && aims(h)) { aiming_ = h; }
+    }
+    teleport_ = {};
+    if (aiming_) { teleport_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
+}
+
+void WearerControls::turn(const WearerNow& now, Similarity& scene_from_room) {
+    const glm::dvec2& stick = now.hands[kRight].stick;
+    const double turn = dominantAxis(stick).x;
+    if (std::abs(turn) > kStickTurns && !turned_) {
+        scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), now.room_from_head.position);
+        turned_ = true;
+    } else if (std::abs(stick.x) < kStickRests) {  // however far it is pushed ahead
+        turned_ = false;
+    }
+}
+
+void WearerControls::hold(const WearerNow& now, const OverlayPanel& panel, bool may_tilt, Similarity& scene_from_room) {
+    std::array<std::optional<glm::dvec3>, 2> holding;
+    for (const int h : {kLeft, kRight}) {
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        if (hand.grabs && hand.grip && !panel.isCarriedBy(h)) { holding[static_cast<std::size_t>(h)] = hand.grip->position; }
+    }
+    // A hand that begins or ends to hold changes who holds, and moves nothing.
+    const bool goes_on = holding[kLeft].has_value() == held_[kLeft].has_value() && holding[kRight].has_value() == held_[kRight].has_value();
+    if (goes_on && holding[kLeft] && holding[kRight]) {
+        scene_from_room = heldBy(scene_from_room, {*held_[kLeft], *held_[kRight]}, {*holding[kLeft], *holding[kRight]}, may_tilt);
+    } else if (goes_on && (holding[kLeft] || holding[kRight])) {
+        const std::size_t h = holding[kLeft] ? kLeft : kRight;
+        scene_from_room = movedBy(scene_from_room, *held_[h] - *holding[h]);
+    }
+    held_ = holding;
+}
+
+}  // namespace binosplat

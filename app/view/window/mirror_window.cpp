@@ -1,0 +1,198 @@
+// GLFW, and what is drawn on its window.
+#include "app/view/window/mirror_window.h"
+
+#include "engine/error.h"
+
+#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr int kHeightPx = 720;
+constexpr double kRadiansPerPixel = 0.004;
+
+using Layout = vk::ImageLayout;
+
+void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
+    const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+    const vk::ImageMemoryBarrier barrier(all, all, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+                                         {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+    const auto stage = vk::PipelineStageFlagBits::eAllCommands;
+    commands.buffer().pipelineBarrier(stage, stage, {}, {}, {}, barrier);
+}
+
+// Of the window: the eye, as wide as high, and the panel beside it.
+int widthOf(const Canvas& canvas) {
+    return kHeightPx + kHeightPx * static_cast<int>(canvas.sizePx().x) / static_cast<int>(canvas.sizePx().y);
+}
+
+// The whole of `from` into the columns [x0, x1) of `to`, as large as its shape allows.
+void blit(Commands& commands, vk::Image from, glm::uvec2 from_px, vk::Image to, int x0, int x1, int height) {
+    const double scale = std::min(static_cast<double>(x1 - x0) / from_px.x, static_cast<double>(height) / from_px.y);
+    const int w = std::max(static_cast<int>(scale * from_px.x), 1), h = std::max(static_cast<int>(scale * from_px.y), 1);
+    const int left = x0 + (x1 - x0 - w) / 2, top = (height - h) / 2;
+    const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0, 1);
+    const std::array source{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(from_px.x), static_cast<int>(from_px.y), 1)};
+    const std::array target{vk::Offset3D(left, top, 0), vk::Offset3D(left + w, top + h, 1)};
+    commands.buffer().blitImage(from, Layout::eTransferSrcOptimal, to, Layout::eTransferDstOptimal,
+                                vk::ImageBlit(layers, source, layers, target), vk::Filter::eLinear);
+}
+
+}  // namespace
+
+std::unique_ptr<WindowSystem> WindowSystem::find() {
+    if (glfwInit() != GLFW_TRUE) { return nullptr; }
+    std::unique_ptr<WindowSystem> system(new WindowSystem());
+    return glfwVulkanSupported() == GLFW_TRUE && !instanceExtensions().empty() ? std::move(system) : nullptr;
+}
+
+WindowSystem::~WindowSystem() { glfwTerminate(); }
+
+std::vector<const char*> WindowSystem::instanceExtensions() {
+    std::uint32_t count = 0;
+    const char** names = glfwGetRequiredInstanceExtensions(&count);
+    return names == nullptr ? std::vector<const char*>{} : std::vector<const char*>(names, names + count);
+}
+
+MirrorWindow::MirrorWindow(const Context& context, const Canvas& canvas)
+    : context_(context), canvas_(canvas), window_(nullptr, glfwDestroyWindow) {
+    check(context.hasDeviceExtension(VK_KHR_SWAPCHAIN_EXTENSION_NAME), "{} has no window pictures", context.deviceName());
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    window_.reset(glfwCreateWindow(widthOf(canvas), kHeightPx, "binosplat", nullptr, nullptr));
+    check(window_ != nullptr, "the window does not open");
+    glfwSetWindowAspectRatio(window_.get(), widthOf(canvas), kHeightPx);
+    // What was let go before the next frame still counts once.
+    glfwSetInputMode(window_.get(), GLFW_STICKY_KEYS, GLFW_TRUE);
+    glfwSetInputMode(window_.get(), GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
+    glfwSetWindowUserPointer(window_.get(), this);
+    glfwSetKeyCallback(window_.get(), [](GLFWwindow* window, int key, int, int action, int) {
+        if (action == GLFW_PRESS) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->pressed_.push_back(key); }
+    });
+    glfwSetScrollCallback(window_.get(), [](GLFWwindow* window, double, double steps) {
+        static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->wheel_ += steps;
+    });
+    glfwSetDropCallback(window_.get(), [](GLFWwindow* window, int count, const char** paths) {
+        if (count > 0) { static_cast<MirrorWindow*>(glfwGetWindowUserPointer(window))->dropped_ = paths[count - 1]; }
+    });
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    const VkResult result = glfwCreateWindowSurface(*context.instance(), window_.get(), nullptr, &surface);
+    check(result == VK_SUCCESS, "the window cannot be drawn on: {}", vk::to_string(vk::Result(result)));
+    pictures_ = std::make_unique<WindowPictures>(context, vk::raii::SurfaceKHR(context.instance(), surface), [this] {
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(window_.get(), &width, &height);
+        return glm::uvec2(width, height);
+    });
+}
+
+MirrorWindow::~MirrorWindow() {
+    const std::lock_guard lock(context_.queueMutex());
+    try {
+        context_.device().waitIdle();
+    } catch (const vk::SystemError&) {}  // a device that is lost draws nothing more
+}
+
+WindowInput MirrorWindow::poll() {
+    glfwPollEvents();
+    const auto pressed = [&](int key) { return glfwGetKey(window_.get(), key) == GLFW_PRESS ? 1.0 : 0.0; };
+    WindowInput input;
+    for (const int key : std::exchange(pressed_, {})) {
+        input.toggle_panel ^= key == GLFW_KEY_TAB;
+        input.reload_shaders |= key == GLFW_KEY_F5;
+        input.recentre |= key == GLFW_KEY_R;
+        input.quit |= key == GLFW_KEY_ESCAPE;
+    }
+    input.dropped = std::exchange(dropped_, {});
+    input.quit |= glfwWindowShouldClose(window_.get()) == GLFW_TRUE;
+    input.walk = {pressed(GLFW_KEY_D) - pressed(GLFW_KEY_A), pressed(GLFW_KEY_Q) - pressed(GLFW_KEY_E),
+                  pressed(GLFW_KEY_W) - pressed(GLFW_KEY_S)};
+    input.turn_rate = pressed(GLFW_KEY_RIGHT) - pressed(GLFW_KEY_LEFT);
+    glm::dvec2 cursor;
+    glfwGetCursorPos(window_.get(), &cursor.x, &cursor.y);
+    // A compositor may make the window another size than was asked for.
+    int width = 0, height = 0;
+    glfwGetWindowSize(window_.get(), &width, &height);
+    cursor *= glm::dvec2(widthOf(canvas_), kHeightPx) / glm::dvec2(std::max(width, 1), std::max(height, 1));
+    const bool down = glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    const double scale = static_cast<double>(canvas_.sizePx().y) / kHeightPx;
+    const glm::dvec2 place = scale * (cursor - glm::dvec2(kHeightPx, 0.0));
+    const glm::dvec2 size(canvas_.sizePx());
+    const double wheel = std::exchange(wheel_, 0.0);
+    const bool is_over = glm::all(glm::greaterThanEqual(place, glm::dvec2(0.0))) && glm::all(glm::lessThan(place, size));
+    // Where another window lies above this one, the mouse is that one's.
+    if (is_over && (down || glfwGetWindowAttrib(window_.get(), GLFW_HOVERED) == GLFW_TRUE)) {
+        input.pointer = {place, down, wheel};
+        input.uses_panel = cursor != cursor_ || down || was_down_ || wheel != 0.0;
+    } else {
+        input.wheel = wheel;
+        // The picture follows the mouse.
+        if (down) { input.turn_rad = kRadiansPerPixel * (cursor_.x - cursor.x); }
+        if (glfwGetMouseButton(window_.get(), GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+            input.tilt_rad = kRadiansPerPixel * glm::dvec2(cursor.x - cursor_.x, cursor_.y - cursor.y);
+        }
+    }
+    cursor_ = cursor;
+    was_down_ = down;
+    return input;
+}
+
+void MirrorWindow::dropEyeImage() {
+    eye_ = vk::raii::Image(nullptr);
+    eye_memory_ = vk::raii::DeviceMemory(nullptr);
+}
+
+void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
+    using Usage = vk::ImageUsageFlagBits;
+    const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
+    dropEyeImage();
+    eye_ = vk::raii::Image(context_.device(),
+                           vk::ImageCreateInfo({}, vk::ImageType::e2D, blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm,
+                                               {size_px.x, size_px.y, 1}, 1, 1, vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                               Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
+    const auto needs = eye_.getMemoryRequirements();
+    eye_memory_ = vk::raii::DeviceMemory(
+        context_.device(),
+        vk::MemoryAllocateInfo(needs.size, context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal)));
+    eye_.bindMemory(*eye_memory_, 0);
+}
+
+void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
+    // Of another size than the frame before, which is over then.
+    if (eye_px_ != size_px) {
+        eye_px_ = size_px;
+        try {
+            makeEyeImage(size_px, format);
+        } catch (const vk::OutOfDeviceMemoryError&) { dropEyeImage(); } catch (const vk::OutOfHostMemoryError&) {
+            dropEyeImage();  // the window shows the panel alone: the headset matters more
+        }
+    }
+    if (!*eye_) { return; }
+    commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
+    changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
+}
+
+void MirrorWindow::record(Commands& commands) {
+    const vk::Image target = pictures_->current();
+    if (!target) { return; }
+    const int width = static_cast<int>(pictures_->sizePx().x), height = static_cast<int>(pictures_->sizePx().y);
+    changeLayout(commands, target, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const vk::ClearColorValue black(std::array<float, 4>{0.0f, 0.0f, 0.0f, 1.0f});
+    commands.buffer().clearColorImage(target, Layout::eTransferDstOptimal, black,
+                                      vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
+    changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
+    const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
+    if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, split, height); }
+    if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
+    changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,71 @@
+// A window on the desktop: what the dominant eye sees, and the panel beside it for the mouse.
+#pragma once
+
+#include "app/view/panel/canvas.h"
+#include "app/view/window/window_input.h"
+#include "app/view/window/window_pictures.h"
+
+#include <glm/glm.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace binosplat {
+
+// GLFW, where there is a display. Before the Vulkan instance, which needs its extensions.
+class WindowSystem {
+public:
+    // Null where there is no display, or none that Vulkan can show on.
+    static std::unique_ptr<WindowSystem> find();
+    WindowSystem(const WindowSystem&) = delete;
+    WindowSystem& operator=(const WindowSystem&) = delete;
+    ~WindowSystem();
+
+    [[nodiscard]] static std::vector<const char*> instanceExtensions();
+
+private:
+    WindowSystem() = default;
+};
+
+class MirrorWindow {
+public:
+    // Throws Error if the device cannot show on the display.
+    MirrorWindow(const Context& context, const Canvas& canvas);
+    MirrorWindow(const MirrorWindow&) = delete;
+    MirrorWindow& operator=(const MirrorWindow&) = delete;
+    ~MirrorWindow();
+
+    [[nodiscard]] WindowInput poll();
+    // Before anything is recorded: a picture to draw on, if one is free; the headset does not wait for it.
+    void acquire() { pictures_->acquire(); }
+    // Between begin and submit: keeps an eye's presented pixels, of an image of `format`.
+    void keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format);
+    // Between begin and submit, once the canvas is drawn; also more than once.
+    void record(Commands& commands);
+    // What the submission signals for show(); null where no picture was acquired.
+    [[nodiscard]] vk::Semaphore drawn() const { return pictures_->drawn(); }
+    // After submit: shows the picture once it is drawn.
+    void show() { pictures_->show(); }
+
+private:
+    void dropEyeImage();
+    void makeEyeImage(glm::uvec2 size_px, vk::Format format);
+
+    const Context& context_;
+    const Canvas& canvas_;
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
+    std::unique_ptr<WindowPictures> pictures_;
+    vk::raii::DeviceMemory eye_memory_{nullptr};
+    vk::raii::Image eye_{nullptr};
+    glm::uvec2 eye_px_{0, 0};
+    glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
+    bool was_down_ = false;
+    std::vector<int> pressed_;  // GLFW's keys, since the last poll
+    std::string dropped_;       // likewise
+    double wheel_ = 0.0;        // likewise
+};
+
+}  // namespace binosplat

@@ -1,0 +1,114 @@
+// A Vulkan swapchain that nobody waits for.
+#include "app/view/window/window_pictures.h"
+
+#include "app/view/window/window_surface.h"
+#include "engine/error.h"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t kLongestWaitNs = 1'000'000'000;  // for a display that has gone away
+
+}  // namespace
+
+WindowPictures::WindowPictures(const Context& context, vk::raii::SurfaceKHR surface, std::function<glm::uvec2()> window_size_px)
+    : context_(context), surface_(std::move(surface)), window_size_px_(std::move(window_size_px)) {
+    check(context.physicalDevice().getSurfaceSupportKHR(context.queueFamily(), *surface_) == VK_TRUE, "{} cannot show on this display",
+          context.deviceName());
+    acquired_fence_ = context.device().createFence({});
+    make();
+}
+
+WindowPictures::~WindowPictures() {
+    if (hold_ != Hold::kPromised) { return; }
+    try {
+        static_cast<void>(context_.device().waitForFences(*acquired_fence_, VK_TRUE, kLongestWaitNs));
+    } catch (const vk::SystemError&) {}
+}
+
+void WindowPictures::make() {
+    const vk::raii::PhysicalDevice& device = context_.physicalDevice();
+    const std::optional<vk::SurfaceFormatKHR> format = windowFormat(device.getSurfaceFormatsKHR(*surface_));
+    check(format.has_value(), "this display offers no 8-bit UNORM format");
+    // The headset sets the pace.
+    const auto modes = device.getSurfacePresentModesKHR(*surface_);
+    vk::PresentModeKHR mode = vk::PresentModeKHR::eFifo;
+    for (const auto better : {vk::PresentModeKHR::eImmediate, vk::PresentModeKHR::eMailbox}) {
+        if (std::ranges::find(modes, better) != modes.end()) { mode = better; }
+    }
+    const auto able = device.getSurfaceCapabilitiesKHR(*surface_);
+    check(bool(able.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst), "this display's images cannot be copied to");
+    window_px_ = window_size_px_();
+    const auto extent = windowExtent(able, {window_px_.x, window_px_.y});
+    is_stale_ = !extent;
+    if (!extent) { return; }
+    size_px_ = {extent->width, extent->height};
+    const std::uint32_t most = able.maxImageCount == 0 ? UINT32_MAX : able.maxImageCount;
+    vk::SwapchainCreateInfoKHR info({}, *surface_, std::min(able.minImageCount + 1, most), format->format, format->colorSpace, *extent, 1,
+                                    vk::ImageUsageFlagBits::eTransferDst);
+    info.preTransform = able.currentTransform;
+    info.compositeAlpha = windowAlpha(able.supportedCompositeAlpha);
+    info.presentMode = mode;
+    info.oldSwapchain = *swapchain_;
+    swapchain_ = vk::raii::SwapchainKHR(context_.device(), info);
+    images_.clear();
+    drawn_.clear();
+    for (const VkImage image : swapchain_.getImages()) {
+        images_.emplace_back(image);
+        drawn_.push_back(context_.device().createSemaphore({}));
+    }
+}
+
+bool WindowPictures::isFree() const { return acquired_fence_.getStatus() == vk::Result::eSuccess; }
+
+void WindowPictures::acquire() {
+    // A promise is waited for before anything else is asked for, but not by the headset.
+    if (hold_ == Hold::kPromised && isFree()) { takePromised(); }
+    if (hold_ == Hold::kPromised) { return; }
+    // Not every display says that its window has another size (Wayland does not).
+    is_stale_ = is_stale_ || window_px_ != window_size_px_();
+    if (is_stale_) {
+        hold_ = Hold::kNone;
+        is_remade_ = window_px_ == window_size_px_();
+        // What was presented is not written to again.
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+        make();
+    }
+    if (is_stale_ || hold_ == Hold::kOurs) { return; }  // put away; or of a frame that was given up
+    try {
+        const auto [result, index] = swapchain_.acquireNextImage(0, {}, *acquired_fence_);
+        if (result != vk::Result::eSuccess && result != vk::Result::eSuboptimalKHR) { return; }  // none is free
+        index_ = index;
+        hold_ = Hold::kPromised;
+    } catch (const vk::OutOfDateKHRError&) {
+        is_stale_ = true;
+        return;
+    }
+    if (isFree()) { takePromised(); }
+}
+
+void WindowPictures::takePromised() {
+    context_.device().resetFences(*acquired_fence_);
+    hold_ = Hold::kOurs;
+}
+
+void WindowPictures::show() {
+    if (hold_ != Hold::kOurs) { return; }
+    hold_ = Hold::kNone;
+    const vk::SwapchainKHR swapchain = *swapchain_;
+    const vk::Semaphore drawn = *drawn_[index_];
+    try {
+        const std::lock_guard lock(context_.queueMutex());
+        const auto result = context_.queue().presentKHR(vk::PresentInfoKHR(drawn, swapchain, index_));
+        is_stale_ = result == vk::Result::eSuboptimalKHR && !is_remade_;
+        is_remade_ = is_remade_ && result == vk::Result::eSuboptimalKHR;
+    } catch (const vk::OutOfDateKHRError&) { is_stale_ = true; }
+}
+
+}  // namespace binosplat
