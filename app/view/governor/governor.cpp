@@ -26,19 +26,15 @@ constexpr double kGuessedRatio = 0.75, kWorstGuess = 1.5;
 // Pixels are not all of a frame: fewer of them save less than their share, more of them are taken to cost all of it.
 constexpr double kPowerDown = 1.2, kPowerUp = 2.0;
 constexpr int kSettlingFrames = 1;
-constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kWindow = 45, kOftenOver = 5, kOftenOf = 10, kTrialFrames = 8;
+constexpr std::size_t kOverAtOnce = 3, kOverAgain = 2, kTrialFrames = 8;
+constexpr std::size_t kWindow = MissedDisplays::kWindow, kOftenOver = MissedDisplays::kOftenOver, kOftenOf = MissedDisplays::kOftenOf;
 constexpr double kBetweenChangesSeconds = 1.0, kProvenSeconds = 3.0, kFirstBlockSeconds = 10.0, kLongestBlockSeconds = 300.0;
 constexpr double kForgetRatioSeconds = 30.0, kDrift = 0.15;
-// A frame that comes late once may be anybody's doing, however late it is: it counts as one period. Where periods are irregular a frame is
-// early for one that was late, so that a sum stays below one.
-constexpr double kMostLostByOne = 1.0, kLostSlack = 0.5;
-// Where displays are missed less than what was used is room; once a while has passed without a miss there is more each second.
-constexpr double kLowerShare = 0.85, kRaisedPerSecond = 1.1;
-// Where the least settings miss no fewer displays than the best ones did the misses are others' doing. They are left alone for so long.
-// What paces frames may follow what they take only after some.
+// Where the least settings miss no fewer displays than the best ones did the misses are others' doing. What paces frames may follow what
+// they take only after some.
 constexpr std::size_t kBlameFrames = 20;
 constexpr const char* kOthersMiss = "displays are missed whatever is drawn";
-constexpr double kSameLost = 0.25, kFirstUnheededSeconds = 60.0, kLongestUnheededSeconds = 600.0;
+constexpr double kSameLost = 0.25;
 constexpr double kScaleStep = 0.1;
 
 double leastScale(Quality quality) {
@@ -88,11 +84,8 @@ void Governor::forget() {
     trial_from_.reset();
     lossless_ms_ = 0.0;
     beaten_ = false;
-    share_ = 1.0;
-    held_until_s_ = hold_s_ = 0.0;
-    is_raised_ = false;
+    misses_.forget();
     before_misses_.reset();
-    heeds_from_s_ = unheeded_s_ = 0.0;
     why_.clear();
     sentence_.clear();
 }
@@ -121,7 +114,7 @@ void Governor::buildLadder() {
 
 void Governor::clearRecent() {
     recent_ms_.clear();
-    recent_lost_.clear();
+    misses_.clearRecent();
     recent_ratios_.clear();
 }
 
@@ -137,72 +130,19 @@ std::size_t Governor::countOver(std::size_t of_last) const {
         std::count_if(recent_ms_.end() - static_cast<std::ptrdiff_t>(count), recent_ms_.end(), [&](double ms) { return ms > period_ms_; }));
 }
 
-double Governor::lostIn(std::size_t last) const {
-    const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
-    return std::accumulate(recent_lost_.end() - count, recent_lost_.end(), 0.0,
-                           [](double sum, double lost) { return sum + std::min(lost, kMostLostByOne); });
-}
-
-double Governor::usuallyLost(std::size_t last) const {
-    const auto count = static_cast<std::ptrdiff_t>(std::min(last, recent_lost_.size()));
-    std::vector<double> sorted(recent_lost_.end() - count, recent_lost_.end());
-    std::ranges::sort(sorted);
-    const auto usual = static_cast<std::ptrdiff_t>(sorted.size() - sorted.size() / 3);
-    return std::accumulate(sorted.begin(), sorted.begin() + usual, 0.0) / static_cast<double>(std::max<std::ptrdiff_t>(usual, 1));
-}
-
-bool Governor::missesAtOnce() const {
-    const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
-    return recent_lost_.size() >= at_once && lostIn(at_once) >= static_cast<double>(at_once) - kLostSlack;
-}
-
-bool Governor::missesDisplays() const {
-    return missesAtOnce() || (recent_lost_.size() >= kOftenOf && lostIn(kOftenOf) >= static_cast<double>(kOftenOver) - kLostSlack);
-}
-
-void Governor::lowerShare(double now_ms) {
-    if (roomMs() < now_ms) { return; }  // it is less already
-    share_ = kLowerShare * now_ms / period_ms_;
-    // As with steps upwards: what comes too early comes later the next time.
-    hold_s_ = is_raised_ ? std::min(2.0 * hold_s_, kLongestBlockSeconds) : std::max(hold_s_, kFirstBlockSeconds);
-    is_raised_ = false;
-}
-
 bool Governor::missesWhateverIsDrawn() const {
-    return beaten_ && before_misses_ && before_misses_->level != current_ && recent_lost_.size() >= kBlameFrames &&
-           usuallyLost(kOftenOf) >= before_misses_->lost - kSameLost;
+    return beaten_ && before_misses_ && before_misses_->level != current_ && misses_.framesSeen() >= kBlameFrames &&
+           misses_.usuallyLost(MissedDisplays::kOftenOf) >= before_misses_->lost - kSameLost;
 }
 
 void Governor::leaveMissesAlone() {
-    unheeded_s_ = std::clamp(2.0 * unheeded_s_, kFirstUnheededSeconds, kLongestUnheededSeconds);
-    heeds_from_s_ = now_s_ + unheeded_s_;
-    share_ = 1.0;
-    hold_s_ = 0.0;
-    is_raised_ = beaten_ = false;
+    misses_.leaveAlone();
+    beaten_ = false;
     downs_ = 0;
     left_.reset();
     const Before before = *std::exchange(before_misses_, std::nullopt);
     current_ = before.level;
     step(current_, before.ms, kOthersMiss);
-}
-
-void Governor::lookAfterMisses() {
-    if (recent_lost_.back() > kLostSlack) { missed_s_ = now_s_; }
-    if (unheeded_s_ > 0.0 && now_s_ - missed_s_ > unheeded_s_) { unheeded_s_ = 0.0; }
-    if (leavesMissesAlone() && recent_lost_.size() == kWindow && lostIn(kWindow) < kLostSlack) { heeds_from_s_ = now_s_; }  // it is over
-    if (!leavesMissesAlone() && why_ == kOthersMiss) { why_.clear(); }
-}
-
-void Governor::raiseShare() {
-    if (now_s_ < held_until_s_) { return; }
-    if (share_ >= 1.0) {  // and it was not too early
-        hold_s_ = 0.0;
-        is_raised_ = false;
-        return;
-    }
-    share_ = std::min(share_ * std::pow(kRaisedPerSecond, 1e-3 * period_ms_), 1.0);
-    is_raised_ = true;
-    if (share_ == 1.0) { held_until_s_ = now_s_ + hold_s_; }  // of all there is, once more
 }
 
 double Governor::expectedMs(std::size_t level, double now_ms) const {
@@ -301,23 +241,24 @@ void Governor::measure(const GovernedFrame& frame) {
     }
     recent_ms_.push_back(frame.gpu_ms);
     if (recent_ms_.size() > kWindow) { recent_ms_.pop_front(); }
-    recent_lost_.push_back(frame.lost_periods);
-    if (recent_lost_.size() > kWindow) { recent_lost_.pop_front(); }
+    misses_.add(frame.lost_periods, now_s_);
+    if (!misses_.areLeftAlone() && why_ == kOthersMiss) { why_.clear(); }
     if (frame.lossless_ms > 0.0) { recent_ratios_.push_back(frame.gpu_ms / frame.lossless_ms); }
     if (recent_ratios_.size() > kWindow) { recent_ratios_.pop_front(); }
 
     const std::size_t at_once = downs_ > 0 ? kOverAgain : kOverAtOnce;
     const bool takes_too_long = countOver(at_once) == at_once || (recent_ms_.size() >= kOftenOf && countOver(kOftenOf) >= kOftenOver);
-    lookAfterMisses();
-    const bool is_over = takes_too_long || (!leavesMissesAlone() && missesDisplays());
+    const bool is_over = takes_too_long || (!misses_.areLeftAlone() && misses_.come(at_once));
     const double now_ms = median(is_over ? at_once : kWindow);
     learn(now_ms, is_over);
     if (is_over) {
         if (!takes_too_long) {
-            if (!before_misses_) { before_misses_ = {current_, now_ms, usuallyLost(missesAtOnce() ? kOverAtOnce : kOftenOf)}; }
-            lowerShare(now_ms);
+            if (!before_misses_) {
+                before_misses_ = {current_, now_ms, misses_.usuallyLost(misses_.comeAtOnce(at_once) ? kOverAtOnce : kOftenOf)};
+            }
+            misses_.lowerShare(now_ms, period_ms_);
         }
-        held_until_s_ = now_s_ + hold_s_;
+        misses_.hold();
         makeItFit(now_ms);
         if (!takes_too_long && missesWhateverIsDrawn()) { leaveMissesAlone(); }
     } else {
@@ -360,7 +301,7 @@ std::size_t Governor::awayFrom(double most_ms, double now_ms) const {
 void Governor::giveBack(double now_ms) {
     const Level& level = levels_[current_];
     beaten_ = false;
-    raiseShare();
+    misses_.raiseShare(period_ms_);
     if (recent_ms_.size() >= kTrialFrames) { downs_ = 0; }
     if (recent_ms_.size() >= kBlameFrames) { before_misses_.reset(); }
     const bool is_calm = now_s_ - changed_s_ >= kBetweenChangesSeconds;

@@ -2,6 +2,7 @@
 // clock, no device; a frame goes in, the settings of the next come out.
 #pragma once
 
+#include "app/view/governor/missed_displays.h"
 #include "engine/mode.h"
 
 #include <deque>
@@ -73,23 +74,11 @@ private:
     // What a frame takes of what both eyes would in full, by the parts of so many frames of its own. 0: unknown.
     [[nodiscard]] double ratioByOwnFrames(std::size_t frames) const;
     [[nodiscard]] std::size_t countOver(std::size_t of_last) const;
-    // Periods lost by so many frames: all together, none with more than counts; and by each of the two thirds that lost least.
-    [[nodiscard]] double lostIn(std::size_t last) const;
-    [[nodiscard]] double usuallyLost(std::size_t last) const;
-    // Whether displays were missed, again and again, however long the device says that frames took.
-    [[nodiscard]] bool missesDisplays() const;
-    [[nodiscard]] bool missesAtOnce() const;  // one after the other
     // What frames may take: the period, or as much of it as others leave.
-    [[nodiscard]] double roomMs() const { return share_ * period_ms_; }
-    // Displays are missed at this: there is less room than was thought.
-    void lowerShare(double now_ms);
-    void raiseShare();
+    [[nodiscard]] double roomMs() const { return misses_.share() * period_ms_; }
     // Whether to give up quality has gained nothing: then it is given back, and for a while misses change nothing.
     [[nodiscard]] bool missesWhateverIsDrawn() const;
     void leaveMissesAlone();
-    [[nodiscard]] bool leavesMissesAlone() const { return now_s_ < heeds_from_s_; }
-    // Whether that is over.
-    void lookAfterMisses();
     // Of a level, from what the current one costs now.
     [[nodiscard]] double expectedMs(std::size_t level, double now_ms) const;
     // The best level expected to fit into `most_ms`; the cheapest if none does.
@@ -117,10 +106,10 @@ private:
     std::vector<Ratio> ratios_;
     std::size_t current_ = 0;
     double now_s_ = 0.0, period_ms_ = 0.0;
-    std::deque<double> recent_ms_, recent_lost_;  // since the last change, newest last
-    std::deque<double> recent_ratios_;            // likewise: of frames that know what both eyes would have taken
-    int settling_ = 0;                            // frames that still show what the change itself cost
-    int downs_ = 0;                               // changes in a row that were not enough
+    std::deque<double> recent_ms_;      // since the last change, newest last
+    std::deque<double> recent_ratios_;  // likewise: of frames that know what both eyes would have taken
+    int settling_ = 0;                  // frames that still show what the change itself cost
+    int downs_ = 0;                     // changes in a row that were not enough
     double changed_s_ = 0.0;
     std::optional<std::size_t> left_;  // the level before the last change upwards
     // The level before the last change, and what it took, where that change was to see what a method takes.
@@ -132,15 +121,12 @@ private:
     double lossless_ms_ = 0.0;  // last measured, at full resolution's price
     std::string why_, sentence_;
     bool beaten_ = false;
-    // Of the period, what others (the compositor, another program) leave: found out by what is missed, given back little by little.
-    double share_ = 1.0, held_until_s_ = 0.0, hold_s_ = 0.0;
-    bool is_raised_ = false;  // since it was lowered last
+    MissedDisplays misses_;
     struct Before {
         std::size_t level = 0;
         double ms = 0.0, lost = 0.0;  // of a frame
     };
-    std::optional<Before> before_misses_;                            // and before anything was given up for them
-    double missed_s_ = 0.0, heeds_from_s_ = 0.0, unheeded_s_ = 0.0;  // the last one; when they count again, and how long they did not
+    std::optional<Before> before_misses_;  // and before anything was given up for them
 };
 
 }  // namespace binosplat
