@@ -17,17 +17,8 @@ namespace {
 
 // While the scene loads, unless a background is asked for.
 constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
-constexpr std::size_t kPlottedFrames = 120;
-// How long the panel shows the times of a frame: nobody can read what changes with every frame, and the panel is drawn only when it
-// changes.
-constexpr double kTimesSeconds = 0.25;
 // How often to look whether the session has begun to run, and how often the window is drawn meanwhile.
 constexpr std::chrono::milliseconds kIdle(5), kWindowAlone(16);
-// How often to look whether an unplugged headset is there again.
-constexpr std::chrono::milliseconds kBetweenSearches(200);
-// So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
-constexpr int kMostFailures = 10;
-constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
 }  // namespace
 
@@ -36,16 +27,14 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       instance_(instance),
       context_(context),
       settings_(settings),
-      stay_(std::make_unique<HeadsetStay>(instance, context, kPanelPx)),
-      format_(stay_->format),
-      renderer_(instance, context, options_.run, log_, format_),
-      canvas_(context_, kPanelPx, format_),
-      panel_(kPanelPx, kPanelWidthMetres),
+      headset_(instance, context, kPanelPx),
+      renderer_(instance, context, options_.run, log_, headset_.format()),
+      panel_(context, headset_.format()),
       commands_(context_),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
-    status_.can_reload_shaders = !shaderFolder(options.shaders).empty();
-    if (!canvas_.fontComplaint().empty()) { fmt::print("{}\n", canvas_.fontComplaint()); }
+    panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
+    if (const std::string& complaint = panel_.canvas().fontComplaint(); !complaint.empty()) { fmt::print("{}\n", complaint); }
     if (mirrored) { openWindow(); }
 }
 
@@ -53,7 +42,7 @@ void Viewer::run() {
     const Interrupt interrupt;
     try {
         try {
-            renderer_.fitImages(*stay_, settings_);
+            renderer_.fitImages(stay(), settings_);
         } catch (const xr::Lost& lost) { loseStay(lost.what()); }
         while (options_.load_first && !scenes_.get() && !leaving_) {
             if (interrupt.came()) { leave(); }
@@ -64,7 +53,7 @@ void Viewer::run() {
         for (bool goes_on = true; goes_on;) {
             if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
-                goes_on = stay_ ? step() : comeBack();
+                goes_on = headset_.stay() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
                 if (leaving_) { break; }
                 loseStay(lost.what());
@@ -75,12 +64,12 @@ void Viewer::run() {
         throw;
     }
     sayPicture(pictures_.finish());
-    const std::string why = stay_ ? stay_->session.whyEnded() : "stopped while there was no headset";
+    const std::string why = headset_.stay() != nullptr ? stay().session.whyEnded() : "stopped while there was no headset";
     fmt::print("{} frames; {}\n", log_.frame, why.empty() ? "the session was lost as it ended" : why);
 }
 
 bool Viewer::step() {
-    switch (stay_->session.beginFrame()) {
+    switch (stay().session.beginFrame()) {
         case xr::FrameOutcome::kExit:
             return false;
         case xr::FrameOutcome::kWait:
@@ -89,11 +78,11 @@ bool Viewer::step() {
             return true;
         case xr::FrameOutcome::kRender:
             drawFrame();
-            losses_.forget();
+            headset_.showedFrame();
             break;
         case xr::FrameOutcome::kSkip:
             drawWindowAlone("The headset shows something else, or nothing");
-            stay_->session.endFrame({});
+            stay().session.endFrame({});
             break;
     }
     ++log_.frame;
@@ -102,71 +91,48 @@ bool Viewer::step() {
 
 void Viewer::leave() {
     if (std::exchange(leaving_, true)) { return; }
-    if (stay_) { stay_->session.requestExit(); }
+    if (headset_.stay() != nullptr) { stay().session.requestExit(); }
 }
 
 void Viewer::loseStay(const std::string& why) {
-    if (!losses_.add(std::chrono::steady_clock::now())) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
-    }
-    why_lost_ = why;
-    is_gone_ = false;
-    next_search_ = {};
     waitForQueue();
-    panel_now_ = nullptr;
-    canvas_.giveUp();
-    stay_.reset();
+    panel_.giveUp();
+    headset_.lose(why);
 }
 
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_search_) {
-        drawWindowAlone("The headset is gone: plug it in");
-        std::this_thread::sleep_for(kIdle);
-        return true;
+    switch (headset_.search([this](const std::string& message) { say(message); })) {
+        case HeadsetLife::Search::kLater:
+            drawWindowAlone("The headset is gone: plug it in");
+            std::this_thread::sleep_for(kIdle);
+            break;
+        case HeadsetLife::Search::kNone:
+            break;
+        case HeadsetLife::Search::kFound:
+            renderer_.fitImages(stay(), settings_);
+            break;
     }
-    next_search_ = now + kBetweenSearches;
-    if (!instance_.findHeadset(context_)) {
-        if (!std::exchange(is_gone_, true)) { say(why_lost_ + "; the headset is gone: waiting for it"); }
-        std::fflush(stdout);
-        return true;
-    }
-    say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
-    try {
-        stay_ = std::make_unique<HeadsetStay>(instance_, context_, kPanelPx);
-        failures_ = 0;
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
-    } catch (const Error& error) {
-        // It was found, but is not awake yet.
-        if (++failures_ > kMostFailures) { throw; }
-        why_lost_ = error.what();
-        next_search_ = now + kBetweenFailures;
-        return true;
-    }
-    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
-    renderer_.fitImages(*stay_, settings_);
     return true;
 }
 
 void Viewer::settle() {
-    xr::Session& session = stay_->session;
+    xr::Session& session = stay().session;
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
     controls_.letGo();
     const std::optional<double> floor_m = session.floorBelowMetres();
     log_.say("the room now begins where the wearer stands" +
              (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
-    panel_.hangBefore({});
+    panel_.inRoom().hangBefore({});
 }
 
 void Viewer::drawFrame() {
     settle();
-    const std::optional<std::array<xr::EyeView, 2>> located = stay_->session.locateEyes();
+    const std::optional<std::array<xr::EyeView, 2>> located = stay().session.locateEyes();
     if (!located) {
         drawWindowAlone("The headset does not know where it is");
-        stay_->session.endFrame({});
+        stay().session.endFrame({});
         return;
     }
     if (scenes_.isNextReady()) { takeScene(); }
@@ -175,25 +141,25 @@ void Viewer::drawFrame() {
     FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
-    const double step_seconds = stay_->session.stepSeconds();
-    const WearerNow wearer{stay_->input.read(), room_from_head_, stay_->session.floorBelowMetres(), step_seconds};
-    controls_.update(wearer, panel_, settings_, scenes_.scene_from_room);
+    const double step_seconds = stay().session.stepSeconds();
+    const WearerNow wearer{stay().input.read(), room_from_head_, stay().session.floorBelowMetres(), step_seconds};
+    controls_.update(wearer, panel_.inRoom(), settings_, scenes_.scene_from_room);
     if (const double clear_deg = settings_.stereo.foveation_deg; clear_deg > 0.0) {
-        views.gazes = gaze_.update(stay_->input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+        views.gazes = gaze_.update(stay().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
     chooseThings(wearer, views);
     obeyWindow(step_seconds);
-    if (const std::string complaint = stay_->session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
-    status_.state.clear();
+    if (const std::string complaint = stay().session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
+    panel_.status().state.clear();
     panel_hangs_ = settings_.panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
     // Last, since the panel and the window may change what is wished for.
     const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
-        renderer_.render(*stay_, *scene, settings_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        renderer_.render(stay(), *scene, settings_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
@@ -203,16 +169,16 @@ void Viewer::drawFrame() {
     onWindow(&MirrorWindow::show);
     showFrame(views);
     sayChange(before);
-    keepFrameTime();
+    panel_.keepFrameTime();
 }
 
 bool Viewer::prepareScene(const FrameViews& views) {
     LoadedScene* scene = scenes_.get();
     try {
-        renderer_.govern(*stay_, settings_);
+        renderer_.govern(stay(), settings_);
         ViewSettings wished = settings_;
         if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
-        if (scene != nullptr) { renderer_.prepare(*stay_, *scene, scenes_.scene_from_room, wished, views); }
+        if (scene != nullptr) { renderer_.prepare(stay(), *scene, scenes_.scene_from_room, wished, views); }
         settings_that_fit_ = settings_;
         return true;
     } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
@@ -223,48 +189,36 @@ bool Viewer::prepareScene(const FrameViews& views) {
         say(fmt::format("{} does not fit: {}", change, error.what()));
     }
     settings_ = *settings_that_fit_;
-    renderer_.govern(*stay_, settings_);
+    renderer_.govern(stay(), settings_);
     return false;
 }
 
 void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     for (const int h : {kLeft, kRight}) {
-        if (panel_.pulses(h)) { stay_->input.pulse(h); }
+        if (panel_.inRoom().pulses(h)) { stay().input.pulse(h); }
     }
     vignette_.update(settings_.vignette && controls_.isMoving(), wearer.step_seconds);
     RoomSight sight;
     sight.eye = wearer.room_from_head.position;
     if (settings_.hands) { sight.hands = wearer.hands; }
-    sight.rays = panel_.rays(sight.eye, controls_.aimingHand());
+    sight.rays = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
     sight.teleport = controls_.teleportAim();
     sight.vignette_m = vignette_.widthMetres(views.eyes);
-    stay_->things.choose(sight);
-}
-
-void Viewer::keepFrameTime() {
-    const auto now = std::chrono::steady_clock::now();
-    if (last_end_ != std::chrono::steady_clock::time_point()) {
-        frame_ms_.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
-    }
-    if (frame_ms_.size() > kPlottedFrames) { frame_ms_.erase(frame_ms_.begin()); }
-    last_end_ = now;
+    stay().things.choose(sight);
 }
 
 void Viewer::showFrame(const FrameViews& views) {
-    stay_->images->release();
-    if (std::exchange(panel_now_, nullptr)) {
-        stay_->panel_images.release();
-        stay_->panel_revision = canvas_.revision();
-    }
-    stay_->things.release();
-    stay_->session.seeThrough(renderer_.seesThrough(settings_));
+    stay().images->release();
+    panel_.release(stay());
+    stay().things.release();
+    stay().session.seeThrough(renderer_.seesThrough(settings_));
     const auto submit = [&] {
-        xr::Layers layers(stay_->session);
+        xr::Layers layers(stay().session);
         addEyes(layers, views);
-        stay_->things.addBehindPanel(layers);
-        if (panel_hangs_) { layers.addPanel(panel_.roomFromPanel(), panel_.sizeMetres(), stay_->panel_images); }
-        stay_->things.addBeforePanel(layers);
-        stay_->session.endFrame(layers.list());
+        stay().things.addBehindPanel(layers);
+        if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), stay().panel_images); }
+        stay().things.addBeforePanel(layers);
+        stay().session.endFrame(layers.list());
     };
     try {
         submit();
@@ -273,7 +227,7 @@ void Viewer::showFrame(const FrameViews& views) {
     } catch (const Error&) {
         if (!std::exchange(takes_depth_, false)) { throw; }
         log_.say("the runtime refuses depth; on without depth");
-        renderer_.dropDepth(*stay_);
+        renderer_.dropDepth(stay());
         submit();
     }
 }
@@ -286,7 +240,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     if (scenes_.isNextReady()) { takeScene(); }
     const ViewSettings before = settings_;
     obeyWindow(step_seconds);
-    status_.state = why;
+    panel_.status().state = why;
     layOutPanel(false, step_seconds);
     sayPicture(pictures_.takeOutcome());
     onWindow(&MirrorWindow::acquire);
@@ -315,7 +269,7 @@ void Viewer::takeScene() {
 
 void Viewer::openWindow() {
     try {
-        window_ = std::make_unique<MirrorWindow>(context_, canvas_);
+        window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas());
     } catch (const Error& error) { fmt::print("no window: {}\n", error.what()); } catch (const vk::SystemError& error) {
         fmt::print("no window: {}\n", error.what());
     }
@@ -335,12 +289,12 @@ void Viewer::onWindow(void (MirrorWindow::*act)()) {
 }
 
 void Viewer::renderWaiting() {
-    for (const int e : {kLeft, kRight}) { stay_->images->acquire(e, false); }
+    for (const int e : {kLeft, kRight}) { stay().images->acquire(e, false); }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     const glm::vec4 colour = renderer_.seesThrough(settings_) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
-    for (const int e : {kLeft, kRight}) { stay_->images->clear(commands_, e, colour); }
+    for (const int e : {kLeft, kRight}) { stay().images->clear(commands_, e, colour); }
     recordPanel(commands_);
     commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
     commands_.wait();
@@ -350,55 +304,26 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
         const int e = scenes_.get() != nullptr && settings_.showsOneEye() ? settings_.stereo.dominant : shown_to;
-        return stay_->images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
+        return stay().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
     layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
 }
 
 void Viewer::layOutPanel(bool hung, double step_seconds) {
-    status_.scene = scenes_.name();
-    status_.loading = scenes_.loading();
-    status_.has_scene = scenes_.get() != nullptr;
-    status_.can_pass_through = instance_.canSeeThrough();
-    if (stay_) { status_.refresh_rates = stay_->refresh_rates; }
-    if (status_.has_scene) { status_.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
-    showTimes(step_seconds);
-    canvas_.bringLetters(namesOn(pages_, status_));
-    // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
-    const CanvasPointer& hand = panel_.pointer();
-    const bool mouse_pointed = mouse_points_;
-    mouse_points_ = hung && hand.place_px ? window_input_.uses_panel && !hand.pressed : mouse_points_ || window_input_.uses_panel;
-    CanvasPointer pointer = mouse_points_ ? window_input_.pointer : hand;
-    if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
-    canvas_.begin(pointer, step_seconds);
-    const OverlayActions actions = drawOverlay(kPanelPx, settings_, pages_, status_);
-    canvas_.end();
-    if (hung && stay_->panel_revision != canvas_.revision()) { panel_now_ = stay_->panel_images.acquire(); }
-    obey(actions);
-}
-
-void Viewer::showTimes(double step_seconds) {
-    times_age_s_ += step_seconds;
-    const FrameResult& last = renderer_.lastFrame();
-    const bool has_times = !last.counters.empty();
-    if (has_times && status_.frame != nullptr && times_age_s_ < kTimesSeconds) { return; }
-    times_age_s_ = 0.0;
-    shown_frame_ = last;
-    status_.frame = has_times ? &shown_frame_ : nullptr;
-    status_.frame_ms = frame_ms_;
-    status_.governor = renderer_.governorSentence();
+    OverlayStatus& status = panel_.status();
+    status.scene = scenes_.name();
+    status.loading = scenes_.loading();
+    status.has_scene = scenes_.get() != nullptr;
+    status.can_pass_through = instance_.canSeeThrough();
+    if (headset_.stay() != nullptr) { status.refresh_rates = stay().refresh_rates; }
+    if (status.has_scene) { status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
+    panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
+    obey(panel_.layOut(hung ? headset_.stay() : nullptr, window_input_, settings_, step_seconds));
 }
 
 void Viewer::recordPanel(Commands& commands) {
-    if (stay_) { stay_->things.record(commands); }
-    if (!panel_now_ && !window_) { return; }
-    commands.beginPass("panel");
-    canvas_.record(commands);
-    if (panel_now_) {
-        commands.copyImage(canvas_.image(), panel_now_, kPanelPx);
-        commands.makeMips(panel_now_, kPanelPx, stay_->panel_images.levels());
-    }
-    if (window_) { window_->record(commands); }
+    if (headset_.stay() != nullptr) { stay().things.record(commands); }
+    panel_.record(commands, headset_.stay(), window_.get());
 }
 
 void Viewer::obeyWindow(double step_seconds) {
@@ -410,7 +335,7 @@ void Viewer::obeyWindow(double step_seconds) {
     if (window_input_.reload_shaders) { reloadShaders(); }
     if (window_input_.toggle_panel) {
         settings_.panel = !settings_.panel;
-        panel_.hangBefore(room_from_head_);
+        panel_.inRoom().hangBefore(room_from_head_);
     }
     scenes_.scene_from_room = movedByWindow(scenes_.scene_from_room, window_input_, room_from_head_, step_seconds);
 }
@@ -444,7 +369,7 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
 
 void Viewer::reloadShaders() {
     LoadedScene* scene = scenes_.get();
-    if (scene == nullptr || !status_.can_reload_shaders) { return; }
+    if (scene == nullptr || !panel_.status().can_reload_shaders) { return; }
     // Its thread may be making kernels.
     if (scenes_.isLoading()) {
         say("shaders stay as they are until the next scene is there");
@@ -477,7 +402,7 @@ void Viewer::waitForQueue() const {
 }
 
 void Viewer::say(const std::string& message) {
-    status_.message = message;
+    panel_.status().message = message;
     log_.say(message);
 }
 

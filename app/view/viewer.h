@@ -1,14 +1,12 @@
 // The viewer's loop: what the wearer sees, frame by frame.
 #pragma once
 
-#include "app/view/headset/losses.h"
-#include "app/view/panel/canvas.h"
-#include "app/view/panel/overlay.h"
-#include "app/view/panel/overlay_panel.h"
+#include "app/view/headset/headset_life.h"
 #include "app/view/picture_pair.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/scenes/shown_scene.h"
+#include "app/view/shown_panel.h"
 #include "app/view/view_settings.h"
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/wearer_controls.h"
@@ -32,6 +30,7 @@ public:
 private:
     // One turn of the loop; false at its end.
     bool step();
+    [[nodiscard]] HeadsetStay& stay() const { return *headset_.stay(); }  // while there is one
     void loseStay(const std::string& why);
     // Another session in place of one that was lost, if there is a headset; false at the end.
     bool comeBack();
@@ -56,8 +55,6 @@ private:
     void addEyes(xr::Layers& layers, const FrameViews& views) const;
     // The widgets; takes an image for the panel where that is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
-    void showTimes(double step_seconds);
-    void keepFrameTime();
     void obeyWindow(double step_seconds);
     void obey(const OverlayActions& actions);
     void obeyFiles(const OverlayActions& actions);
@@ -77,34 +74,21 @@ private:
     ViewSettings settings_;
     std::optional<ViewSettings> settings_that_fit_;  // of the last frame there was memory for
     FrameLog log_;
-    std::unique_ptr<HeadsetStay> stay_;  // null while there is no session
-    vk::Format format_;                  // of every session's images
+    HeadsetLife headset_;
     SceneRenderer renderer_;
-    Canvas canvas_;
+    ShownPanel panel_;
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
-    bool mouse_points_ = false;  // on the panel, and not a hand
-    bool panel_hangs_ = false;   // in this frame
-    vk::Image panel_now_;        // where the panel has to be drawn anew
-    OverlayPanel panel_;
+    bool panel_hangs_ = false;  // in this frame
     WearerControls controls_;
     Vignette vignette_;
     GazeFollower gaze_;
     Commands commands_;
-    OverlayStatus status_;
-    FrameResult shown_frame_;  // whose times the panel shows
     PictureWriter pictures_;
-    bool picture_asked_ = false;   // of the next frame
-    std::vector<float> frame_ms_;  // see OverlayStatus
-    double times_age_s_ = 0.0;
-    OverlayPages pages_;
-    Pose room_from_head_;  // as last known
+    bool picture_asked_ = false;  // of the next frame
+    Pose room_from_head_;         // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
-    Losses losses_;     // since a frame was shown
-    int failures_ = 0;  // of sessions that were to come after it, in a row
-    std::string why_lost_;
-    bool is_gone_ = false;  // the headset, since then
-    std::chrono::steady_clock::time_point last_end_{}, last_alone_{}, next_search_{};
+    std::chrono::steady_clock::time_point last_alone_{};
     ShownScene scenes_;  // last: the loading thread ends first
 };
 

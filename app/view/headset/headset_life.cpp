@@ -1,0 +1,64 @@
+// The next session.
+#include "app/view/headset/headset_life.h"
+
+#include "engine/error.h"
+
+#include <cstdio>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+// How often to look whether an unplugged headset is there again.
+constexpr std::chrono::milliseconds kBetweenSearches(200);
+// So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
+constexpr int kMostFailures = 10;
+constexpr std::chrono::milliseconds kBetweenFailures(1000);
+
+}  // namespace
+
+HeadsetLife::HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
+    : instance_(instance),
+      context_(context),
+      panel_px_(panel_px),
+      stay_(std::make_unique<HeadsetStay>(instance, context, panel_px)),
+      format_(stay_->format) {}
+
+void HeadsetLife::lose(const std::string& why) {
+    if (!losses_.add(std::chrono::steady_clock::now())) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
+    }
+    why_lost_ = why;
+    is_gone_ = false;
+    next_search_ = {};
+    stay_.reset();
+}
+
+HeadsetLife::Search HeadsetLife::search(const Say& say) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_search_) { return Search::kLater; }
+    next_search_ = now + kBetweenSearches;
+    if (!instance_.findHeadset(context_)) {
+        if (!std::exchange(is_gone_, true)) { say(why_lost_ + "; the headset is gone: waiting for it"); }
+        std::fflush(stdout);
+        return Search::kNone;
+    }
+    say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
+    try {
+        stay_ = std::make_unique<HeadsetStay>(instance_, context_, panel_px_);
+        failures_ = 0;
+    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+        throw;
+    } catch (const Error& error) {
+        // It was found, but is not awake yet.
+        if (++failures_ > kMostFailures) { throw; }
+        why_lost_ = error.what();
+        next_search_ = now + kBetweenFailures;
+        return Search::kNone;
+    }
+    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
+    return Search::kFound;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,78 @@
+// The panel in a frame.
+#include "app/view/shown_panel.h"
+
+#include "app/view/panel/panel_style.h"
+
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t kPlottedFrames = 120;
+// How long the times of a frame are shown. The panel is drawn only when it changes.
+constexpr double kTimesSeconds = 0.25;
+
+}  // namespace
+
+ShownPanel::ShownPanel(const Context& context, vk::Format format)
+    : canvas_(context, kPanelPx, format), in_room_(kPanelPx, kPanelWidthMetres) {}
+
+void ShownPanel::keepFrameTime() {
+    const auto now = std::chrono::steady_clock::now();
+    if (last_end_ != std::chrono::steady_clock::time_point()) {
+        frame_ms_.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
+    }
+    if (frame_ms_.size() > kPlottedFrames) { frame_ms_.erase(frame_ms_.begin()); }
+    last_end_ = now;
+}
+
+void ShownPanel::showTimes(const FrameResult& last, const std::string& governor, double step_seconds) {
+    times_age_s_ += step_seconds;
+    const bool has_times = !last.counters.empty();
+    if (has_times && status_.frame != nullptr && times_age_s_ < kTimesSeconds) { return; }
+    times_age_s_ = 0.0;
+    shown_frame_ = last;
+    status_.frame = has_times ? &shown_frame_ : nullptr;
+    status_.frame_ms = frame_ms_;
+    status_.governor = governor;
+}
+
+OverlayActions ShownPanel::layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds) {
+    canvas_.bringLetters(namesOn(pages_, status_));
+    // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
+    const CanvasPointer& hand = in_room_.pointer();
+    const bool mouse_pointed = mouse_points_;
+    mouse_points_ = hung != nullptr && hand.place_px ? window.uses_panel && !hand.pressed : mouse_points_ || window.uses_panel;
+    CanvasPointer pointer = mouse_points_ ? window.pointer : hand;
+    if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
+    canvas_.begin(pointer, step_seconds);
+    const OverlayActions actions = drawOverlay(kPanelPx, settings, pages_, status_);
+    canvas_.end();
+    if (hung != nullptr && hung->panel_revision != canvas_.revision()) { image_ = hung->panel_images.acquire(); }
+    return actions;
+}
+
+void ShownPanel::record(Commands& commands, HeadsetStay* stay, MirrorWindow* window) {
+    if (!image_ && window == nullptr) { return; }
+    commands.beginPass("panel");
+    canvas_.record(commands);
+    if (image_) {
+        commands.copyImage(canvas_.image(), image_, kPanelPx);
+        commands.makeMips(image_, kPanelPx, stay->panel_images.levels());
+    }
+    if (window != nullptr) { window->record(commands); }
+}
+
+void ShownPanel::release(HeadsetStay& stay) {
+    if (!std::exchange(image_, nullptr)) { return; }
+    stay.panel_images.release();
+    stay.panel_revision = canvas_.revision();
+}
+
+void ShownPanel::giveUp() {
+    image_ = nullptr;
+    canvas_.giveUp();
+}
+
+}  // namespace binosplat
