@@ -30,6 +30,7 @@ STATES = {
     "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
     "lost": ("builtin:fence --load-first", LAST + "at 3 head off\n"),
     "other": ("builtin:fence --load-first", LAST + "at 3 should-render off\n"),
+    "gone": ("builtin:fence --load-first", LAST + "no-headset-for 100000 after-loss\nat 3 lose-session\n"),
     "replaced": ("builtin:fence --load-first", LAST + "at 12 lose-session\n"),
     "beaten": ("builtin:fence --load-first --config view.toml", LAST),
     "held": ("builtin:fence --load-first --config view.toml", "rate 14\nsize 200 200\nframes none\n"),

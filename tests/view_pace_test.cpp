@@ -16,8 +16,8 @@ using namespace binosplat::test;
 namespace {
 
 struct Call {
-    bool submits;  // else it waits
-    std::string fence;
+    bool submits;       // else it waits
+    std::string fence;  // "all": for whatever was submitted
 };
 
 // All in periods.
@@ -37,7 +37,7 @@ std::vector<PlayedFrame> play(const std::vector<Call>& calls) {
     double host = 0.0, device = 0.0;
     for (const Call& call : calls) {
         if (!call.submits) {
-            host = std::max(host, done[call.fence]);
+            host = std::max(host, call.fence == "all" ? device : done[call.fence]);
             continue;
         }
         const auto turn = static_cast<double>(frames.size());

@@ -3,7 +3,8 @@
 // no-host-memory, SIGINT or SIGTERM. From the Nth such call on what is lost stays lost and memory stays full; signals come once. Of a
 // lost device no wait until it is idle succeeds.
 // BINOSPLAT_FAULT_TICKS=N: timestamps are N ticks apart, however long the work between them took.
-// BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0".
+// BINOSPLAT_FAULT_TRACE=FILE: a line for each submission and each wait, in their order, with the fence: "submit 55d0", "wait 55d0";
+// "wait all" where the queue or the device is waited for.
 // BINOSPLAT_FAULT_LIVE=FILE: what is alive, see live.h. BINOSPLAT_FAULT_LOAD=...: how long frames take, see load.h.
 #include "tests/faults/live.h"
 #include "tests/faults/load.h"
@@ -71,12 +72,16 @@ VkResult strike(const char* call) {
     return VK_SUCCESS;
 }
 
-void trace(const char* call, VkFence fence) {
+std::FILE* traceFile() {
     static std::FILE* const file = [] {
         const char* const name = std::getenv("BINOSPLAT_FAULT_TRACE");
         return name != nullptr ? std::fopen(name, "w") : nullptr;
     }();
-    if (file != nullptr) {
+    return file;
+}
+
+void trace(const char* call, VkFence fence) {
+    if (std::FILE* const file = traceFile(); file != nullptr) {
         std::fprintf(file, "%s %llx\n", call, static_cast<unsigned long long>(reinterpret_cast<std::uintptr_t>(fence)));
     }
 }
@@ -101,12 +106,18 @@ VKAPI_ATTR VkResult VKAPI_CALL wait(VkDevice device, std::uint32_t count, const 
     return result != VK_SUCCESS ? result : waited;
 }
 
+void traceWaitForAll() {
+    if (std::FILE* const file = traceFile(); file != nullptr) { std::fprintf(file, "wait all\n"); }
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL waitForDevice(VkDevice device) {
+    traceWaitForAll();
     const VkResult waited = g_wait_device(device);
     return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL waitForQueue(VkQueue queue) {
+    traceWaitForAll();
     const VkResult waited = g_wait_queue(queue);
     return g_is_lost ? VK_ERROR_DEVICE_LOST : waited;
 }
