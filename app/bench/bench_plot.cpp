@@ -83,7 +83,7 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
         const double x = against_splats ? static_cast<double>(result.splats) : pixelsOf(result);
         lineOf(totals, result.method).points.emplace_back(x, result.total_ms);
         if (result.mode != Mode::kShared) { continue; }
-        for (const auto& [name, ms] : byPass(result)) { lineOf(passes, name).points.emplace_back(x, ms); }
+        for (const auto& [name, ms] : byPass(result.pass_ms)) { lineOf(passes, name).points.emplace_back(x, ms); }
     }
     return {totals, passes};
 }

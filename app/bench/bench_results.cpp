@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <tuple>
 
@@ -26,24 +25,6 @@ std::optional<double> ratioTo(const BenchResult& result, const BenchResult* othe
     std::vector<double> ratios;
     for (std::size_t i = 0; i < result.frame_ms.size(); ++i) { ratios.push_back(result.frame_ms[i] / other->frame_ms[i]); }
     return median(ratios);
-}
-
-// Bare pass: without the eyes in front.
-std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' ') + 1); }
-
-std::string stageOf(std::optional<Mode> mode, const std::string& pass) {
-    const std::string bare = bareName(pass);
-    if (bare.starts_with("8d") || bare.starts_with("8e")) { return "reprojection"; }
-    if (bare.starts_with("8")) { return "ROI choice"; }
-    if (bare < "4") { return "cull+sort"; }
-    if (!pass.starts_with("affiliated ")) { return "dominant"; }
-    return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
-}
-
-double sumOf(const NamedTimes& times, const std::string& name) {
-    double sum = 0.0;
-    for (const auto& [time_name, ms] : times) { sum += time_name == name ? ms : 0.0; }
-    return sum;
 }
 
 std::uint64_t counterOf(const BenchResult& result, const std::string& name) {
@@ -79,22 +60,6 @@ std::string bareSceneName(const std::string& scene) {
 
 std::string modeNameOf(const BenchResult& result) { return result.mode ? std::string(nameOf(*result.mode)) : "twin"; }
 
-double median(std::vector<double> values) {
-    if (values.empty()) { return 0.0; }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    const double upper = *middle;
-    return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), middle));
-}
-
-double percentile(std::vector<double> values, double share) {
-    if (values.empty()) { return 0.0; }
-    const double rank = std::ceil(share * static_cast<double>(values.size()));
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-    std::ranges::nth_element(values, place);
-    return *place;
-}
-
 bool samePoint(const BenchResult& a, const BenchResult& b) {
     const auto point = [](const BenchResult& r) {
         return std::tie(r.series, r.scene, r.view, r.headset, r.backbone, r.splats, r.size_px.x, r.size_px.y);
@@ -108,27 +73,6 @@ std::string namePoint(const BenchResult& result) {
         if (!part.empty()) { name += ", " + part; }
     }
     return fmt::format("{}, {} splats ({}), {}x{} per eye", name, result.splats, result.backbone, result.size_px.x, result.size_px.y);
-}
-
-NamedTimes byPass(const BenchResult& result) {
-    std::map<std::string, double> sums;  // by the number in front of a pass's name, nearly the order of the frame
-    for (const auto& [name, ms] : result.pass_ms) { sums[bareName(name)] += ms; }
-    return {sums.begin(), sums.end()};
-}
-
-NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms) {
-    NamedTimes stages;
-    for (const char* stage : {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"}) {
-        double sum = 0.0;
-        bool ran = false;
-        for (const auto& [pass, ms] : pass_ms) {
-            if (stageOf(mode, pass) != stage) { continue; }
-            sum += ms;
-            ran = true;
-        }
-        if (ran) { stages.emplace_back(stage, sum); }
-    }
-    return stages;
 }
 
 void compareModes(std::vector<BenchResult>& results) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "app/bench/bench_quality.h"
+#include "app/bench/bench_stages.h"
+#include "app/bench/statistics.h"
 #include "engine/geometry.h"
 #include "engine/mode.h"
 
@@ -16,11 +18,8 @@
 
 namespace binosplat {
 
-// What the tables have columns for: `stagesOf` and `OriginScores` by these names.
-inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
+// What the tables have columns for, of `OriginScores`.
 inline constexpr const char* kOrigins[] = {"all", "reprojected", "interpolated", "patched"};
-
-using NamedTimes = std::vector<std::pair<std::string, double>>;
 
 // One method at one point of a series. Times are medians over the frames, in milliseconds of GPU time; those without a mode are
 // wall-clock milliseconds of the float64 twin for one eye.
@@ -52,10 +51,6 @@ struct BenchRun {
     std::vector<BenchResult> results;
 };
 
-double median(std::vector<double> values);
-// The least value that `share` of the values do not exceed (nearest rank); 0 of none.
-double percentile(std::vector<double> values, double share);
-
 // Whether both were measured at the same point: same series, scene, view, headset, backbone, splats and size.
 bool samePoint(const BenchResult& a, const BenchResult& b);
 // As the tables write it; "twin" where there is no mode.
@@ -64,13 +59,6 @@ std::string modeNameOf(const BenchResult& result);
 std::string bareSceneName(const std::string& scene);
 // "atelier, near, quest2, 1000 splats (2DGS), 512x512 per eye".
 std::string namePoint(const BenchResult& result);
-
-// The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".
-NamedTimes byPass(const BenchResult& result);
-
-// The times by stage: "cull+sort" (1 to 3), "dominant" (4 to 7), "reprojection" (8d and 8e), "ROI choice" (the rest of 8), and of the
-// affiliated eye's 4 to 7 "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
-NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms);
 
 // Fills in the ratios and what moving cost, where both modes were measured at the same point.
 void compareModes(std::vector<BenchResult>& results);

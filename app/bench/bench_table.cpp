@@ -72,7 +72,7 @@ std::string find(const NamedTimes& times, const std::string& name) {
 std::string timesTable(const std::vector<const BenchResult*>& point) {
     std::map<std::string, bool> passes;
     for (const BenchResult* r : point) {
-        for (const auto& [name, ms] : byPass(*r)) { passes[name] = true; }
+        for (const auto& [name, ms] : byPass(r->pass_ms)) { passes[name] = true; }
     }
     TextColumns columns;
     std::vector<std::string> head{"ms by stage, then by pass"};
@@ -81,7 +81,7 @@ std::string timesTable(const std::vector<const BenchResult*>& point) {
     columns.addRow(head);
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method};
-        const NamedTimes stages = stagesOf(r->mode, r->pass_ms), times = byPass(*r);
+        const NamedTimes stages = stagesOf(r->mode, r->pass_ms), times = byPass(r->pass_ms);
         for (const char* stage : kStages) { row.push_back(find(stages, stage)); }
         for (const auto& [name, there] : passes) { row.push_back(find(times, name)); }
         columns.addRow(std::move(row));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "xr/simulated/api/bindings.h"
+#include "xr/simulated/api/bound_source.h"
 #include "xr/simulated/script/script.h"
 
 namespace simulated {
@@ -18,15 +19,6 @@ struct Instance;
 struct Session;
 struct Profile;
 struct Automation;
-
-// A binding of the profile in use, resolved for its action's type.
-struct BoundSource {
-    XrPath path;
-    XrPath user_path;
-    std::size_t device = kLeftHand;
-    std::string source;     // "trigger": what priorities compare
-    std::string component;  // "trigger/value"; "thumbstick" for both axes; "grip/pose"; "haptic"
-};
 
 // As of the last xrSyncActions, for one subaction path or for all.
 struct ActionReading {

@@ -1,0 +1,12 @@
+// Of what was measured again and again.
+#pragma once
+
+#include <vector>
+
+namespace binosplat {
+
+double median(std::vector<double> values);
+// The least value that `share` of the values do not exceed (nearest rank); 0 of none.
+double percentile(std::vector<double> values, double share);
+
+}  // namespace binosplat
