@@ -50,11 +50,11 @@ TEST_CASE("an installed program loads OpenImageIO with the first picture, and sa
     const Workplace work;
     const fs::path prefix = work.base / "prefix", library = prefix / "lib" / "binosplat" / "libbinosplat_images.so";
     REQUIRE(install(work, prefix).exit_code == 0);
-    const std::string program = "'" + (prefix / "bin" / "binosplat").string() + "'";
-    CHECK(work.runCommand("ldd " + program).output.find("OpenImageIO") == std::string::npos);
+    const std::string program = (prefix / "bin" / "binosplat").string();
+    CHECK(work.runCommand("ldd '" + program + "'").output.find("OpenImageIO") == std::string::npos);
     REQUIRE(fs::remove(library));
-    CHECK(work.runCommand(program + " info builtin:one-splat").exit_code == 0);
-    const Outcome outcome = work.runCommand(program + " " + kRender + "quest2 --out out");
+    CHECK(work.runCommand("'" + program + "' info builtin:one-splat").exit_code == 0);
+    const Outcome outcome = work.runCommand("'" + program + "' " + kRender + "quest2 --out out");
     CHECK(outcome.exit_code == 1);
     CHECK(outcome.errors.find(library.string() + ": cannot be loaded (") != std::string::npos);
     CHECK(std::ranges::count(outcome.errors, '\n') == 1);
