@@ -12,10 +12,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cinttypes>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 
 extern char** environ;
 
@@ -24,8 +26,16 @@ namespace binosplat {
 namespace fs = std::filesystem;
 
 fs::path programFile() {
-    std::error_code not_told;
-    return fs::read_symlink("/proc/self/exe", not_told);
+    // The file that this code is mapped from. /proc/self/exe is the dynamic loader where somebody starts that with the program's name.
+    const auto here = reinterpret_cast<std::uintptr_t>(&programFile);
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) {
+        std::uintptr_t begin = 0, end = 0;
+        int name_at = 0;
+        const int read = std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " %*s %*s %*s %*s %n", &begin, &end, &name_at);
+        if (read == 2 && begin <= here && here < end) { return line.substr(static_cast<std::size_t>(name_at)); }
+    }
+    return {};
 }
 
 std::string environment(const char* name) {

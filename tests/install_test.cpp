@@ -52,6 +52,15 @@ TEST_CASE("an installed program loads OpenImageIO with the first picture, and sa
     REQUIRE(install(work, prefix).exit_code == 0);
     const std::string program = (prefix / "bin" / "binosplat").string();
     CHECK(work.runCommand("ldd '" + program + "'").output.find("OpenImageIO") == std::string::npos);
+    // Started by its name, and by the dynamic loader.
+    const std::string loader = "$(ldd '" + program + "' | grep -o '/[^ ]*/ld-linux[^ ]*')";
+    for (const std::string& starter : {std::string(), loader}) {
+        CAPTURE(starter);
+        const Outcome outcome = work.runCommand(starter + " '" + program + "' " + kRender + "quest2 --out pictures");
+        INFO(outcome.errors);
+        CHECK(outcome.exit_code == 0);
+        CHECK(fs::exists(work.path / "pictures" / "left.png"));
+    }
     REQUIRE(fs::remove(library));
     CHECK(work.runCommand("'" + program + "' info builtin:one-splat").exit_code == 0);
     const Outcome outcome = work.runCommand("'" + program + "' " + kRender + "quest2 --out out");
