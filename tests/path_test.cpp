@@ -80,6 +80,23 @@ TEST_CASE("every pose becomes a frame of both eyes, the same as one that is rend
     }
 }
 
+TEST_CASE("a headset's frusta go along the path") {
+    const Way way;
+    const std::string headset = "render builtin:one-splat --headset '" BINOSPLAT_SOURCE_DIR
+                                "/configs/headsets/reverb_g2.toml' --size 64x48 "
+                                "--mode two-pass --eye 0,0,0 --look 0,0,3 --up 0,-1,0 ";
+    const Outcome outcome = way.run(headset + "--path poses.csv --out frames");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    REQUIRE(way.run(headset + "--out start").exit_code == 0);
+    for (const std::string eye : {"left", "right"}) {
+        CAPTURE(eye);
+        const Image first = readPicture(way.path / "frames" / ("frame_000000_" + eye + kExtension));
+        CHECK(first.values == readPicture(way.path / "start" / (eye + kExtension)).values);
+        CHECK(first.values != readPicture(way.path / "frames" / ("frame_000001_" + eye + kExtension)).values);
+    }
+}
+
 TEST_CASE("the report has what each frame took, and where its eyes were") {
     const Way way;
     REQUIRE(way.walk("--metres-per-unit 0.5").exit_code == 0);

@@ -3,6 +3,7 @@
 #include "engine/scene/spz.h"
 #include "tests/spz_files.h"
 
+#include <algorithm>
 #include <random>
 
 using namespace binosplat;
@@ -164,6 +165,26 @@ TEST_CASE("large scenes get fewer fractional bits, and those beyond the format n
     scene.positions[0].x = 1e9f;
     CHECK_THROWS_AS(writeSpz(scene, folder.file("b.spz")), Error);
     CHECK(folder.fileCount() == 1);
+}
+
+TEST_CASE("whoever waits for a large scene hears how much is unpacked, and may stop it") {
+    const Folder folder;
+    SpzText spz{3, 300'000, 0, 12, 0, {}, {}, {}, {}, {}, {}};
+    spz.positions.assign(3 * spz.splats, 1);
+    for (auto* column : {&spz.alphas, &spz.rotations}) { column->assign((column == &spz.alphas ? 1 : 4) * spz.splats, 200); }
+    for (auto* column : {&spz.colours, &spz.scales}) { column->assign(3 * spz.splats, 128); }
+    for (const std::string& bytes : {gzip(spz.bytes()), makeSpzContainer(spz)}) {
+        const std::string file = folder.write("scene.bin", bytes);
+        std::vector<double> told;
+        REQUIRE(loadScene(file, 0, nullptr, [&](double share) { told.push_back(share); }).size() == spz.splats);
+        CHECK(std::ranges::is_sorted(told));
+        CHECK(std::ranges::any_of(told, [](double share) { return share > 0.0 && share < 0.5; }));
+        struct Enough {};
+        const auto stop = [](double share) {
+            if (share > 0.0) { throw Enough(); }
+        };
+        CHECK_THROWS_AS(loadScene(file, 0, nullptr, stop), Enough);
+    }
 }
 
 TEST_CASE("an empty scene is written and read") {

@@ -17,6 +17,9 @@ namespace {
 
 // A scene of so many bytes per byte of its file is none: positions alone do not compress so well.
 constexpr std::uint64_t kMaxExpansion = 256;
+// How much is unpacked at a time: whoever loads may be told to stop. And what that takes of the whole.
+constexpr std::size_t kPieceBytes = std::size_t{4} << 20;
+constexpr double kUnpackingShare = 0.5;
 
 struct Header {
     std::uint32_t version = 0;
@@ -72,9 +75,14 @@ Attributes reserveAttributes(const InputFile& file, const Header& header) {
 }
 
 // Versions 2 and 3: one stream.
-Attributes readStream(InputFile& file, GzipReader& stream, const Header& header) {
+Attributes readStream(InputFile& file, GzipReader& stream, const Header& header, const Progress& progress) {
     Attributes attributes = reserveAttributes(file, header);
-    const std::size_t total = attributes.bytes.size(), got = stream.read(attributes.bytes);
+    const std::size_t total = attributes.bytes.size();
+    std::size_t got = 0;
+    for (std::size_t more = 1; got < total && more > 0; got += more) {
+        if (progress) { progress(kUnpackingShare * static_cast<double>(got) / static_cast<double>(total)); }
+        more = stream.read(std::span(attributes.bytes).subspan(got, std::min(total - got, kPieceBytes)));
+    }
     check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
     // The checksum is compared where the stream ends; records of extensions may lie before that.
     std::array<std::byte, 4096> behind;
@@ -88,7 +96,7 @@ Attributes readStream(InputFile& file, GzipReader& stream, const Header& header)
 
 // Version 4: behind the header the number of streams, where their table is (two 64-bit sizes each: packed, plain), and a stream per
 // attribute, each compressed by itself. Records of extensions lie between header and table.
-Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at) {
+Attributes readContainer(InputFile& file, const Header& header, std::size_t streams, std::uint64_t table_at, const Progress& progress) {
     const std::array<std::uint64_t, 6> per_splat{9, 1, 3, 3, header.rotation_bytes, header.sh_bytes};
     const std::size_t least = header.sh_bytes == 0 ? 5 : 6;  // what is empty may be left out
     check(streams >= least && streams <= 6, "{}: header: {} streams, expected {}", file.name(), streams, least);
@@ -106,6 +114,7 @@ Attributes readContainer(InputFile& file, const Header& header, std::size_t stre
         const auto packed = loadLittle<std::uint64_t>(table, 16 * i), plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
         const std::uint64_t expected = per_splat[i] * header.splats;
         check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain, expected, header.splats);
+        if (progress) { progress(kUnpackingShare * static_cast<double>(i) / static_cast<double>(streams)); }
         check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i, file.bytesLeft(), packed);
         std::vector<std::byte> bytes;
         bytes.reserve(packed);
@@ -194,19 +203,21 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
         check(block.size() == bytes.size(), "{}: header: ends after {} bytes, expected {}", file.name(), block.size(), bytes.size());
         std::copy(block.begin(), block.end(), bytes.begin());
         header = parseHeader(file.name(), std::span(bytes).first(spz::kHeaderBytes), true);
-        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(bytes, 16));
+        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(bytes, 16), progress);
     } else {
         GzipReader stream(file);
         std::array<std::byte, spz::kHeaderBytes> bytes{};
         const std::size_t size = stream.read(bytes);
         header = parseHeader(file.name(), std::span(bytes).first(size), false);
-        attributes = readStream(file, stream, header);
+        attributes = readStream(file, stream, header, progress);
     }
 
     SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
     StoredBlock block;
     for (std::uint64_t done = 0, blocks = 0; done < header.splats; done += block.rows, ++blocks) {
-        if (progress && blocks % 128 == 0) { progress(0.5 + 0.5 * static_cast<double>(done) / static_cast<double>(header.splats)); }
+        if (progress && blocks % 128 == 0) {
+            progress(kUnpackingShare + (1.0 - kUnpackingShare) * static_cast<double>(done) / static_cast<double>(header.splats));
+        }
         block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, header.splats - done));
         for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(header, attributes, done + row, block, row); }
         builder.append(block);
