@@ -1,6 +1,7 @@
 // Facts about the panel's pages: what can be read and pointed at, whatever stands on them.
 #include "app/options/option_table.h"
 #include "app/view/panel/shown_text.h"
+#include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/view_settings_table.h"
 #include "engine/error.h"
@@ -200,6 +201,11 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.settings.stereo.mode == Mode::kPaper);
     sketch.click("Centre ROI (paper)");
     CHECK(sketch.settings.stereo.center_roi);
+    CHECK(sketch.settings.stereo.foveation_deg == 0.0);
+    sketch.click("Foveation");
+    CHECK(sketch.settings.stereo.foveation_deg > 0.0);
+    sketch.click("Foveation");
+    CHECK(sketch.settings.stereo.foveation_deg == 0.0);
     CHECK(sketch.click("Save").save);
     CHECK(sketch.click("Quit").quit);
     CHECK(sketch.click("Level").level_scene);
@@ -286,6 +292,12 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     CHECK(sketch.pages.chooser.list().title == "Built-in scenes");
     sketch.click("Recent");
     CHECK(sketch.pages.chooser.list().entries.empty());
+    rememberScene((work.path / "a##b.ply").string());
+    sketch.click("Recent");
+    CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
+    setenv("HOME", work.base.c_str(), 1);
+    sketch.click("Home");
+    CHECK(sketch.pages.chooser.list().title == work.base.string());
     // A file that came meanwhile is there when the page is opened again.
     sketch.pages.chooser.showFolder(work.path.string());
     write(work.path / "new.ply");

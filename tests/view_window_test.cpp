@@ -492,6 +492,10 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     viewer.tab();
     viewer.hands("mouseup 3");
 
+    // R: the room begins where the head is.
+    viewer.hands("key r");
+    CHECK(program.waitFor("the room now begins where the wearer stands") != "");
+
     // What stands in the window is what the dominant eye sees. Two reloads take long enough for it to get there.
     if (viewer.tab().find("panel = true") != std::string::npos) { viewer.tab(); }
     for (int i = 0; i < 2; ++i) {
