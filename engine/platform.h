@@ -43,7 +43,7 @@ void letLongWritesFail();
 // if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 
-// A symbol of a library that is loaded, if it is not yet, and stays. Throws Error naming the file and the reason.
+// Finds a symbol in a library, loading it if necessary; it is never unloaded. Throws Error naming the file and the reason.
 void* findInLibrary(const std::filesystem::path& library, const char* symbol);
 
 // Opens a file on a disk for reading, and never waits for one: of anything else (a pipe, a device, a folder) null and the reason in a

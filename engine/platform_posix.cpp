@@ -25,9 +25,9 @@ namespace binosplat {
 
 namespace fs = std::filesystem;
 
-fs::path programFile() {
-    // The file that this code is mapped from. /proc/self/exe is the dynamic loader where somebody starts that with the program's name.
-    const auto here = reinterpret_cast<std::uintptr_t>(&programFile);
+// The file that this code is mapped from; empty if the system does not tell.
+static fs::path mappedFile() {
+    const auto here = reinterpret_cast<std::uintptr_t>(&mappedFile);
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         std::uintptr_t begin = 0, end = 0;
@@ -36,6 +36,13 @@ fs::path programFile() {
         if (read == 2 && begin <= here && here < end) { return line.substr(static_cast<std::size_t>(name_at)); }
     }
     return {};
+}
+
+fs::path programFile() {
+    std::error_code not_told;
+    // /proc/self/exe names the dynamic loader if the program was started as `ld-linux.so binosplat`.
+    if (fs::path mapped = mappedFile(); mapped.is_absolute() && fs::exists(mapped, not_told)) { return mapped; }
+    return fs::read_symlink("/proc/self/exe", not_told);
 }
 
 std::string environment(const char* name) {

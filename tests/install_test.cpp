@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <regex>
+#include <utility>
 
 namespace fs = std::filesystem;
 using binosplat::test::Outcome;
@@ -28,10 +29,10 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     const Outcome installed = install(work, prefix);
     INFO(installed.errors);
     REQUIRE(installed.exit_code == 0);
-    for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
-                             "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright", "share/man/man1/binosplat.1",
-                             "share/bash-completion/completions/binosplat", "share/zsh/vendor-completions/_binosplat",
-                             "share/fish/vendor_completions.d/binosplat.fish"}) {
+    for (const char* file : {"bin/binosplat", "lib/binosplat/libbinosplat_images.so", "share/binosplat/configs/headsets/quest2.toml",
+                             "share/binosplat/configs/bench/paper.toml", "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright",
+                             "share/man/man1/binosplat.1", "share/bash-completion/completions/binosplat",
+                             "share/zsh/vendor-completions/_binosplat", "share/fish/vendor_completions.d/binosplat.fish"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
     }
     const std::string program = (prefix / "bin" / "binosplat").string();
@@ -51,15 +52,17 @@ TEST_CASE("an installed program loads OpenImageIO with the first picture, and sa
     const fs::path prefix = work.base / "prefix", library = prefix / "lib" / "binosplat" / "libbinosplat_images.so";
     REQUIRE(install(work, prefix).exit_code == 0);
     const std::string program = (prefix / "bin" / "binosplat").string();
-    CHECK(work.runCommand("ldd '" + program + "'").output.find("OpenImageIO") == std::string::npos);
+    const Outcome linked = work.runCommand("ldd '" + program + "'");
+    REQUIRE(linked.output.find("ld-linux") != std::string::npos);
+    CHECK(linked.output.find("OpenImageIO") == std::string::npos);
     // Started by its name, and by the dynamic loader.
     const std::string loader = "$(ldd '" + program + "' | grep -o '/[^ ]*/ld-linux[^ ]*')";
-    for (const std::string& starter : {std::string(), loader}) {
+    for (const auto& [starter, out] : {std::pair(std::string(), "by_name"), std::pair(loader, "by_loader")}) {
         CAPTURE(starter);
-        const Outcome outcome = work.runCommand(starter + " '" + program + "' " + kRender + "quest2 --out pictures");
+        const Outcome outcome = work.runCommand(starter + " '" + program + "' " + kRender + "quest2 --out " + out);
         INFO(outcome.errors);
         CHECK(outcome.exit_code == 0);
-        CHECK(fs::exists(work.path / "pictures" / "left.png"));
+        CHECK(fs::exists(work.path / out / "left.png"));
     }
     REQUIRE(fs::remove(library));
     CHECK(work.runCommand("'" + program + "' info builtin:one-splat").exit_code == 0);

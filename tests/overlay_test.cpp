@@ -5,6 +5,7 @@
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/view_settings_table.h"
 #include "engine/error.h"
+#include "engine/platform.h"
 #include "tests/panel_sketch.h"
 #include "tests/run_program.h"
 
@@ -295,12 +296,11 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     rememberScene((work.path / "a##b.ply").string());
     sketch.click("Recent");
     CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
-    const char* const home = std::getenv("HOME");
-    const std::string home_before = home != nullptr ? home : "/";
+    const std::string home = environment("HOME");
     setenv("HOME", work.base.c_str(), 1);
     sketch.click("Home");
     CHECK(sketch.pages.chooser.list().title == work.base.string());
-    setenv("HOME", home_before.c_str(), 1);
+    setenv("HOME", home.c_str(), 1);
     // A file that came meanwhile is there when the page is opened again.
     sketch.pages.chooser.showFolder(work.path.string());
     write(work.path / "new.ply");

@@ -29,7 +29,7 @@ NamedTimes byPass(const NamedTimes& pass_ms) {
 
 NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms) {
     NamedTimes stages;
-    for (const char* stage : {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"}) {
+    for (const char* stage : kStages) {
         double sum = 0.0;
         bool ran = false;
         for (const auto& [pass, ms] : pass_ms) {

@@ -12,7 +12,7 @@ namespace binosplat {
 
 using NamedTimes = std::vector<std::pair<std::string, double>>;
 
-// What the tables have columns for, of `stagesOf`.
+// The stages that have a column, by the names of stagesOf().
 inline constexpr const char* kStages[] = {"cull+sort", "dominant", "reprojection", "ROI choice", "patch", "affiliated"};
 
 // The times by bare pass: "dominant 4_project" and "affiliated 4_project" add up to "4_project".

@@ -24,9 +24,10 @@ public:
 
     // A frame was drawn just now.
     void keepFrameTime();
-    // What the last frame took: a while long, since nobody can read what changes with every frame.
+    // Shows what the last frame took, renewed only now and then, since nobody can read what changes with every frame.
     void showTimes(const FrameResult& last, const std::string& governor, double step_seconds);
-    // The widgets. Where they have changed it takes an image of the panel in `hung`, the stay in whose room it hangs; null: it does not.
+    // The widgets. Where they have changed it takes an image of the panel in `hung`, the stay in whose room it hangs; null where it does
+    // not hang.
     OverlayActions layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds);
     // Draws them on that image and on the window, if there is one.
     void record(Commands& commands, HeadsetStay* stay, MirrorWindow* window);

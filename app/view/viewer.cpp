@@ -95,9 +95,8 @@ void Viewer::leave() {
 }
 
 void Viewer::loseStay(const std::string& why) {
-    waitForQueue();
-    panel_.giveUp();
     headset_.lose(why);
+    panel_.giveUp();
 }
 
 bool Viewer::comeBack() {

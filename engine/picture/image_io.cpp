@@ -23,8 +23,10 @@ fs::path withExtension(const fs::path& stem, const char* extension) { return ste
 // of a second more if they were linked.
 const ImageLibrary& imageLibrary() {
     static const ImageLibrary* const library = [] {
-        const fs::path beside = programFile().parent_path() / BINOSPLAT_IMAGE_LIBRARY;
-        const fs::path installed = programFile().parent_path().parent_path() / "lib" / "binosplat" / BINOSPLAT_IMAGE_LIBRARY;
+        const fs::path folder = programFile().parent_path();
+        check(folder.is_absolute(), "{} is not found: the system does not say where the program lies", BINOSPLAT_IMAGE_LIBRARY);
+        const fs::path beside = folder / BINOSPLAT_IMAGE_LIBRARY;
+        const fs::path installed = folder.parent_path() / "lib" / "binosplat" / BINOSPLAT_IMAGE_LIBRARY;
         std::error_code ignored;
         return static_cast<const ImageLibrary*>(findInLibrary(fs::exists(beside, ignored) ? beside : installed, kImageLibrarySymbol));
     }();

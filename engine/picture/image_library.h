@@ -8,7 +8,8 @@
 
 namespace binosplat {
 
-// All throw Error naming the file; a failed write leaves none.
+// All throw Error naming the file; a failed write leaves none. (With libstdc++ errors pass from one library to another by the name of their
+// type.)
 struct ImageLibrary {
     // float32, every channel as it is.
     void (*write_exr)(const std::filesystem::path& path, const Image& image);
@@ -18,7 +19,7 @@ struct ImageLibrary {
     void (*read)(const std::filesystem::path& path, Image& image);
 };
 
-// The name of the one that it exports.
+// The symbol under which the library exports its ImageLibrary.
 inline constexpr const char* kImageLibrarySymbol = "binosplat_image_library";
 
 }  // namespace binosplat

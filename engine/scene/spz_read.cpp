@@ -17,7 +17,7 @@ namespace {
 
 // A scene of so many bytes per byte of its file is none: positions alone do not compress so well.
 constexpr std::uint64_t kMaxExpansion = 256;
-// How much is unpacked at a time: whoever loads may be told to stop. And what that takes of the whole.
+// How much is unpacked at a time, so that loading can be stopped; and unpacking's share of loading.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20;
 constexpr double kUnpackingShare = 0.5;
 
@@ -114,11 +114,13 @@ Attributes readContainer(InputFile& file, const Header& header, std::size_t stre
         const auto packed = loadLittle<std::uint64_t>(table, 16 * i), plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
         const std::uint64_t expected = per_splat[i] * header.splats;
         check(plain == expected, "{}: stream {}: {} bytes, expected {} for {} splats", file.name(), i, plain, expected, header.splats);
-        if (progress) { progress(kUnpackingShare * static_cast<double>(i) / static_cast<double>(streams)); }
         check(packed <= file.bytesLeft(), "{}: stream {}: {} bytes are left of {}", file.name(), i, file.bytesLeft(), packed);
         std::vector<std::byte> bytes;
         bytes.reserve(packed);
+        const auto before = static_cast<double>(target - attributes.bytes.data());
         while (bytes.size() < packed) {
+            const double read = static_cast<double>(plain) * static_cast<double>(bytes.size()) / static_cast<double>(packed);
+            if (progress) { progress(kUnpackingShare * (before + read) / std::max(static_cast<double>(attributes.bytes.size()), 1.0)); }
             const std::span<const std::byte> block = file.readBlock(std::min<std::uint64_t>(packed - bytes.size(), std::uint64_t{1} << 20));
             check(!block.empty(), "{}: stream {}: ends after {} of {} bytes", file.name(), i, bytes.size(), packed);
             bytes.insert(bytes.end(), block.begin(), block.end());

@@ -15,7 +15,7 @@ public:
     void clearRecent() { recent_.clear(); }
     // Nor is it known any more what others leave.
     void forget();
-    // A frame that was displayed so many periods late, at `now_s`. All that follows is said as of then.
+    // A frame that was displayed so many periods late, at `now_s`. Later calls refer to this time.
     void add(double lost_periods, double now_s);
 
     // One after the other, so many of them.
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] double share() const { return share_; }
     // Displays are missed by frames that take `now_ms`: there is less room than was thought.
     void lowerShare(double now_ms, double period_ms);
-    // Not before a while has passed without this.
+    // Whenever displays are missed: raiseShare() does nothing for a while afterwards.
     void hold() { held_until_s_ = now_s_ + hold_s_; }
     void raiseShare(double period_ms);
 
@@ -39,7 +39,7 @@ public:
     [[nodiscard]] bool areLeftAlone() const { return now_s_ < heeds_from_s_; }
 
 private:
-    // By so many frames all together, by none more than counts.
+    // Periods lost by the last frames, so many of them; each counts as one at most.
     [[nodiscard]] double lostIn(std::size_t last) const;
     [[nodiscard]] bool comeOften() const;
 

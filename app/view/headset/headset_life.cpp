@@ -4,6 +4,7 @@
 #include "engine/error.h"
 
 #include <cstdio>
+#include <mutex>
 #include <utility>
 
 namespace binosplat {
@@ -32,6 +33,10 @@ void HeadsetLife::lose(const std::string& why) {
     why_lost_ = why;
     is_gone_ = false;
     next_search_ = {};
+    {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().waitIdle();
+    }
     stay_.reset();
 }
 

@@ -24,7 +24,7 @@ public:
     [[nodiscard]] vk::Format format() const { return format_; }
 
     void showedFrame() { losses_.forget(); }
-    // The device is done with it. Throws Error (exit code 3) where too many were lost before one showed a frame.
+    // Waits until the device is done with it. Throws Error (exit code 3) where too many were lost before one showed a frame.
     void lose(const std::string& why);
 
     enum class Search {
