@@ -3,9 +3,6 @@
 include(GNUInstallDirs)
 
 install(TARGETS binosplat RUNTIME COMPONENT viewer)
-if(BINOSPLAT_OPENIMAGEIO)
-    install(TARGETS binosplat_images LIBRARY DESTINATION lib/binosplat COMPONENT viewer)  # where the program looks, see image_io.cpp
-endif()
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/binosplat COMPONENT viewer)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer PATTERN "*.py" EXCLUDE)
 install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT viewer)

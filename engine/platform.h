@@ -43,9 +43,6 @@ void letLongWritesFail();
 // if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 
-// Finds a symbol in a library, loading it if necessary; it is never unloaded. Throws Error naming the file and the reason.
-void* findInLibrary(const std::filesystem::path& library, const char* symbol);
-
 // Opens a file on a disk for reading, and never waits for one: of anything else (a pipe, a device, a folder) null and the reason in a
 // few words.
 File openRegularFile(const std::filesystem::path& path, std::string& reason);

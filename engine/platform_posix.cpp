@@ -3,7 +3,6 @@
 
 #include "engine/error.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -92,16 +91,6 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
-void* findInLibrary(const fs::path& library, const char* symbol) {
-    void* const loaded = ::dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    void* const found = loaded != nullptr ? ::dlsym(loaded, symbol) : nullptr;
-    if (found == nullptr) {
-        const char* const reason = ::dlerror();
-        fail("{}: cannot be loaded ({})", library.string(), reason != nullptr ? reason : "it is another library");
-    }
-    return found;
 }
 
 File openRegularFile(const fs::path& path, std::string& reason) {

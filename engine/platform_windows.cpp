@@ -120,13 +120,6 @@ bool runProgram(const std::vector<std::string>& words, const fs::path& log) {
     return ::GetExitCodeProcess(running.get(), &code) != 0 && code == 0;
 }
 
-void* findInLibrary(const fs::path& library, const char* symbol) {
-    const HMODULE loaded = ::LoadLibraryW(library.c_str());
-    void* const found = loaded != nullptr ? reinterpret_cast<void*>(::GetProcAddress(loaded, symbol)) : nullptr;
-    check(found != nullptr, "{}: cannot be loaded (error {})", library.string(), ::GetLastError());
-    return found;
-}
-
 File openRegularFile(const fs::path& path, std::string& reason) {
     const DWORD attributes = ::GetFileAttributesW(path.c_str());
     if (attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0) {
