@@ -75,6 +75,7 @@ TEST_CASE("without a stage the floor is that of LOCAL_FLOOR") {
     const std::string script = kSmall + "stage off\nhead 0 position 0.2 1.45 0.1\nat 0.1 exit\n";
     // Elder validation layers do not know that space.
     const ViewRun run = runView(work, "local-floor", script, kScene, "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1");
+    INFO(run.outcome.errors);
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.errors.empty());
     CHECK(says(run, "the room now begins where the wearer stands, 1.45 m above the floor"));
