@@ -327,8 +327,7 @@ FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSetti
     FrameState state{};
     for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], settings.near); }
     if (reprojects(settings.mode)) {
-        state.stereo =
-            stereoViewOf(relation_, eyes[0].size_px, stereo_buffers_.rowWords(), movesRows(relation_.rectified, stereo_buffers_), stereo);
+        state.stereo = stereoViewOf(relation_, eyes[0].size_px, stereo_buffers_.rowWords(), stereo);
         state.stereo_counters = firstCountersOf(stereo, eyes[0].size_px);
     }
     return state;

@@ -5,8 +5,9 @@
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
 // their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
-// Errors are those of the even rows, which count for two. Where this pass moves rows itself it takes these first; the odd ones follow once
-// tiles are chosen, so that those to be rendered have half of their pixels sampled in vain and not all.
+// Errors are those of the even rows, which count for two. Where they are predicted these come first; the odd ones follow once tiles are
+// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where an eye does not resolve two rows (8h)
+// an odd one is the mean of those above and below.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -41,8 +42,11 @@ const uint kSharedRow = kRowSteps * kArrivalsStep;
 shared uint row_arrivals[kSharedRow + 1];
 shared uint arrived_bits[kSharedRow == 0 ? kMaxWidth / 32 : kSharedRow / 32];
 shared uint tile_classes[kClasses ? (kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16 : 1];
-shared uint moved_tiles[(kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16];  // of this row of tiles, in no order
+const uint kMostTiles = (kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16;
+
+shared uint moved_tiles[kMostTiles];  // of this row of tiles, in no order; from the end those of which this row is a mean
 shared uint moved_count;
+shared uint mean_count;
 shared uint hidden_count;
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
@@ -53,11 +57,23 @@ void put(StereoView stereo, ivec2 at, uint arrival) {
     if (at.x >= 0 && at.x < int(stereo.size_px.x)) { atomicMax(row_arrivals[at.x], arrival); }
 }
 
-// Which tiles of the row are moved, i.e. come from here, and whether any is hidden.
-void listTiles(uint first_tile, uint tiles, bool moves) {
+// Whether the row may be the mean of those above and below: these are there, in the same tiles, and tiles say where.
+bool mayBeMean(StereoView stereo, uint y) {
+    const bool between = (y & 1) == 1 && (y + 1) % kTileSize != 0 && y + 1 < stereo.size_px.y;
+    return !kPredictErrors && between && any(notEqual(uvec2(pass.tile_errors), uvec2(0)));
+}
+
+// Which tiles of the row are moved, i.e. come from here, which are the mean of the rows beside it, and whether any is hidden.
+void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
     for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) {
         const uint kind = pass.tile_kinds.at[first_tile + tile];
-        if (kind == 0 && moves) { moved_tiles[atomicAdd(moved_count, 1)] = tile; }
+        if (kind == 0 && moves) {
+            if (may_be_mean && pass.tile_errors.at[first_tile + tile] == kSeenCoarsely) {
+                moved_tiles[kMostTiles - 1 - atomicAdd(mean_count, 1)] = tile;
+            } else {
+                moved_tiles[atomicAdd(moved_count, 1)] = tile;
+            }
+        }
         if (kind == kTileHidden) { atomicAdd(hidden_count, 1); }
     }
 }
@@ -302,6 +318,20 @@ void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint arr
     }
 }
 
+// The rows beside this one are even ones, which were there before any odd one was begun.
+void putMeans(uint y, uint width, uint tiles) {
+    for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kStereoGroup) {
+        const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize], x = tile * kTileSize + item % kTileSize;
+        if (kClasses && item % kTileSize == 0) { tile_classes[tile] = pass.pixel_classes.at[(y - 1) * tiles + tile]; }
+        if (x >= width) { continue; }
+        const uint i = y * width + x;
+        const vec4 above = colourAt(pass.affiliated, pass.half_affiliated, i - width);
+        const vec4 below = colourAt(pass.affiliated, pass.half_affiliated, i + width);
+        putColour(pass.affiliated, pass.half_affiliated, i, 0.5 * (above + below));
+        if (kDepth) { pass.depths.at[i] = 0.5 * (pass.depths.at[i - width] + pass.depths.at[i + width]); }
+    }
+}
+
 void hideTiles(uint y, uint first_tile, uint width) {
     for (uint x = gl_LocalInvocationIndex; x < width; x += kStereoGroup) {
         if (pass.tile_kinds.at[first_tile + x / kTileSize] != kTileHidden) { continue; }
@@ -321,6 +351,7 @@ void main() {
     const uint thread = threadIndex(), lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) {
         moved_count = 0;
+        mean_count = 0;
         hidden_count = 0;
     }
     for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
@@ -331,7 +362,7 @@ void main() {
         for (uint x = gl_LocalInvocationIndex; x < min(width + 4, kSharedRow + 1); x += kStereoGroup) { row_arrivals[x] = 0; }
     }
     barrier();
-    listTiles(first_tile, tiles, pass.counters.at[0].moves != 0);
+    listTiles(first_tile, tiles, pass.counters.at[0].moves != 0, mayBeMean(stereo, y));
     barrier();
     const uint items = moved_count * kTileSize;
     if (kMovesRow) {
@@ -363,6 +394,7 @@ void main() {
         }
         begin += kStereoGroup;
     } while (begin < items);
+    if (mean_count > 0) { putMeans(y, width, tiles); }
     if (hidden_count > 0) { hideTiles(y, first_tile, width); }
     if (!kClasses) { return; }
     barrier();

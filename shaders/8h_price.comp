@@ -1,5 +1,5 @@
 // 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
-// known where the eye looks, an error counts for what the eye sees of it.
+// known where the eye looks, an error counts for what the eye sees of it, and tiles are marked in which it does not resolve two rows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -28,6 +28,8 @@ void main() {
     if (tile >= size_tiles.x * size_tiles.y) { return; }
     // Sums stop growing there (8f); 8e adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
+    const float share = kFoveated ? seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
+    if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     uint price = 0;
     if (pass.tile_kinds.at[tile] == 0 && error > 0) {
         const uint cost = pass.tile_costs.at[tile];
@@ -36,7 +38,7 @@ void main() {
         // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
         atomicAdd(pass.price_bins.at[bin], cost);
         if (kFoveated) {
-            const float share = seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)), seen = share * float(error);
+            const float seen = share * float(error);
             const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
             const uint seen_bin = binOf(seen / float(cost));
             price = unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;

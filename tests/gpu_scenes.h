@@ -76,6 +76,12 @@ inline Image toImage(const reference::Picture& picture) {
     }
     return image;
 }
+inline Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
+    reference::Picture picture;
+    picture.size_px = size_px;
+    picture.rgba = colours;
+    return toImage(picture);
+}
 
 // One channel each of the given values.
 template <typename... Values>

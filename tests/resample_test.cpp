@@ -167,6 +167,68 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
     CHECK(pictures == 60);
 }
 
+TEST_CASE_FIXTURE(Gpu, "8e_resample makes odd rows the means of even ones where an eye does not tell them apart, as the twin does") {
+    std::size_t means = 0;
+    double worst = 0.0, worst_depth = 0.0;
+    for (const StereoCase& whole : test::makeStereoCases()) {
+        for (const auto& [rows, moves_row] : {std::pair(Rows::kOwn, false), std::pair(Rows::kShared, false), std::pair(Rows::kShared, true),
+                                              std::pair(Rows::kSharedHalves, true)}) {
+            CAPTURE(whole.name);
+            CAPTURE(static_cast<int>(rows));
+            CAPTURE(moves_row);
+            StereoCase c = whole;
+            if (areHalves(rows)) { test::roundToHalves(c.dominant); }
+            StereoOnDevice device = toDevice(*this, c, rows);
+            if (moves_row && device.rectified() == 0) { continue; }
+            const Arrived arrived(c);
+            auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
+            const auto kinds = test::markSome(device.tileCount());
+            if (!moves_row) { device.writeArrivals(arrived.words); }
+            device.writeTileKinds(test::kindsOf(kinds));
+            device.takeRowsApart();
+            StereoOnDevice::ResampleParts parts{.errors = true, .depths = true, .classes = true, .moves_row = moves_row};
+            device.resample(parts);
+            std::vector<double> shares(device.tileCount(), 0.26);
+            std::vector<gpu::uint> errors(device.tileCount(), 7);
+            for (std::size_t t = 0; t < shares.size(); t += 2) {
+                shares[t] = 0.25;
+                errors[t] = gpu::kSeenCoarsely;
+            }
+            device.writeTileErrors(errors);
+            parts.errors = false;
+            parts.odd = true;
+            device.resample(parts);
+            CHECK(device.readTileErrors() == errors);
+
+            auto expected = reference::resample(c.dominant, resolved, kinds, c.eyes);
+            auto expected_depths = reference::resampleDepths(expected, resolved, kinds, c.sizePx());
+            const auto without = expected;
+            reference::averageRows(expected, expected_depths, resolved, kinds, shares, c.sizePx());
+            const auto colours = device.readAffiliated();
+            const auto depths = device.readDepths();
+            const auto classes = device.readClasses();
+            std::size_t other_class = 0;
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                if (kinds[test::tileOf(i, c.sizePx())] != TileKind::kNone) { continue; }
+                means += expected[i] != without[i] ? 1 : 0;
+                other_class += classes[i] == static_cast<std::uint8_t>(resolved[i].pixel_class) ? 0 : 1;
+                worst_depth = std::max(worst_depth,
+                                       std::abs(static_cast<double>(depths[i]) - expected_depths[i]) / std::max(expected_depths[i], 1e-9));
+                for (int channel = 0; channel < 4; ++channel) {
+                    // Two rows that were rounded, and their mean once more.
+                    const double rounding = areHalves(rows) ? 2.0 * std::max(expected[i][channel] * 0x1.1p-11, 0x1p-24) : 0.0;
+                    worst = std::max(worst, std::abs(static_cast<double>(colours[i][channel]) - expected[i][channel]) - rounding);
+                }
+            }
+            CHECK(other_class == 0);
+        }
+    }
+    MESSAGE(means << " pixels are means; largest difference " << worst << ", of depths " << worst_depth);
+    CHECK(means > 10000);
+    CHECK(worst <= 1e-5);
+    CHECK(worst_depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, to 2^-18
+}
+
 TEST_CASE_FIXTURE(Gpu, "8e_resample expects the twin's errors of tiles that are moved, and none of the others") {
     std::size_t tiles = 0, other_tiles = 0;
     double worst = 0.0;

@@ -356,7 +356,9 @@ private:
 };
 
 inline gpu::StereoView viewOfCase(const StereoCase& c) {
-    return stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, false, settingsOf(c.settings));
+    gpu::StereoView view = stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+    view.rows_apart = 1;  // until takeRowsApart
+    return view;
 }
 inline StereoOnDevice toDevice(Gpu& gpu, const StereoCase& c, Rows rows = Rows::kOwn) {
     StereoOnDevice device(gpu, viewOfCase(c), coloursOf(c.dominant), movingOf(c.dominant, c.settings), rows);

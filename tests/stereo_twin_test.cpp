@@ -20,13 +20,6 @@ using test::Gpu;
 
 namespace {
 
-Image toImage(glm::uvec2 size_px, const std::vector<glm::dvec4>& colours) {
-    reference::Picture picture;
-    picture.size_px = size_px;
-    picture.rgba = colours;
-    return test::toImage(picture);
-}
-
 Mode modeOf(StereoMethod method) {
     return method == StereoMethod::kReproject ? Mode::kReproject : method == StereoMethod::kPaper ? Mode::kPaper : Mode::kPredicted;
 }
@@ -136,7 +129,7 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 }
                 const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
                 const Difference difference = compare(test::keepTiles(made.pictures[1 - dominant], same_kind),
-                                                      test::keepTiles(toImage(size_px, twin.affiliated), same_kind), 4);
+                                                      test::keepTiles(test::toImage(size_px, twin.affiliated), same_kind), 4);
                 std::size_t other_classes = 0;
                 for (std::size_t i = 0; i < twin.resolved.size(); ++i) {
                     const std::size_t tile = i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16;

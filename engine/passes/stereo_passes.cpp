@@ -12,14 +12,13 @@ constexpr gpu::uint kMarkGroups = 64;
 
 }  // namespace
 
-gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, bool moves_rows,
-                             const StereoSettings& settings) {
+gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
     return {.affiliated_from_dominant = relation.affiliated_from_dominant,
             .dominant_from_affiliated = relation.dominant_from_affiliated,
             .size_px = size_px,
             .size_tiles = tilesOf(size_px),
             .row_words = row_words,
-            .rows_apart = moves_rows && settings.patching == Patching::kPredicted ? 2u : 1u,
+            .rows_apart = settings.patching == Patching::kPredicted ? 2u : 1u,
             .gap_px = settings.gap_px,
             .margin_px = settings.margin_px,
             .edge_samples = settings.edge_samples,
@@ -94,7 +93,7 @@ public:
     void findDepthBounds();
     void findEdgeRois();
     void reproject();
-    // Of every row, or of the even ones; resampleOdd: of the others, if there are any left.
+    // Of every row or, where errors are predicted, of the even ones; resampleOdd: of the others.
     void resample();
     void resampleOdd();
     void findNewcomers();
@@ -186,12 +185,11 @@ void StereoRecorder::reproject() {
 
 void StereoRecorder::resample() { resampleFrom(0, predicts()); }
 
-void StereoRecorder::resampleOdd() {
-    if (predicts() && movesRows() != 0) { resampleFrom(1, false); }
-}
+void StereoRecorder::resampleOdd() { resampleFrom(1, false); }
 
 void StereoRecorder::resampleFrom(gpu::uint first_row, bool predict_errors) {
     commands_.beginPass("affiliated 8e_resample");
+    const bool knows_errors = predict_errors || in_.affiliated_gaze;
     const gpu::ResamplePass pass{.stereo = view(),
                                  .dominant = in_.dominant.colours.address<gpu::vec4>(),
                                  .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
@@ -200,7 +198,7 @@ void StereoRecorder::resampleFrom(gpu::uint first_row, bool predict_errors) {
                                  .half_affiliated = in_.affiliated.colours.address<gpu::uvec2>(),
                                  .depths = in_.affiliated.depths.address<float>(),
                                  .tile_kinds = in_.stereo.tileKinds(),
-                                 .tile_errors = in_.stereo.tileErrors(),
+                                 .tile_errors = knows_errors ? in_.stereo.tileErrors() : gpu::DeviceAddress<gpu::uint>{},
                                  .tile_depths = in_.stereo.tileDepths(),
                                  .pixel_classes = in_.stereo.pixelClasses(),
                                  .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
@@ -298,7 +296,7 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
     if (passes.groupsHoles()) { passes.groupHoles(); }
     if (passes.predicts()) { passes.price(); }
     if (passes.followsPaper() || passes.predicts()) { passes.select(); }
-    passes.resampleOdd();
+    if (passes.predicts()) { passes.resampleOdd(); }
 }
 
 }  // namespace binosplat

@@ -52,9 +52,8 @@ struct Gaze {
     double clear_rad = 0.0;               // how far about it everything counts in full: the eye may look there, too
 };
 
-// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers. `moves_rows`: see movesRows.
-gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, bool moves_rows,
-                             const StereoSettings& settings);
+// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers.
+gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
 // What the counters start a frame with: modes that do not weigh move everything.
 gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 

@@ -87,6 +87,9 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         const auto whole_prices = price(pictures.tile_kinds, errors, pictures.tile_costs);
         select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs, shares), pictures.tile_costs, budget_cost,
                whole_prices);
+        if (stereo.target_gaze) {
+            averageRows(pictures.affiliated, pictures.affiliated_depth, pictures.resolved, pictures.tile_kinds, shares, size_px);
+        }
     } else if (stereo.method == StereoMethod::kPaper && stereo.center_rois) {
         markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px);
     }

@@ -86,4 +86,19 @@ std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::spa
     return depths;
 }
 
+void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,
+                 std::span<const TileKind> kinds, std::span<const double> seen_shares, glm::uvec2 size_px) {
+    const std::size_t width = size_px.x, columns = tileGrid(size_px).x;
+    for (std::size_t y = 1; y + 1 < size_px.y; y += 2) {
+        if ((y + 1) % kTileSize == 0) { continue; }
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t tile = y / kTileSize * columns + x / kTileSize, i = y * width + x;
+            if (kinds[tile] != TileKind::kNone || seen_shares[tile] > 0.25) { continue; }
+            colours[i] = 0.5 * (colours[i - width] + colours[i + width]);
+            depths[i] = 0.5 * (depths[i - width] + depths[i + width]);
+            resolved[i].pixel_class = resolved[i - width].pixel_class;
+        }
+    }
+}
+
 }  // namespace binosplat::reference

@@ -151,6 +151,12 @@ std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
             std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
+// 8e once more, where the tiles' `seen_shares` are known: where the eye sees no more than a quarter of an error, so that its finest cycle
+// has four pixels, an odd row of an unmarked tile is the mean of those above and below, with the upper one's classes. The last row of a
+// tile or of the picture stays as it is.
+void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,
+                 std::span<const TileKind> kinds, std::span<const double> seen_shares, glm::uvec2 size_px);
+
 // All passes: both eyes' pictures, source first.
 struct StereoPictures {
     Picture dominant;

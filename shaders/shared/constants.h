@@ -118,6 +118,10 @@ BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
 // A tile beside where the eye looks is moved, whatever the budget is, if the eye sees less than this of its squared error: a hundredth of
 // what lies between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
+// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and 8e makes a row of
+// those above and below. 8h says so in the place of the tile's error, which is more than errors become.
+BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
+BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 // The spread of a moving pixel's inverse depth is told in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;

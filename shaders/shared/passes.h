@@ -150,8 +150,8 @@ struct ResamplePass {
     HalfColours half_affiliated;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
-    Uints tile_errors;                 // out, where errors are predicted
-    Uints tile_depths;                 // likewise: the farthest that arrived, see 8f_newcomers
+    Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where 8h says kSeenCoarsely
+    Uints tile_depths;                 // out, where errors are predicted: the farthest that arrived, see 8f_newcomers
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
     StereoCounterss counters;
@@ -192,7 +192,7 @@ struct PricePass {
     StereoViews stereo;
     Uints tile_kinds;
     Uints tile_costs;
-    Uints tile_errors;
+    Uints tile_errors;  // in; out where an eye does not resolve two rows: kSeenCoarsely
     Uints tile_prices;  // out: bin << 22 | cost
     Uints price_bins;   // out: cost of the tiles in each bin, of errors that are seen whole; greatest error a pair first
     EyeGaze gaze;       // where it is known where the affiliated eye looks
