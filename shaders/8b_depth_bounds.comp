@@ -1,11 +1,12 @@
-// 8b: how often each depth occurs in the dominant picture, for the robust extremes that the edge ROIs start from.
+// 8b: how often each depth occurs in the dominant picture, for the robust extremes that the edge ROIs start from; every other row says as
+// much as all. A workgroup counts kBoundsTiles tiles side by side before it adds its bins to everybody's.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/stereo.glsl"
 #include "lib/moving_pixel.glsl"
 
-layout(local_size_x = 16, local_size_y = 8) in;
+layout(local_size_x = kStereoGroup) in;
 layout(constant_id = 1) const bool kHalfColours = false;
 
 #include "lib/picture.glsl"
@@ -14,16 +15,22 @@ layout(push_constant, scalar) uniform Push { DepthBoundsPass pass; };
 
 shared uint group_bins[kDepthBins];
 
+void count(uvec2 pixel, uvec2 size_px, uint row_words) {
+    const uint moving = pass.moving.at[pixel.y * row_words + pixel.x];
+    if (moving != 0 && colourAt(pass.colours, pass.half_colours, pixel.y * size_px.x + pixel.x).w > 0.5) {
+        atomicAdd(group_bins[uint(clamp((16 - log2(inverseDepthOf(moving))) * 32, 0, float(kDepthBins - 1)))], 1);
+    }
+}
+
 void main() {
     const uvec2 size_px = pass.stereo.at[0].size_px;
+    const uint row_words = pass.stereo.at[0].row_words;
     for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kStereoGroup) { group_bins[bin] = 0; }
     barrier();
-    const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x < size_px.x && pixel.y < size_px.y) {
-        const uint moving = pass.moving.at[pixel.y * pass.stereo.at[0].row_words + pixel.x];
-        if (moving != 0 && colourAt(pass.colours, pass.half_colours, pixel.y * size_px.x + pixel.x).w > 0.5) {
-            atomicAdd(group_bins[uint(clamp((16 - log2(inverseDepthOf(moving))) * 32, 0, float(kDepthBins - 1)))], 1);
-        }
+    const uvec2 first = gl_WorkGroupID.xy * uvec2(kBoundsTiles * kTileSize, kTileSize);
+    const uvec2 end = min(first + uvec2(kBoundsTiles * kTileSize, kTileSize), size_px);
+    for (uint y = first.y; y < end.y; y += 2) {
+        for (uint x = first.x + gl_LocalInvocationIndex; x < end.x; x += kStereoGroup) { count(uvec2(x, y), size_px, row_words); }
     }
     barrier();
     for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kStereoGroup) {

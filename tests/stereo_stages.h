@@ -89,7 +89,7 @@ public:
                                       .half_colours = colours_.address<gpu::uvec2>(),
                                       .moving = moving(),
                                       .bins = words(bins_)},
-                 pixelGroups());
+                 {groupsOver(view_.size_tiles.x, gpu::kBoundsTiles), view_.size_tiles.y});
     }
     void findEdgeRois(bool hidden_tiles = false) {
         dispatch("8c_edge_rois", {rectified(), hidden_tiles},

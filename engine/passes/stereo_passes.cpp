@@ -161,8 +161,9 @@ void StereoRecorder::findDepthBounds() {
                                       .half_colours = in_.dominant.colours.address<gpu::uvec2>(),
                                       .moving = moving(),
                                       .bins = in_.stereo.bins()};
-    commands_.dispatch(kernel("8b_depth_bounds", bounds, {alongRows(), halfFloats()}), bounds, in_.stereo.sizeTiles().x,
-                       2 * in_.stereo.sizeTiles().y);
+    const glm::uvec2 tiles = in_.stereo.sizeTiles();
+    commands_.dispatch(kernel("8b_depth_bounds", bounds, {alongRows(), halfFloats()}), bounds,
+                       (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
 }
 
 void StereoRecorder::findEdgeRois() {

@@ -27,7 +27,7 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
         traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1 + 1.0 / 32));
     }
     if (paper) {
-        traffic.emplace_back("8b_depth_bounds", colour + moving);
+        traffic.emplace_back("8b_depth_bounds", (colour + moving) / 2);  // of every other row
         traffic.emplace_back("8c_edge_rois", perTile(2));
     }
     if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }

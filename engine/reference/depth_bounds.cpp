@@ -1,4 +1,4 @@
-// 8b: how often each depth occurs in a picture.
+// 8b: how often each depth occurs in every other row of a picture.
 #include "engine/reference/stereo.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choi
     constexpr double kBins = 1024.0, kBinsPerOctave = 32.0;
     std::vector<std::uint32_t> bins(static_cast<std::size_t>(kBins), 0);
     for (std::size_t i = 0; i < dominant.rgba.size(); ++i) {
-        if (dominant.rgba[i].w <= 0.5) { continue; }
+        if (i / dominant.size_px.x % 2 != 0 || dominant.rgba[i].w <= 0.5) { continue; }
         const auto pixel = movingPixel(dominant, i, {.method = StereoMethod::kPaper, .depth_choice = choice});
         if (!pixel) { continue; }
         const double octave = -std::log2(pixel->inverse_depth);

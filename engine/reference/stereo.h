@@ -71,8 +71,8 @@ void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
 // Likewise 8a, and 8c: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
 void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// 8b: how many pixels with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023; what is
-// nearer or farther counts as the first or the last.
+// 8b: how many pixels of every other row with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023;
+// what is nearer or farther counts as the first or the last.
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
 // 8c: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not

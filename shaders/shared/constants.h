@@ -160,6 +160,8 @@ BINOSPLAT_CONSTANT uint kNothingArrived = 0xffffffffu;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;
+// Tiles that a workgroup of 8b counts: 16 pixels an invocation, which clears eight bins and adds eight up.
+BINOSPLAT_CONSTANT uint kBoundsTiles = 16;
 
 BINOSPLAT_END_SHARED
 
