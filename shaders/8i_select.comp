@@ -68,9 +68,10 @@ bool isChosen(uint tile, uint tiles) {
     const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
     const bool is_last = isOfLast(price);
     const uint cost = price & kMaxTileCost;
-    const uint before_group = costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles));
     uint total;
-    const uint before = before_group + scanGroup(is_last ? cost : 0, total);
+    uint before = scanGroup(is_last ? cost : 0, total);
+    // Most workgroups have no tile of the last bin, and need not know what the others have.
+    if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles)); }
     return is_last ? before + cost <= left_for_last : price != 0 && price >> 22 > last_bin;
 }
 

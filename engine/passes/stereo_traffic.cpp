@@ -44,7 +44,7 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
         traffic.emplace_back("8h_price", perTile(4));  // kinds, costs, errors; prices
     }
     if (paper || predict) {
-        // kinds (in and out), prices, costs; the list and the mask. And each workgroup sums up the prices of half of the tiles.
+        // kinds (in and out), prices, costs; the list and the mask. And a workgroup sums up the prices of half of the tiles, at most.
         traffic.emplace_back("8i_select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kStereoGroup) : 0.0));
     }
     double sum = 0.0;
