@@ -34,8 +34,10 @@ uint pairsNear(StereoView stereo, uint tile) {
     return range.y - range.x;
 }
 
-// Whether what the moved tiles save is more than what moving costs beside them and the budget for what it gets wrong.
-bool movingPays(StereoView stereo, uint saved, uint picture_cost, uint tiles) {
+// Whether what the moved tiles save is more than what moving costs beside them and the budget for what it gets wrong. Without depths it
+// is known less well where tiles come from: moving must save clearly more then to be taken up again, or frames would take turns.
+bool movingPays(StereoView stereo, uint all_saved, uint picture_cost, uint tiles) {
+    const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = stereo.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
     uint high, low;

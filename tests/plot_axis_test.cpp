@@ -1,9 +1,13 @@
-// Facts about the axes of plots: round ends, and few enough ticks for their labels.
+// Facts about plots: axes with round ends and few enough ticks for their labels, and names that do not lie on each other.
 #include "app/plot/plot_axis.h"
+#include "app/plot/svg_plot.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 using namespace binosplat;
 
@@ -49,4 +53,27 @@ TEST_CASE("what has no place, and short numbers") {
     CHECK(shortNumber(2e9) == "2G");
     CHECK(shortNumber(1e15) == "1e+15");
     CHECK(shortNumber(0.001) == "0.001");
+}
+
+TEST_CASE("names stand beside their points where there is room, and never on each other") {
+    const auto namesOf = [](const std::vector<std::pair<double, double>>& points, double right) {
+        PlotPanel panel{.title = "panel", .x_label = "x", .y_label = "y", .x_scale = Scale::kLinear, .y_scale = Scale::kLinear};
+        panel.lines.push_back({.label = "all", .points = {{0.0, 0.0}, {right, 10.0}}});
+        panel.lines.push_back(
+            {.label = "named", .points = points, .names = std::vector<std::string>(points.size(), "a name"), .joined = false});
+        std::vector<std::string> places;
+        const std::string svg = drawPlot("plot", {panel});
+        for (std::size_t at = 0; (at = svg.find("class='name'", at)) != std::string::npos; ++at) {
+            const std::size_t begin = svg.rfind("<text", at);
+            places.push_back(svg.substr(begin, svg.find('>', at) - begin));
+        }
+        return places;
+    };
+    CHECK(namesOf({{2.0, 2.0}, {2.0, 8.0}, {8.0, 2.0}, {8.0, 8.0}}, 10.0).size() == 4);
+    // One point has four sides: of six names that want to be there, four are.
+    const auto crowd = namesOf(std::vector(6, std::pair(5.0, 5.0)), 10.0);
+    CHECK(std::set<std::string>(crowd.begin(), crowd.end()).size() == 4);
+    CHECK(crowd.size() == 4);
+    // In a corner three sides are outside.
+    CHECK(namesOf(std::vector(6, std::pair(0.0, 0.0)), 10.0).size() == 1);
 }

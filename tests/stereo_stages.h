@@ -58,7 +58,8 @@ public:
     }
 
     // `ranges`: of the dominant eye's pairs. Arrays that the pass is to clear are not clear before.
-    void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0) {
+    // `may_move`: the dominant eye left what moving needs.
+    void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
         gpu_.upload(counters_, std::vector{gpu::StereoCounters{}});
@@ -66,7 +67,7 @@ public:
         fill(tile_depths_, tileCount(), kUnwritten);
         fill(tile_mask_, maskWords(), kUnwritten);
         fill(bins_, gpu::kPriceBins, kUnwritten);
-        dispatch("8a_weigh", {rectified(), hidden_tiles},
+        dispatch("8a_weigh", {rectified(), hidden_tiles, /*kKindsGiven=*/1, may_move},
                  gpu::WeighPass{.stereo = view(),
                                 .ranges = range_buffer.address<gpu::uvec2>(),
                                 .moving = moving(),

@@ -158,6 +158,14 @@ TEST_CASE_FIXTURE(Gpu, "8a_weigh moves nothing where that saves half of moving a
         CHECK(device.readCounters().moves == (moves ? 1u : 0u));
         CHECK(device.readTileCosts() == std::vector<gpu::uint>{pairs + 16, 56, 16, 19});
     }
+    // Where nothing was moved before, an eighth of what it saves is not counted on; and nothing is moved yet.
+    for (const auto& [pairs, pays] : {std::pair(131u, false), std::pair(132u, true)}) {
+        StereoOnDevice still = toDevice(*this, c);
+        still.weigh({{0, pairs}, {0, 40}, {0, 0}, {0, 3}}, false, kVisible, /*may_move=*/false);
+        CHECK(still.readCounters().pays == (pays ? 1u : 0u));
+        CHECK(still.readCounters().moves == 0);
+        CHECK(still.readCounters().saved_cost == pairs - 40);
+    }
     StereoOnDevice device = toDevice(*this, c);
     device.weigh({{0, 5000000}, {7, 4194294}, {0, 4194288}, {0, 100}}, false, kVisible);
     CHECK(device.readTileCosts() == std::vector<gpu::uint>{gpu::kMaxTileCost, gpu::kMaxTileCost, gpu::kMaxTileCost, 116});

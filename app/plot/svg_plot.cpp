@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace binosplat {
 
@@ -22,6 +23,43 @@ std::string escape(const std::string& text) {
     for (char c : text) { result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c); }
     return result;
 }
+
+// Where names stand beside their points: in the panel, and none on another.
+class NamePlaces {
+public:
+    struct Place {
+        double x, y;
+        bool on_left;
+    };
+
+    NamePlaces(double left, double right, double top, double bottom) : left_(left), right_(right), top_(top), bottom_(bottom) {}
+
+    // Nothing where there is no room.
+    std::optional<Place> find(double x, double y, const std::string& name) {
+        const double width = kNameCharacter * static_cast<double>(name.size());
+        for (const double below : {-5.0, 13.0}) {
+            for (const bool on_left : {x > 0.5 * (left_ + right_), x <= 0.5 * (left_ + right_)}) {
+                const Place place{x + (on_left ? -6.0 : 6.0), y + below, on_left};
+                const Box box{on_left ? place.x - width : place.x, on_left ? place.x : place.x + width, place.y - 9.0, place.y + 2.0};
+                const bool inside = box.left >= left_ && box.right <= right_ && box.top >= top_ && box.bottom <= bottom_;
+                if (!inside || std::ranges::any_of(taken_, [&](const Box& other) { return overlap(box, other); })) { continue; }
+                taken_.push_back(box);
+                return place;
+            }
+        }
+        return std::nullopt;
+    }
+
+private:
+    struct Box {
+        double left, right, top, bottom;
+    };
+    static constexpr double kNameCharacter = 5.6;  // of a name's letters of 10 px, about as wide as they become
+    static bool overlap(const Box& a, const Box& b) { return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom; }
+
+    double left_, right_, top_, bottom_;
+    std::vector<Box> taken_;
+};
 
 // One panel with its top left corner at (left, top).
 class PanelDrawing {
@@ -53,7 +91,8 @@ public:
     [[nodiscard]] std::string draw() const {
         std::string svg = drawAxes();
         for (const PlotMark& mark : panel_.marks) { svg += drawMark(mark); }
-        for (std::size_t i = 0; i < panel_.lines.size(); ++i) { svg += drawLine(i); }
+        NamePlaces places(x0_, x1_, y1_ - 12.0, y0_);
+        for (std::size_t i = 0; i < panel_.lines.size(); ++i) { svg += drawLine(i, places); }
         return svg;
     }
 
@@ -90,7 +129,7 @@ private:
             toX(mark.x), y0_, y1_, toX(mark.x) - 4.0, y0_ - 8.0, escape(mark.name));
     }
 
-    [[nodiscard]] std::string drawLine(std::size_t index) const {
+    [[nodiscard]] std::string drawLine(std::size_t index, NamePlaces& places) const {
         const PlotLine& line = panel_.lines[index];
         const char* colour = kColours[index % kColours.size()];
         const char* dash = index < kColours.size() ? "" : " stroke-dasharray='6 3'";
@@ -105,11 +144,10 @@ private:
             path += fmt::format("{}{:.1f},{:.1f} ", broken ? "M" : "L", x, y);
             broken = false;
             if (line.dots) { svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='{}'/>", x, y, colour); }
-            if (!line.names.empty()) {
-                // To the left of points on the right, where the panel ends.
-                const bool on_left = x > 0.5 * (x0_ + x1_);
-                svg += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'{}>{}</text>", x + (on_left ? -6.0 : 6.0), y - 5.0,
-                                   on_left ? " text-anchor='end'" : "", escape(line.names[i]));
+            if (line.names.empty()) { continue; }
+            if (const auto place = places.find(x, y, line.names[i])) {
+                svg += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'{}>{}</text>", place->x, place->y,
+                                   place->on_left ? " text-anchor='end'" : "", escape(line.names[i]));
             }
         }
         if (line.joined && !path.empty()) {

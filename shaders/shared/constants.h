@@ -103,6 +103,8 @@ BINOSPLAT_CONSTANT uint kTilePairs = 16;
 // Moving costs something even where tiles are not moved, since 7 and 8e, or 8d and 8e, go over all pixels: this part of what moving all
 // tiles costs.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
+// Where nothing was moved in the frame before, this part of what moving saves is not counted on.
+BINOSPLAT_CONSTANT uint kResumePart = 8;
 
 // The price list of 8h: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
