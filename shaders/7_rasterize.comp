@@ -21,6 +21,7 @@ layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // what a movi
 layout(constant_id = 7) const bool kHalfColours = false;
 layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
 layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
+layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going to be moved like the even one above it
 
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
@@ -28,14 +29,12 @@ layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
 
-// What the loop sums up.
-const bool kSumDepth = kDepth || (kMoving && kDepthChoice != kDepthInverse);
-const bool kSumInverseDepth = kMoments || kSpread || (kMoving && kDepthChoice == kDepthInverse);
-const bool kSumInverseDepthSquare = kMoments || kSpread;
+// What the loop sums up so that a pixel can be moved.
+const bool kMovesByDepth = kMoving && kDepthChoice != kDepthInverse;
+const bool kMovesByInverseDepth = kSpread || (kMoving && kDepthChoice == kDepthInverse);
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
-const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread, in a column
-const uint kRowStep = kThreadsPerCell / kCellSize;             // rows from one to the next
+const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const float kFar = 3e38;                                       // a rho that is no hit
 const float kNoLowPass = 1e30;                                 // likewise, but nearer than a hit at no depth (z infinite)
 
@@ -109,7 +108,7 @@ void main() {
     const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;
     const uint in_cell = gl_LocalInvocationIndex % kThreadsPerCell;
-    const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize);
+    const uvec2 first_pixel = tile_px + kCellSize * uvec2(cell & 1, cell >> 1) + uvec2(in_cell % kCellSize, in_cell / kCellSize * kPixels);
     const vec2 first_px = vec2(first_pixel - tile_px) + 0.5;  // relative to the tile
     const uvec2 range = pass.ranges.at[tile];
 
@@ -122,7 +121,7 @@ void main() {
         colour[p] = vec3(0);
         depth[p] = 0;
         moments[p] = vec2(0);
-        const bool inside = first_pixel.x < size_px.x && first_pixel.y + p * kRowStep < size_px.y;
+        const bool inside = first_pixel.x < size_px.x && first_pixel.y + p < size_px.y;
         transmittance[p] = inside ? 1 : -1;
         any_open = any_open || inside;
     }
@@ -165,7 +164,7 @@ void main() {
                 float most_open = 0;
                 // Without branches: pixels that the splat does not reach blend it with weight 0.
                 [[unroll]] for (uint p = 0; p < kPixels; ++p) {
-                    const float dy = d.y + float(p * kRowStep);
+                    const float dy = d.y + float(p);
                     const float u_p = u + plane.y * dy;
                     const float v_p = reference.w + plane.z * dy;
                     float q_p = q + depth_form.z * dy;
@@ -186,12 +185,13 @@ void main() {
                     transmittance[p] = closes ? -transmittance[p] : after;
                     most_open = max(most_open, transmittance[p]);
                     colour[p] += weight * splat_colour;
-                    if (kSumDepth) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
-                    if (kSumInverseDepth) {
+                    const bool moves = !kEvenRows || (p & 1) == 0;
+                    if (kDepth || (kMovesByDepth && moves)) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
+                    if (kMoments || (kMovesByInverseDepth && moves)) {
                         const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
                         const float weighted = weight * inverse_z;
                         moments[p].x += weighted;
-                        if (kSumInverseDepthSquare) { moments[p].y += weighted * inverse_z; }
+                        if (kMoments || kSpread) { moments[p].y += weighted * inverse_z; }
                     }
                 }
                 any_open = most_open > 0;
@@ -202,14 +202,14 @@ void main() {
 
     const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
-        const uvec2 pixel = first_pixel + uvec2(0, p * kRowStep);
+        const uvec2 pixel = first_pixel + uvec2(0, p);
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
             putColour(pass.colours, pass.half_colours, at, vec4(colour[p] + left * pass.background, 1 - left));
             if (kDepth) { pass.depths.at[at] = depth[p]; }
             if (kMoments) { pass.moments.at[at] = moments[p]; }
-            if (kMoving) {
+            if (kMoving && (!kEvenRows || (pixel.y & 1) == 0)) {
                 pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
                 if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
             }

@@ -23,7 +23,7 @@ layout(constant_id = 3) const bool kMayMove = true;       // the dominant eye's 
 uint pairsNear(StereoView stereo, uint tile) {
     if (!kMayMove) { return pass.ranges.at[tile].y - pass.ranges.at[tile].x; }
     const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
-    const uvec2 middle = min(at * kTileSize + kTileSize / 2, stereo.size_px - 1);
+    const uvec2 middle = min(at * kTileSize + kTileSize / 2, stereo.size_px - 1) & uvec2(~0u, ~1u);  // odd rows may have no depths
     const uint moving = pass.moving.at[middle.y * stereo.row_words + middle.x];
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(stereo.dominant_from_affiliated, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));

@@ -52,7 +52,7 @@ void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
 void main() {
     const StereoView stereo = pass.stereo.at[0];
     const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, stereo.size_px))) { return; }
+    if (any(greaterThanEqual(pixel, stereo.size_px)) || (movesEvenRows(stereo) && (pixel.y & 1) != 0)) { return; }
     const Moved here = moveDominant(stereo, pixel);
     if (!here.valid || isOut(stereo, here)) { return; }
     putLanded(stereo, here);

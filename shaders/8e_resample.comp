@@ -6,8 +6,10 @@
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
 // their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
 // Errors are those of the even rows, which count for two. Where they are predicted these come first; the odd ones follow once tiles are
-// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where an eye does not resolve two rows (8h)
-// an odd one is the mean of those above and below.
+// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where pixels keep their rows an odd one takes
+// over what arrived in the even one above it, so that half of the pixels are moved: colours are still its own,
+// but for what repeats a neighbour. Where an eye does not
+// resolve two rows (8h) an odd one is the mean of those above and below.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -94,13 +96,19 @@ void moveRow(StereoView stereo, uint y, uint width) {
     }
 }
 
-// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
-void loadRow(uint row, uint width) {
+// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there. `kept`: where the row below finds what this
+// pass moved, if that is moved alike.
+void loadRow(uint row, uint width, bool keeps, uint kept) {
     uint x = 4 * gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         uvec4 four = uvec4(0);
         if (kMovesRow) {
             if (x < width) { four = uvec4(row_arrivals[x], row_arrivals[x + 1], row_arrivals[x + 2], row_arrivals[x + 3]); }
+            if (keeps) {
+                [[unroll]] for (uint i = 0; i < 4; ++i) {
+                    if (x + i < width) { pass.moving.at[kept + x + i] = four[i]; }
+                }
+            }
         } else if (x + 4 <= width) {
             four = uvec4(pass.moving.at[row + x], pass.moving.at[row + x + 1], pass.moving.at[row + x + 2], pass.moving.at[row + x + 3]);
         } else {
@@ -296,7 +304,9 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
     const vec2 disparity = disparityPerInverseDepth(stereo.affiliated_from_dominant, source);
     const float disparity_px = length(disparity);
-    const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
+    // A neighbour is repeated as the row shows it by whose depths it was found.
+    const uint source_row = resolved.column != at.x && movesEvenRows(stereo) ? at.y & ~1u : at.y;
+    const Sample found = kRectified ? sampleInRow(source_px.x, source_row * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(stereo, at, pixel_class, found.colour, resolved.inverse_depth);
     if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
@@ -346,7 +356,9 @@ void main() {
     const uint y = pass.first_row + stereo.rows_apart * spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
     if (y >= stereo.size_px.y) { return; }  // the last row may be an even one
     const uint width = stereo.size_px.x, tiles = stereo.size_tiles.x;
-    const uint row = y * stereo.row_words;
+    const bool moves_even = movesEvenRows(stereo);
+    // Kept with the odd row where its colours are going to be, otherwise where 8d has put it.
+    const uint row = (moves_even && kSharedRow == 0 ? y & ~1u : y) * stereo.row_words;
     const uint first_tile = (y / kTileSize) * tiles;
     const uint thread = threadIndex(), lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) {
@@ -369,7 +381,7 @@ void main() {
         if (items > 0) { moveRow(stereo, y, width); }
         barrier();
     }
-    if (items > 0) { loadRow(row, width); }
+    if (items > 0) { loadRow(row, width, moves_even && y + 1 < stereo.size_px.y, row + stereo.row_words); }
     memoryBarrierBuffer();  // colours may take the place of what was read
     barrier();
 

@@ -120,7 +120,8 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                 CAPTURE(static_cast<int>(rows));
                 c.settings.gap_px = gap_px;
                 c.settings.forward = forward;
-                const auto resampled = [&](bool moves_row, bool apart = false) {
+                // Taken apart, odd rows are moved like even ones.
+                const auto resampled = [&](bool moves_row, bool apart, bool alike) {
                     StereoOnDevice device = toDevice(*this, c, rows);
                     if (hides) {
                         std::vector<std::uint8_t> hidden(device.tileCount(), 0);
@@ -129,6 +130,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                     }
                     device.writeTileKinds(test::kindsOf(test::markSome(device.tileCount())));
                     if (!moves_row) { device.reproject(hides, forward); }
+                    if (alike) { device.moveOddRowsAlike(); }
                     // What is left of the two planes lies in tiles that are rendered.
                     StereoOnDevice::ResampleParts parts{.errors = !forward,
                                                         .depths = true,
@@ -144,10 +146,10 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                     return std::tuple(device.readAffiliated(), device.readDepths(), device.readClasses(), device.readTileErrors(),
                                       device.readTileDepths());
                 };
-                const auto [colours, depths, classes, errors, tile_depths] = resampled(false);
                 for (const bool apart : {false, true}) {
                     CAPTURE(apart);
-                    const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true, apart);
+                    const auto [colours, depths, classes, errors, tile_depths] = resampled(false, apart, apart);
+                    const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true, apart, false);
                     const auto kinds = test::markSome(errors.size());
                     std::size_t other = 0;
                     for (std::size_t i = 0; i < colours.size(); ++i) {
@@ -180,8 +182,12 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample makes odd rows the means of even ones where 
             if (areHalves(rows)) { test::roundToHalves(c.dominant); }
             StereoOnDevice device = toDevice(*this, c, rows);
             if (moves_row && device.rectified() == 0) { continue; }
-            const Arrived arrived(c);
+            Arrived arrived(c);
             auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
+            if (device.rectified() != 0) {
+                test::moveOddRowsAlike(arrived.words, c.sizePx());
+                reference::moveOddRowsAlike(resolved, c.sizePx());
+            }
             const auto kinds = test::markSome(device.tileCount());
             if (!moves_row) { device.writeArrivals(arrived.words); }
             device.writeTileKinds(test::kindsOf(kinds));
@@ -390,14 +396,35 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones t
                 CHECK(test::isNear(errors[t] / static_cast<double>(gpu::kErrorSteps), expected_errors[t], 1e-3,
                                    32.0 / static_cast<double>(gpu::kErrorSteps)));
             }
-            if (width > gpu::kLongestSharedRow) { continue; }
-            const auto moved = [&](bool moves_row) {
+            const auto moved = [&](bool moves_row, bool apart, bool alike) {
                 StereoOnDevice anew = toDevice(*this, c, rows);
+                if (apart) { anew.takeRowsApart(); }
                 if (!moves_row) { anew.reproject(); }
+                if (alike) { anew.moveOddRowsAlike(); }
                 anew.resample({.errors = true, .classes = true, .moves_row = moves_row});
+                if (apart) { anew.resample({.classes = true, .moves_row = moves_row, .odd = true}); }
                 return std::tuple(anew.readAffiliated(), anew.readClasses(), anew.readTileErrors(), anew.readTileDepths());
             };
-            CHECK(moved(true) == moved(false));
+            const bool is_long = width > gpu::kLongestSharedRow;
+            CHECK(moved(!is_long, true, false) == moved(false, true, true));
+            if (!is_long) { CHECK(moved(true, false, false) == moved(false, false, false)); }
+            // From what arrived at the twin: odd rows as even ones.
+            StereoOnDevice apart = toDevice(*this, c, rows);
+            apart.takeRowsApart();
+            apart.writeArrivals(arrived.words);
+            if (!is_long) { apart.moveOddRowsAlike(); }
+            apart.resample({.classes = true});
+            apart.resample({.classes = true, .odd = true});
+            auto alike = resolved;
+            reference::moveOddRowsAlike(alike, size_px);
+            const auto expected_apart = reference::resample(c.dominant, alike, kinds, c.eyes);
+            const auto colours_apart = apart.readAffiliated();
+            double worst_apart = 0.0;
+            for (std::size_t i = 0; i < expected_apart.size(); ++i) {
+                const glm::dvec4 difference = glm::abs(glm::dvec4(colours_apart[i]) - expected_apart[i]);
+                worst_apart = std::max({worst_apart, difference.r, difference.g, difference.b, difference.a});
+            }
+            CHECK(worst_apart <= 1e-3);
         }
     }
 }

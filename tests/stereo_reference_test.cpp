@@ -183,9 +183,9 @@ TEST_CASE("a tile's pairs are those where its middle comes from") {
     Picture picture = makePicture(size_px, 1.8);
     const auto costs = weigh(picture, rangesOf(pairs), parallelEyes(size_px), {}).costs;
     CHECK(costs == std::vector<std::uint64_t>{36, 46, 56, 66, 76, 76, 37, 47, 57, 67, 77, 77});
-    // The depth is that of the same pixel of the source: (24, 8), and (24, 19) in the cut row.
+    // The depth is that of the same pixel of the source: (24, 8), and (24, 18) in the cut row, whose last even one that is.
     picture.inverse_depth[8 * 96 + 24] = 0.0;
-    picture.inverse_depth[19 * 96 + 24] = 1e31;
+    picture.inverse_depth[18 * 96 + 24] = 1e31;
     const auto other = weigh(picture, rangesOf(pairs), parallelEyes(size_px), {}).costs;
     CHECK(other == std::vector<std::uint64_t>{36, 36, 56, 66, 76, 76, 37, 37, 57, 67, 77, 77});
 }

@@ -328,20 +328,31 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize leaves the word that each pixel moves by, an
                 settings.inverse_depth_moments = true;
                 const TwinStages twin(view, settings);
                 RasterInputs inputs(*this, view, twin, settings);
-                const Kernel& kernel = this->kernel(
-                    "7_rasterize", sizeof(gpu::RasterizePass),
-                    {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0, test::depthChoiceOf(choice),
-                     /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
                 // Rows of both, one after the other, as where they share memory with a picture.
                 const std::size_t width = view.eye.size_px.x;
-                const Buffer rows = upload("rows", std::vector<gpu::uint>(4 * inputs.pixels, 0xcdcdcdcdu));
-                inputs.pass.arrivals = rows.address<gpu::uint>();
-                inputs.pass.moving = rows.address<gpu::uint>(width * sizeof(gpu::uint));
-                inputs.pass.row_words = static_cast<gpu::uint>(4 * width);
-                run([&](Commands& commands) {
-                    commands.dispatch(kernel, inputs.pass, inputs.eye_view.size_tiles.x, inputs.eye_view.size_tiles.y);
-                });
-                const auto words = readBack<gpu::uint>(rows, 4 * inputs.pixels);
+                const auto rasterize = [&](bool even_rows) {
+                    const Kernel& kernel = this->kernel(
+                        "7_rasterize", sizeof(gpu::RasterizePass),
+                        {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0, test::depthChoiceOf(choice),
+                         /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell, even_rows});
+                    const Buffer rows = upload("rows", std::vector<gpu::uint>(4 * inputs.pixels, 0xcdcdcdcdu));
+                    inputs.pass.arrivals = rows.address<gpu::uint>();
+                    inputs.pass.moving = rows.address<gpu::uint>(width * sizeof(gpu::uint));
+                    inputs.pass.row_words = static_cast<gpu::uint>(4 * width);
+                    run([&](Commands& commands) {
+                        commands.dispatch(kernel, inputs.pass, inputs.eye_view.size_tiles.x, inputs.eye_view.size_tiles.y);
+                    });
+                    return readBack<gpu::uint>(rows, 4 * inputs.pixels);
+                };
+                const auto words = rasterize(false);
+                if (spreads) {
+                    auto of_even = words;
+                    for (std::size_t y = 1; y < view.eye.size_px.y; y += 2) {
+                        const auto row = of_even.begin() + static_cast<std::ptrdiff_t>(4 * width * y);
+                        std::fill(row, row + static_cast<std::ptrdiff_t>(4 * width), 0xcdcdcdcdu);
+                    }
+                    CHECK(rasterize(true) == of_even);
+                }
                 const reference::Picture truth = reference::rasterize(twin.splats, twin.sorted_pairs, twin.ranges, view.eye, settings);
                 std::size_t differ = 0, differ_in_spread = 0, touched = 0;
                 for (std::size_t i = 0; i < inputs.pixels; ++i) {

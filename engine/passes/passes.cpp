@@ -47,15 +47,17 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
                               {"kDepthChoice", kept.depth_choice},
                               {"kHalfColours", half_floats},
                               {"kSplatKind", kind},
-                              {"local_size_x", gpu::kCellsPerTile * threads}}});
+                              {"local_size_x", gpu::kCellsPerTile * threads},
+                              {"kEvenRows", kept.even_rows}}});
         }
     };
     rasterize({}, 1);
     for (const bool moments : {false, true}) {
         rasterize({.moments = moments}, 0);
         for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
-            for (const bool spread : {false, true}) {
-                rasterize({.moments = moments, .moving = true, .spread = spread, .depth_choice = choice}, 0);
+            rasterize({.moments = moments, .moving = true, .depth_choice = choice}, 0);
+            for (const bool even_rows : {false, true}) {
+                rasterize({.moments = moments, .moving = true, .spread = true, .even_rows = even_rows, .depth_choice = choice}, 0);
             }
         }
     }
@@ -134,7 +136,7 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
 const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool masked) {
     return kernels_.get("7_rasterize", sizeof(gpu::RasterizePass),
                         {threads_per_cell_, kept.depth, kept.moments, kept.moving, kept.spread, masked, kept.depth_choice, kept.half_floats,
-                         scene.splatShape(), gpu::kCellsPerTile * threads_per_cell_});
+                         scene.splatShape(), gpu::kCellsPerTile * threads_per_cell_, kept.even_rows});
 }
 
 // One eye's part of a recording: passes 4 to 7.

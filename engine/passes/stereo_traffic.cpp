@@ -16,7 +16,9 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const bool components = paper && facts.settings.center_rois;
     const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
-    const double moving = kWord, arrival = kWord, depth = facts.affiliated_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
+    // Of odd rows that are moved like even ones nothing is read or written before they are resampled.
+    const double rows = facts.even_rows ? 0.5 : 1.0, moving = rows * kWord, arrival = rows * kWord;
+    const double depth = facts.affiliated_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
     // Only predicted leaves tiles out before it moves anything.
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
@@ -33,8 +35,10 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
     // A row of pixels reads its tiles' kinds; every other row adds to their errors and their depths.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
-    traffic.emplace_back(
-        "8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
+    // The row is moved, or what arrived in it is read; what even rows leave for odd ones is written and read, or is read twice.
+    const double row = arrival * (!facts.even_rows ? 1 : facts.moves_rows ? 3 : 2);
+    traffic.emplace_back("8e_resample",
+                         any_moved * (row + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
     if (predict) {
         // counts of tiles; what newcomers read besides is nothing beside it
         traffic.emplace_back("8f_newcomers", any_moved * kWord * facts.visible / pixels);

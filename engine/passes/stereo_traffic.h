@@ -18,6 +18,7 @@ struct StereoFrameFacts {
     StereoSettings settings;
     bool may_move = true;            // the dominant picture came with what moving needs
     bool moves_rows = false;         // 8e does what 8d does otherwise
+    bool even_rows = false;          // odd rows are moved like even ones
     bool half_floats = false;        // what pictures consist of
     bool affiliated_depth = false;   // its D is kept
     bool classes = false;            // of pixels are kept

@@ -1,4 +1,5 @@
 // One eye in full and the other from it: all stereo passes, in frame order.
+#include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 #include "engine/reference/stereo.h"
 
@@ -75,6 +76,7 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
 
     const std::vector<Arrival> arrivals = reproject(pictures.dominant, eyes, stereo);
     pictures.resolved = resolve(arrivals, eyes, stereo);
+    if (predicts && EyeChange(eyes.target, eyes.source).keepsRows()) { moveOddRowsAlike(pictures.resolved, size_px); }
     pictures.affiliated = stereo.forward ? copyColours(pictures.dominant, arrivals, pictures.tile_kinds, eyes, settings.background)
                                          : resample(pictures.dominant, pictures.resolved, pictures.tile_kinds, eyes, settings.background);
     pictures.affiliated_depth = resampleDepths(pictures.affiliated, pictures.resolved, pictures.tile_kinds, size_px);

@@ -52,4 +52,14 @@ std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& 
     return resolved;
 }
 
+void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px) {
+    for (std::size_t y = 1; y < size_px.y; y += 2) {
+        for (std::size_t x = 0; x < size_px.x; ++x) {
+            Resolved& pixel = resolved[y * size_px.x + x];
+            pixel = resolved[(y - 1) * size_px.x + x];
+            pixel.row = pixel.column != x ? 1 : 0;
+        }
+    }
+}
+
 }  // namespace binosplat::reference

@@ -107,9 +107,13 @@ struct Resolved {
     PixelClass pixel_class;
     std::uint32_t column;
     double inverse_depth;
-    std::uint32_t spread;  // a code; 0 where nothing arrived
+    std::uint32_t spread;   // a code; 0 where nothing arrived
+    std::uint32_t row = 0;  // of the source, so many above its own
 };
 std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8e, where errors are predicted and pixels keep their rows: those of an odd row are those of the even one above it, seen in
+// their own row of the source; what repeats another column's pixel does so from the even row.
+void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px);
 // Likewise 8e: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));

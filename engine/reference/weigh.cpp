@@ -16,7 +16,7 @@ constexpr std::uint64_t kMoveSharedPart = 2;
 std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, const glm::uvec2& tile,
                        const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
-    const glm::uvec2 middle = glm::min(tile * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u);
+    const glm::uvec2 middle = glm::min(tile * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u) & glm::uvec2(~0u, ~1u);
     const auto pixel = movingPixel(dominant, std::size_t{middle.y} * size_px.x + middle.x, settings);
     const glm::dvec2 middle_px = glm::dvec2(middle) + 0.5;
     const auto moved = source_from_target.move(middle_px, pixel ? pixel->inverse_depth : 0.0);

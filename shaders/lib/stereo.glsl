@@ -15,4 +15,7 @@ vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
 // Pixels that the other eye's view moves by for a unit of inverse depth, as a vector.
 vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z; }
 
+// Where errors are predicted, an odd row is moved like the even one above it, by that one's depths.
+bool movesEvenRows(StereoView stereo) { return kRectified && stereo.rows_apart == 2; }
+
 uint tileOf(StereoView stereo, uvec2 pixel) { return (pixel.y / kTileSize) * stereo.size_tiles.x + pixel.x / kTileSize; }
