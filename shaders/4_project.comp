@@ -62,13 +62,17 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     small = 0;
     for (int row = box.y; row < box.w; ++row) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        uint bits = smallRow(in_row - box.x);
-        if (kMasked) { bits &= maskBits(pass.tile_mask, size_tiles, uvec2(box.x, row)); }
-        small |= bits << (kSmallBox * min(row - box.y, kSmallBox - 1));
-        if (kMasked && !fits && in_row.x < in_row.y) {
-            tiles += countInMask(pass.tile_mask, size_tiles, uint(row), uint(in_row.x), uint(in_row.y));
-        } else {
+        const uint first_bit = kSmallBox * min(row - box.y, kSmallBox - 1);
+        if (!kMasked) {
+            small |= smallRow(in_row - box.x) << first_bit;
             tiles += max(in_row.y - in_row.x, 0);
+            continue;
+        }
+        const uint end = uint(max(in_row.x, in_row.y));
+        for (uint x = uint(in_row.x); x < end; x = wordEnd(x, end)) {
+            const uint bits = maskBits(pass.tile_mask, size_tiles, row, x, wordEnd(x, end));
+            small |= bits << (x - box.x + first_bit);
+            tiles += bitCount(bits);
         }
     }
     return fits ? bitCount(small) : tiles;

@@ -32,12 +32,20 @@ void main() {
             const int row = first_row + int(gl_SubgroupInvocationID);
             const ivec2 in_row = row < box.w ? tilesInRow(outline, uint(row), box) : ivec2(0);
             const uint begin = uint(in_row.x), end = uint(max(in_row.x, in_row.y));
-            uint tiles = end - begin;
-            if (kMasked && tiles > 0) { tiles = countInMask(pass.tile_mask, pass.size_tiles, uint(row), begin, end); }
+            uint tiles = kMasked ? 0 : end - begin;
+            if (kMasked) {
+                for (uint x = begin; x < end; x = wordEnd(x, end)) { tiles += bitCount(maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end))); }
+            }
             uvec2 own = uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y);
             pairs.x += subgroupAdd(tiles);
-            for (uint x = begin; x < end; ++x) {
-                if (!kMasked || isInMask(pass.tile_mask, pass.size_tiles, uvec2(x, row))) { putPair(own, uvec2(x, row), rank); }
+            if (!kMasked) {
+                for (uint x = begin; x < end; ++x) { putPair(own, uvec2(x, row), rank); }
+                continue;
+            }
+            for (uint x = begin; x < end; x = wordEnd(x, end)) {
+                for (uint bits = maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end)); bits != 0; bits &= bits - 1) {
+                    putPair(own, uvec2(x + findLSB(bits), row), rank);
+                }
             }
         }
         // 4_project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.

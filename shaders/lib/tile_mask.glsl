@@ -6,23 +6,11 @@ bool isInMask(Uints mask, uvec2 size_tiles, uvec2 tile) {
     return (mask.at[tile.y * maskWords(size_tiles) + tile.x / 32] & (1u << (tile.x & 31))) != 0;
 }
 
-// The tile's bit, and those of the tiles to its right as far as the row goes: at least four of them.
-uint maskBits(Uints mask, uvec2 size_tiles, uvec2 tile) {
-    const uint words = maskWords(size_tiles), word = tile.x / 32, shift = tile.x & 31;
-    if (word >= words) { return 0; }
-    const uint low = mask.at[tile.y * words + word] >> shift;
-    return shift > 28 && word + 1 < words ? low | mask.at[tile.y * words + word + 1] << (32 - shift) : low;
-}
+// Where the word of tile `x` of a row ends, or `end` if that comes first.
+uint wordEnd(uint x, uint end) { return min(end, (x & ~31u) + 32); }
 
-// How many tiles of a row, of those from `begin` to `end` (exclusive), belong to it.
-uint countInMask(Uints mask, uvec2 size_tiles, uint row, uint begin, uint end) {
-    uint tiles = 0;
-    while (begin < end) {
-        const uint next = min(end, (begin & ~31u) + 32);
-        const uint bits = mask.at[row * maskWords(size_tiles) + begin / 32] >> (begin & 31);
-        const uint width = next - begin;
-        tiles += bitCount(width < 32 ? bits & ((1u << width) - 1) : bits);
-        begin = next;
-    }
-    return tiles;
+// Of the tiles of a row from `begin` to `end` (exclusive, see wordEnd) those that belong to it: the first one's bit is bit 0.
+uint maskBits(Uints mask, uvec2 size_tiles, uint row, uint begin, uint end) {
+    const uint bits = mask.at[row * maskWords(size_tiles) + begin / 32] >> (begin & 31);
+    return end - begin < 32 ? bits & ((1u << (end - begin)) - 1) : bits;
 }
