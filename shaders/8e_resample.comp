@@ -1,14 +1,13 @@
 // 8e: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
-// Where pixels move along their row alone and a row fits into shared memory (kMovesRow), this pass moves them there itself; otherwise 8d
-// has done so.
+// Where pixels move along their row alone and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
 // their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
 // Errors are those of the even rows, which count for two. Where they are predicted these come first; the odd ones follow once tiles are
-// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where pixels keep their rows an odd one takes
-// over what arrived in the even one above it, so that half of the pixels are moved: colours are still its own,
-// but for what repeats a neighbour. Where an eye does not
+// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where pixels keep their rows an odd one is
+// sampled at the places of the even one above it, so that half of the pixels are moved: colours are still its own, but for what repeats a
+// neighbour. Where an eye does not
 // resolve two rows (8h) an odd one is the mean of those above and below.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
@@ -33,18 +32,20 @@ layout(constant_id = 4) const bool kComponents = false;  // holes are going to b
 layout(constant_id = 5) const uint kRowSteps = 1;
 layout(constant_id = 6) const bool kHalfColours = false;
 layout(constant_id = 7) const bool kForward = false;  // colours are copied; not where errors are predicted
-layout(constant_id = 8) const bool kMovesRow = false;
+layout(constant_id = 8) const uint kRowSource = kArrivalsGiven;
 
 #include "lib/picture.glsl"
 #include "lib/reproject.glsl"
 
 const uint kMaxWidth = 16384;
-const uint kSharedRow = kRowSteps * kArrivalsStep;
+const uint kLongestRow = kRowSteps == 0 ? kMaxWidth : kRowSteps * kArrivalsStep;
+const uint kSharedRow = kRowSource == kPlacesGiven ? 0 : kRowSteps * kArrivalsStep;
+const bool kMovesRow = kRowSource == kRowMoved;
 
 shared uint row_arrivals[kSharedRow + 1];
-shared uint arrived_bits[kSharedRow == 0 ? kMaxWidth / 32 : kSharedRow / 32];
-shared uint tile_classes[kClasses ? (kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16 : 1];
-const uint kMostTiles = (kSharedRow == 0 ? kMaxWidth : kSharedRow) / 16;
+shared uint arrived_bits[kRowSource == kPlacesGiven ? 1 : kLongestRow / 32];
+shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
+const uint kMostTiles = kLongestRow / 16;
 
 shared uint moved_tiles[kMostTiles];  // of this row of tiles, in no order; from the end those of which this row is a mean
 shared uint moved_count;
@@ -96,19 +97,13 @@ void moveRow(StereoView stereo, uint y, uint width) {
     }
 }
 
-// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there. `kept`: where the row below finds what this
-// pass moved, if that is moved alike.
-void loadRow(uint row, uint width, bool keeps, uint kept) {
+// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
+void loadRow(uint row, uint width) {
     uint x = 4 * gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         uvec4 four = uvec4(0);
         if (kMovesRow) {
             if (x < width) { four = uvec4(row_arrivals[x], row_arrivals[x + 1], row_arrivals[x + 2], row_arrivals[x + 3]); }
-            if (keeps) {
-                [[unroll]] for (uint i = 0; i < 4; ++i) {
-                    if (x + i < width) { pass.moving.at[kept + x + i] = four[i]; }
-                }
-            }
         } else if (x + 4 <= width) {
             four = uvec4(pass.moving.at[row + x], pass.moving.at[row + x + 1], pass.moving.at[row + x + 2], pass.moving.at[row + x + 3]);
         } else {
@@ -163,6 +158,27 @@ Resolved resolve(StereoView stereo, uint row, uvec2 at) {
     }
     if (left >= 0 && (right < 0 || left_depth <= right_depth)) { return Resolved(uint(left), kHole, left_depth, 0); }
     return right >= 0 ? Resolved(uint(right), kHole, right_depth, 0) : Resolved(at.x, kHole, 0, 0);
+}
+
+// Where a pixel is sampled, for the one below it in an odd row; in the words where the colour of that one is going to be.
+//
+//   31..3  its column in the dominant picture, in pixels, with 15 bits of fraction
+//   2      it is a neighbour's, in the row above
+//   1..0   the class
+//
+// Then, where depths are wanted, a second word: the inverse depth.
+const float kPlaceSteps = 32768;
+const uint kRepeats = 4;
+
+Uints placeWords() { return Uints(uvec2(pass.half_affiliated)); }
+uint placeAt(StereoView stereo, uvec2 at) { return (at.y * stereo.size_px.x + at.x) * (kHalfColours ? 2 : 4); }
+
+void keepPlace(StereoView stereo, uvec2 at, Resolved resolved, float place_px) {
+    if (at.y + 1 >= stereo.size_px.y) { return; }
+    const uint word = placeAt(stereo, at + uvec2(0, 1));
+    const uint steps = uint(clamp(place_px, 0.0, float(stereo.size_px.x)) * kPlaceSteps + 0.5);
+    placeWords().at[word] = steps << 3 | (resolved.column != at.x ? kRepeats : 0) | resolved.pixel_class;
+    if (kDepth) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
 }
 
 // How uncertain a pixel's inverse depth is, as a variance: it blends several, and where its neighbours have others it may belong to these.
@@ -289,6 +305,16 @@ void putPixel(StereoView stereo, uvec2 at, uint pixel_class, vec4 colour, float 
     if (kDepth) { pass.depths.at[i] = inverse_depth > 0 ? colour.a / inverse_depth : 0; }
 }
 
+// Writes a pixel of an odd row. A neighbour is repeated as the row above shows it, by whose depths it was found.
+float sampleBelow(StereoView stereo, uvec2 at, out uint pixel_class) {
+    const uint word = placeAt(stereo, at), place = placeWords().at[word];
+    pixel_class = place & 3;
+    const uint source_row = (place & kRepeats) != 0 ? at.y - 1 : at.y;
+    const Sample found = sampleInRow(float(place >> 3) / kPlaceSteps, source_row * stereo.size_px.x, int(stereo.size_px.x));
+    putPixel(stereo, at, pixel_class, found.colour, kDepth ? uintBitsToFloat(placeWords().at[word + 1]) : 0);
+    return 0;
+}
+
 // Writes the pixel; returns its expected squared error, and its class.
 float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     if (kForward) {
@@ -297,6 +323,7 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
         putPixel(stereo, at, pixel_class, copied.colour, copied.inverse_depth);
         return 0;
     }
+    if (kRowSource == kPlacesGiven) { return sampleBelow(stereo, at, pixel_class); }
     const Resolved resolved = resolve(stereo, row, at);
     pixel_class = resolved.pixel_class;
     const vec2 source_px = movePixel(stereo.dominant_from_affiliated, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
@@ -304,9 +331,8 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
     const vec2 disparity = disparityPerInverseDepth(stereo.affiliated_from_dominant, source);
     const float disparity_px = length(disparity);
-    // A neighbour is repeated as the row shows it by whose depths it was found.
-    const uint source_row = resolved.column != at.x && movesEvenRows(stereo) ? at.y & ~1u : at.y;
-    const Sample found = kRectified ? sampleInRow(source_px.x, source_row * stereo.size_px.x, size.x)
+    if (movesEvenRows(stereo) && (at.y & 1) == 0) { keepPlace(stereo, at, resolved, source_px.x); }
+    const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(stereo, at, pixel_class, found.colour, resolved.inverse_depth);
     if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
@@ -356,9 +382,7 @@ void main() {
     const uint y = pass.first_row + stereo.rows_apart * spread(gl_WorkGroupID.x, gl_NumWorkGroups.x);
     if (y >= stereo.size_px.y) { return; }  // the last row may be an even one
     const uint width = stereo.size_px.x, tiles = stereo.size_tiles.x;
-    const bool moves_even = movesEvenRows(stereo);
-    // Kept with the odd row where its colours are going to be, otherwise where 8d has put it.
-    const uint row = (moves_even && kSharedRow == 0 ? y & ~1u : y) * stereo.row_words;
+    const uint row = y * stereo.row_words;
     const uint first_tile = (y / kTileSize) * tiles;
     const uint thread = threadIndex(), lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) {
@@ -366,7 +390,9 @@ void main() {
         mean_count = 0;
         hidden_count = 0;
     }
-    for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
+    if (kRowSource != kPlacesGiven) {
+        for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
+    }
     if (kClasses) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { tile_classes[tile] = 0; }
     }
@@ -381,9 +407,11 @@ void main() {
         if (items > 0) { moveRow(stereo, y, width); }
         barrier();
     }
-    if (items > 0) { loadRow(row, width, moves_even && y + 1 < stereo.size_px.y, row + stereo.row_words); }
-    memoryBarrierBuffer();  // colours may take the place of what was read
-    barrier();
+    if (kRowSource != kPlacesGiven) {
+        if (items > 0) { loadRow(row, width); }
+        memoryBarrierBuffer();  // colours may take the place of what was read
+        barrier();
+    }
 
     uvec3 classes = uvec3(0);
     uint begin = 0;

@@ -160,13 +160,6 @@ inline bool isNear(double a, double b, double relative, double absolute) {
 }
 
 // What the twin's 8d leaves, as the device holds it, and the same for the twin again.
-// What arrived in even rows, also in the odd ones below them.
-template <typename Item>
-void moveOddRowsAlike(std::vector<Item>& items, glm::uvec2 size_px) {
-    const auto row = [&](std::uint32_t y) { return items.begin() + std::ptrdiff_t{y} * size_px.x; };
-    for (std::uint32_t y = 1; y < size_px.y; y += 2) { std::copy(row(y - 1), row(y), row(y)); }
-}
-
 struct Arrived {
     explicit Arrived(const StereoCase& c) {
         for (const reference::Arrival& arrival : reference::reproject(c.dominant, c.eyes, c.settings)) {

@@ -136,20 +136,15 @@ public:
         view_.rows_apart = 2;
         gpu_.upload(view_buffer_, std::vector{view_});
     }
-    // As if even rows alone had been moved, where rows are taken apart.
-    void moveOddRowsAlike() {
-        auto words = readArrivals();
-        test::moveOddRowsAlike(words, view_.size_px);
-        writeArrivals(words);
-    }
     void resample(const ResampleParts& parts) {
-        // An odd row that is taken later finds what arrived in the even one.
-        const bool moves_row = parts.moves_row && !parts.odd;
+        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven
+                                     : parts.moves_row             ? gpu::kRowMoved
+                                                                   : gpu::kArrivalsGiven;
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8e_resample",
                  {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
-                  moves_row},
+                  row_source},
                  gpu::ResamplePass{.stereo = view(),
                                    .dominant = colours_.address<gpu::vec4>(),
                                    .half_dominant = colours_.address<gpu::uvec2>(),

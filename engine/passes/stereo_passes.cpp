@@ -62,14 +62,15 @@ KernelTable stereoKernels() {
                                                       {"kRowSteps", gpu::kMostRowSteps + 1},
                                                       {"kHalfColours", 2},
                                                       {"kForward", 2},
-                                                      {"kMovesRow", 2}})) {
+                                                      {"kRowSource", 3}})) {
         // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they can be,
-        // but for odd ones that are moved like even ones.
+        // and odd ones of predicted are moved like even ones.
         const std::vector<std::uint32_t> values = variant.values();
         const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
-        const bool can_move = values[0] == 1 && values[5] > 0, may_be_odd = values[1] == 0 && values[4] == 0 && values[7] == 0;
-        const bool moves = values[8] == 1 ? can_move : !can_move || may_be_odd;
-        if (groups && (values[1] == 0 || values[7] == 0) && moves) { table.push_back(variant); }
+        const bool can_move = values[0] == 1 && values[5] > 0;
+        const bool fits = values[8] == gpu::kPlacesGiven ? values[0] == 1 && values[1] == 0 && values[4] == 0 && values[7] == 0
+                                                         : (values[8] == gpu::kRowMoved) == can_move;
+        if (groups && (values[1] == 0 || values[7] == 0) && fits) { table.push_back(variant); }
     }
     append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
     append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
@@ -104,7 +105,7 @@ public:
     void select();
 
 private:
-    void resampleFrom(gpu::uint first_row, std::uint32_t moves_rows, bool predict_errors);
+    void resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors);
     template <typename Pass>
     const Kernel& kernel(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) {
         return kernels_.get(name, sizeof(Pass), constants);
@@ -186,11 +187,11 @@ void StereoRecorder::reproject() {
                       offsetof(gpu::StereoCounters, per_pixel_block));
 }
 
-void StereoRecorder::resample() { resampleFrom(0, movesRows(), predicts()); }
+void StereoRecorder::resample() { resampleFrom(0, movesRows() != 0 ? gpu::kRowMoved : gpu::kArrivalsGiven, predicts()); }
 
-void StereoRecorder::resampleOdd() { resampleFrom(1, 0, false); }
+void StereoRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
 
-void StereoRecorder::resampleFrom(gpu::uint first_row, std::uint32_t moves_rows, bool predict_errors) {
+void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
     commands_.beginPass("affiliated 8e_resample");
     const bool knows_errors = predict_errors || in_.affiliated_gaze;
     const gpu::ResamplePass pass{.stereo = view(),
@@ -213,7 +214,7 @@ void StereoRecorder::resampleFrom(gpu::uint first_row, std::uint32_t moves_rows,
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
     const Kernel& resample_kernel = kernel("8e_resample", pass,
                                            {alongRows(), predict_errors, with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
-                                            halfFloats(), copiesColours(), moves_rows});
+                                            halfFloats(), copiesColours(), row_source});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
 

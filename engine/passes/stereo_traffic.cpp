@@ -35,10 +35,10 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
     // A row of pixels reads its tiles' kinds; every other row adds to their errors and their depths.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
-    // The row is moved, or what arrived in it is read; what even rows leave for odd ones is written and read, or is read twice.
-    const double row = arrival * (!facts.even_rows ? 1 : facts.moves_rows ? 3 : 2);
-    traffic.emplace_back("8e_resample",
-                         any_moved * (row + of_rows + (facts.classes || components ? pixel_class : 0.0)) + moved * (2 * colour + depth));
+    // What even rows leave for odd ones is written and read.
+    const double place = facts.even_rows ? kWord + (depth > 0.0 ? kWord : 0.0) : 0.0;
+    traffic.emplace_back("8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
+                                            moved * (2 * colour + depth + place));
     if (predict) {
         // counts of tiles; what newcomers read besides is nothing beside it
         traffic.emplace_back("8f_newcomers", any_moved * kWord * facts.visible / pixels);

@@ -145,7 +145,7 @@ struct ResamplePass {
     StereoViews stereo;
     FloatColours dominant;
     HalfColours half_dominant;
-    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left; odd rows that move alike: out, then in
+    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left
     FloatColours affiliated;  // out; `moving` may lie in the same row
     HalfColours half_affiliated;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
