@@ -1,12 +1,18 @@
 // 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
-// known where the eye looks, an error counts for what the eye sees of it, and tiles are marked in which it does not resolve two rows.
+// known where the eye looks, an error counts for what the eye sees of it, and tiles are marked in which it does not resolve two rows. The
+// last workgroup finds where the budget ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
+#include "lib/group.glsl"
+#include "lib/last_group.glsl"
 
 layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
+
+const uint kBinsPerThread = kPriceBins / kStereoGroup;
 
 // 16 bins an octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kPriceBins - 1); }
@@ -22,27 +28,53 @@ float seenShare(uvec2 at) {
     return share * share;
 }
 
-void main() {
-    const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
-    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
-    if (tile >= size_tiles.x * size_tiles.y) { return; }
+// What a tile's error is worth, and its cost; its cost to the list.
+uint priceOf(uint tile, uvec2 size_tiles) {
     // Sums stop growing there (8f); 8e adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float share = kFoveated ? seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
-    uint price = 0;
-    if (pass.tile_kinds.at[tile] == 0 && error > 0) {
-        const uint cost = pass.tile_costs.at[tile];
-        const uint bin = binOf(float(error) / float(cost));
-        price = bin << 22 | cost;
-        // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
-        atomicAdd(pass.price_bins.at[bin], cost);
-        if (kFoveated) {
-            const float seen = share * float(error);
-            const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
-            const uint seen_bin = binOf(seen / float(cost));
-            price = unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;
-        }
+    if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
+    const uint cost = pass.tile_costs.at[tile];
+    const uint bin = binOf(float(error) / float(cost));
+    // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
+    atomicAdd(pass.price_bins.at[bin], cost);
+    if (!kFoveated) { return bin << 22 | cost; }
+    const float seen = share * float(error);
+    const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
+    const uint seen_bin = binOf(seen / float(cost));
+    return unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;
+}
+
+// Greatest bins first: a thread holds kBinsPerThread of them.
+void findLastBin(uint budget) {
+    const uint first = kPriceBins - 1 - threadIndex() * kBinsPerThread;
+    uint costs[kBinsPerThread];
+    uint own = 0;
+    [[unroll]] for (uint b = 0; b < kBinsPerThread; ++b) {
+        costs[b] = pass.price_bins.at[first - b];
+        own += costs[b];
     }
-    pass.tile_prices.at[tile] = price;
+    uint total;
+    uint before = scanGroup(own, total);
+    [[unroll]] for (uint b = 0; b < kBinsPerThread; ++b) {
+        if (before <= budget && before + costs[b] > budget) {
+            pass.counters.at[0].last_bin = first - b;
+            pass.counters.at[0].left_for_last = budget - before;
+        }
+        before += costs[b];
+    }
+    if (total <= budget && gl_LocalInvocationIndex == 0) {
+        pass.counters.at[0].last_bin = 0;
+        pass.counters.at[0].left_for_last = 0xffffffffu;
+    }
+}
+
+void main() {
+    const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
+    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }
+    if (!isLastGroup(pass.masked_tiles)) { return; }
+    const float budget = pass.stereo.at[0].budget * float(pass.counters.at[0].picture_cost);
+    findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
 }

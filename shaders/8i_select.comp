@@ -1,6 +1,5 @@
 // 8i: the tiles that are rendered, as a list and as a mask. Where errors are predicted, besides those that others have marked: the tiles
-// whose error is the dearest a pair, as long as all of them together keep within the budget; the first of equals. A thread a tile; each
-// workgroup finds from the price list (8h) where the budget ends.
+// whose error is the dearest a pair, as long as all of them together keep within the budget; the first of equals. A thread a tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -14,47 +13,26 @@ layout(local_size_x = kStereoGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
 
-const uint kBinsPerThread = kPriceBins / kStereoGroup;
 const uint kTilesPerStep = 8;  // loaded at a time, since each load takes as long as all of them
 
-shared uint last_bin;       // the one in which the budget ends
-shared uint left_for_last;  // of the budget
-
-// Greatest bins first: this thread holds kBinsPerThread of them.
-void findLastBin(uint budget) {
-    if (gl_LocalInvocationIndex == 0) { last_bin = kPriceBins; }
-    const uint first = kPriceBins - 1 - threadIndex() * kBinsPerThread;
-    uint own = 0;
-    for (uint b = 0; b < kBinsPerThread; ++b) { own += pass.price_bins.at[first - b]; }
-    uint total;
-    uint before = scanGroup(own, total);
-    for (uint b = 0; b < kBinsPerThread; ++b) {
-        const uint cost = pass.price_bins.at[first - b];
-        if (before <= budget && before + cost > budget) {
-            last_bin = first - b;
-            left_for_last = budget - before;
-        }
-        before += cost;
-    }
-    if (total <= budget && gl_LocalInvocationIndex == 0) {
-        last_bin = 0;
-        left_for_last = 0xffffffffu;
-    }
-    barrier();
-}
+// Where the budget ends (8h).
+struct End {
+    uint bin;
+    uint left;  // of the budget, for its tiles
+};
 
 // What is left is for those that are worth so much by themselves; what came down from a higher bin has had its turn there.
-bool isOfLast(uint price) { return price != 0 && price >> 22 == last_bin && ((price & kSeenInPart) == 0 || left_for_last == 0xffffffffu); }
+bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
 // What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.
-uint costBefore(uint first_tile) {
+uint costBefore(uint first_tile, End end) {
     uint own = 0;
     for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kStereoGroup) {
         uint prices[kTilesPerStep];
         [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
             prices[i] = tile + i * kStereoGroup < first_tile ? pass.tile_prices.at[tile + i * kStereoGroup] : 0;
         }
-        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i]) ? prices[i] & kMaxTileCost : 0; }
+        [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0; }
     }
     uint total;
     scanGroup(own, total);
@@ -62,17 +40,15 @@ uint costBefore(uint first_tile) {
 }
 
 bool isChosen(uint tile, uint tiles) {
-    const uint picture_cost = pass.counters.at[0].picture_cost;
-    const float budget = pass.stereo.at[0].budget * float(picture_cost);
-    findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
+    const End end = End(pass.counters.at[0].last_bin, pass.counters.at[0].left_for_last);
     const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
-    const bool is_last = isOfLast(price);
+    const bool is_last = isOfLast(price, end);
     const uint cost = price & kMaxTileCost;
     uint total;
     uint before = scanGroup(is_last ? cost : 0, total);
     // Most workgroups have no tile of the last bin, and need not know what the others have.
-    if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles)); }
-    return is_last ? before + cost <= left_for_last : price != 0 && price >> 22 > last_bin;
+    if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles), end); }
+    return is_last ? before + cost <= end.left : price != 0 && price >> 22 > end.bin;
 }
 
 void main() {

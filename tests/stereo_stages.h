@@ -178,12 +178,15 @@ public:
         dispatch("8g_components", {rectified(), 3u, areHalves(rows_)}, pass, {3, 1});
     }
     void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
+        const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});
         const gpu::PricePass pass{.stereo = view(),
                                   .tile_kinds = words(tile_kinds_),
                                   .tile_costs = words(tile_costs_),
                                   .tile_errors = words(tile_errors_),
                                   .tile_prices = words(tile_prices_),
                                   .price_bins = words(bins_),
+                                  .masked_tiles = lists.address<gpu::ListState>(),
+                                  .counters = counters(),
                                   .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
         dispatch("8h_price", {gaze.has_value()}, pass, tileGroups());
     }
@@ -199,7 +202,6 @@ public:
                  gpu::SelectPass{.stereo = view(),
                                  .tile_kinds = words(tile_kinds_),
                                  .tile_prices = words(tile_prices_),
-                                 .price_bins = words(bins_),
                                  .tile_list = words(tile_list_),
                                  .tile_mask = words(tile_mask_),
                                  .tile_costs = words(tile_costs_),

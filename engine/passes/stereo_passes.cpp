@@ -259,6 +259,8 @@ void StereoRecorder::price() {
                               .tile_errors = in_.stereo.tileErrors(),
                               .tile_prices = in_.stereo.tilePrices(),
                               .price_bins = in_.stereo.bins(),
+                              .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
+                              .counters = counters(),
                               .gaze = in_.affiliated_gaze ? eyeGazeOf(*in_.affiliated_gaze, in_.affiliated_lens) : gpu::EyeGaze{}};
     commands_.dispatch(kernel("8h_price", pass, {in_.affiliated_gaze.has_value()}), pass, tileGroups());
 }
@@ -268,7 +270,6 @@ void StereoRecorder::select() {
     const gpu::SelectPass pass{.stereo = view(),
                                .tile_kinds = in_.stereo.tileKinds(),
                                .tile_prices = in_.stereo.tilePrices(),
-                               .price_bins = in_.stereo.bins(),
                                .tile_list = in_.stereo.tileList(),
                                .tile_mask = in_.stereo.tileMask(),
                                .tile_costs = in_.stereo.tileCosts(),

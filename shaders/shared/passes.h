@@ -194,8 +194,10 @@ struct PricePass {
     Uints tile_costs;
     Uints tile_errors;  // in; out where an eye does not resolve two rows: kSeenCoarsely
     Uints tile_prices;  // out: bin << 22 | cost
-    Uints price_bins;   // out: cost of the tiles in each bin, of errors that are seen whole; greatest error a pair first
-    EyeGaze gaze;       // where it is known where the affiliated eye looks
+    CoherentUints price_bins;  // cost of the tiles in each bin, of errors that are seen whole; greatest error a pair last
+    ListStates masked_tiles;   // counts workgroups
+    StereoCounterss counters;
+    EyeGaze gaze;  // where it is known where the affiliated eye looks
 };
 
 // 8i_select: the tiles that are rendered, as a list and as a mask.
@@ -203,7 +205,6 @@ struct SelectPass {
     StereoViews stereo;
     Uints tile_kinds;  // in and, where errors are predicted, out
     Uints tile_prices;
-    Uints price_bins;
     Uints tile_list;  // out, in no order
     Uints tile_mask;  // in: zeros; out
     Uints tile_costs;

@@ -151,6 +151,8 @@ struct StereoCounters {
     uint chosen_cost;               // of what is rendered
     uint moves;                     // 1: something is moved
     uint pays;                      // 1: moving pays, or would have paid in a frame that could not
+    uint last_bin;                  // of the price list: the one in which the budget ends
+    uint left_for_last;             // of the budget; all ones: it does not end
     uvec4 borders_px;               // paper: left, top, right, bottom
     DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is moved
     DispatchSize per_row;           // likewise over the rows
