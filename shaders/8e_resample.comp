@@ -1,7 +1,8 @@
 // 8e: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
 // Where pixels move along their row alone and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
-// depth, all others repeat the farther neighbour, since what was hidden lies behind. A cubic kernel (Catmull and Rom 1974) reads the
+// depth, all others repeat the farther neighbour, since what was hidden lies behind. Few tiles have any; they are listed and gone through
+// once more for these, so that all others do without the search. A cubic kernel (Catmull and Rom 1974) reads the
 // colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
 // their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
 // Errors are those of the even rows, which count for two. Where they are predicted these come first; the odd ones follow once tiles are
@@ -41,6 +42,7 @@ const uint kMaxWidth = 16384;
 const uint kLongestRow = kRowSteps == 0 ? kMaxWidth : kRowSteps * kArrivalsStep;
 const uint kSharedRow = kRowSource == kPlacesGiven ? 0 : kRowSteps * kArrivalsStep;
 const bool kMovesRow = kRowSource == kRowMoved;
+const bool kFindsOpen = kRowSource != kPlacesGiven && !kForward;
 
 shared uint row_arrivals[kSharedRow + 1];
 shared uint arrived_bits[kRowSource == kPlacesGiven ? 1 : kLongestRow / 32];
@@ -51,6 +53,9 @@ shared uint moved_tiles[kMostTiles];  // of this row of tiles, in no order; from
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
+shared uint open_tiles[kFindsOpen ? kMostTiles : 1];  // of moved_tiles those with pixels that nothing reached
+shared uint open_bits[kFindsOpen ? (kMostTiles + 31) / 32 : 1];
+shared uint open_count;
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
 
@@ -142,9 +147,12 @@ struct Resolved {
     float spread;
 };
 
-Resolved resolve(StereoView stereo, uint row, uvec2 at) {
-    const uint here = arrivalAt(row, at.x);
-    if (here != 0) { return Resolved(at.x, (here & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(here), spreadOf(here)); }
+Resolved resolveArrived(uvec2 at, uint arrival) {
+    return Resolved(at.x, (arrival & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(arrival), spreadOf(arrival));
+}
+
+// A pixel that nothing reached.
+Resolved resolveOpen(StereoView stereo, uint row, uvec2 at) {
     const int left = arrivedBefore(at.x), right = arrivedAfter(at.x, stereo.size_px.x);
     const float left_depth = left >= 0 ? inverseDepthOf(arrivalAt(row, uint(left))) : 0;
     const float right_depth = right >= 0 ? inverseDepthOf(arrivalAt(row, uint(right))) : 0;
@@ -315,17 +323,8 @@ float sampleBelow(StereoView stereo, uvec2 at, out uint pixel_class) {
     return 0;
 }
 
-// Writes the pixel; returns its expected squared error, and its class.
-float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
-    if (kForward) {
-        const Copied copied = copyArrived(stereo, row, at);
-        pixel_class = copied.pixel_class;
-        putPixel(stereo, at, pixel_class, copied.colour, copied.inverse_depth);
-        return 0;
-    }
-    if (kRowSource == kPlacesGiven) { return sampleBelow(stereo, at, pixel_class); }
-    const Resolved resolved = resolve(stereo, row, at);
-    pixel_class = resolved.pixel_class;
+// Writes the pixel; returns its expected squared error.
+float putResolved(StereoView stereo, uint row, uvec2 at, Resolved resolved, bool open) {
     const vec2 source_px = movePixel(stereo.dominant_from_affiliated, vec2(resolved.column, at.y) + 0.5, resolved.inverse_depth).xy;
     const ivec2 size = ivec2(stereo.size_px);
     const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
@@ -334,22 +333,50 @@ float moveHere(StereoView stereo, uint row, uvec2 at, out uint pixel_class) {
     if (movesEvenRows(stereo) && (at.y & 1) == 0) { keepPlace(stereo, at, resolved, source_px.x); }
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
-    putPixel(stereo, at, pixel_class, found.colour, resolved.inverse_depth);
+    putPixel(stereo, at, resolved.pixel_class, found.colour, resolved.inverse_depth);
     if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
-    if (pixel_class == kHole) { return 2 * holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
+    if (open && resolved.pixel_class == kHole) { return 2 * holeError(stereo, source_px, int(resolved.column) - int(at.x)); }
     const float variance_px2 = min(uncertaintyOf(row, at.x, stereo.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
-// Lanes work side by side on pixels of moved_tiles: a subgroup's errors belong to one tile for each 16 of them. `slot`: which. The
-// farthest that arrived in a tile, of every other row, is what newcomers (8f) must stand in front of.
-void addErrors(uint first_tile, uint first_slot, uint slot, uint steps, uint arrival, uint lanes) {
+// Writes a pixel that something reached, or any if open ones are not told apart; returns its expected squared error, and its class.
+float putReached(StereoView stereo, uint row, uvec2 at, uint arrival, out uint pixel_class) {
+    if (kForward) {
+        const Copied copied = copyArrived(stereo, row, at);
+        pixel_class = copied.pixel_class;
+        putPixel(stereo, at, pixel_class, copied.colour, copied.inverse_depth);
+        return 0;
+    }
+    if (kRowSource == kPlacesGiven) { return sampleBelow(stereo, at, pixel_class); }
+    const Resolved resolved = resolveArrived(at, arrival);
+    pixel_class = resolved.pixel_class;
+    return putResolved(stereo, row, at, resolved, false);
+}
+
+void listOpen(uint slot) {
+    const uint bit = 1u << (slot & 31);
+    if ((atomicOr(open_bits[slot / 32], bit) & bit) == 0) { open_tiles[atomicAdd(open_count, 1)] = slot; }
+}
+
+void countClass(uint x, uint pixel_class, inout uvec3 classes) {
+    if (!kClasses) { return; }
+    classes += uvec3(equal(uvec3(pixel_class), uvec3(kCovered, kGap, kHole)));
+    if (pixel_class != kCovered) { atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize))); }
+}
+
+uint errorSteps(float error) { return uint(min(error, kMaxPixelError) * kErrorSteps); }
+
+// Lanes work side by side on a row of pixels of a tile, or of several: each 16 have a `tile`. The farthest that arrived in a tile, of
+// every other row, is what newcomers (8f) must stand in front of.
+void addErrors(uint tile, uint steps, uint arrival, uint lanes) {
     const uint slots = max(lanes / kTileSize, 1u), depth = arrival == 0 ? kNothingArrived : arrival >> 6;
-    for (uint s = first_slot; s < first_slot + slots; ++s) {
-        const uint sum = subgroupAdd(slot == s ? steps : 0), farthest = subgroupMin(slot == s ? depth : kNothingArrived);
-        if (subgroupElect()) {
-            if (sum > 0) { atomicAdd(pass.tile_errors.at[first_tile + moved_tiles[s]], sum); }
-            if (farthest != kNothingArrived) { atomicMin(pass.tile_depths.at[first_tile + moved_tiles[s]], farthest); }
+    for (uint s = 0; s < slots; ++s) {
+        const bool own = lanes < kTileSize || gl_SubgroupInvocationID / kTileSize == s;
+        const uint sum = subgroupAdd(own ? steps : 0), farthest = subgroupMin(own ? depth : kNothingArrived);
+        if (gl_SubgroupInvocationID == s * kTileSize) {
+            if (sum > 0) { atomicAdd(pass.tile_errors.at[tile], sum); }
+            if (farthest != kNothingArrived) { atomicMin(pass.tile_depths.at[tile], farthest); }
         }
     }
 }
@@ -389,9 +416,13 @@ void main() {
         moved_count = 0;
         mean_count = 0;
         hidden_count = 0;
+        open_count = 0;
     }
     if (kRowSource != kPlacesGiven) {
         for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
+    }
+    if (kFindsOpen) {
+        for (uint word = gl_LocalInvocationIndex; word < (tiles + 31) / 32; word += kStereoGroup) { open_bits[word] = 0; }
     }
     if (kClasses) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { tile_classes[tile] = 0; }
@@ -417,23 +448,38 @@ void main() {
     uint begin = 0;
     [[dont_unroll]] do {
         const uint item = begin + thread, slot = item / kTileSize;
-        const uint x = item < items ? moved_tiles[slot] * kTileSize + item % kTileSize : width;
-        uint steps = 0;
+        const uint tile = item < items ? moved_tiles[slot] : tiles, x = tile * kTileSize + item % kTileSize;
+        uint steps = 0, arrival = 0;
         if (x < width) {
-            uint pixel_class;
-            const float error = moveHere(stereo, row, uvec2(x, y), pixel_class);
-            steps = uint(min(error, kMaxPixelError) * kErrorSteps);
-            if (kClasses) {
-                classes += uvec3(equal(uvec3(pixel_class), uvec3(kCovered, kGap, kHole)));
-                if (pixel_class != kCovered) { atomicOr(tile_classes[x / kTileSize], pixel_class << (2 * (x % kTileSize))); }
+            if (kFindsOpen) { arrival = arrivalAt(row, x); }
+            if (kFindsOpen && arrival == 0) {
+                listOpen(slot);
+            } else {
+                uint pixel_class;
+                steps = errorSteps(putReached(stereo, row, uvec2(x, y), arrival, pixel_class));
+                countClass(x, pixel_class, classes);
             }
         }
-        if (kPredictErrors) {
-            const uint arrival = x < width && (y & 1) == 0 ? arrivalAt(row, x) : 0;
-            addErrors(first_tile, subgroupBroadcastFirst(slot), slot, steps, arrival, lanes);
-        }
+        if (kPredictErrors) { addErrors(first_tile + tile, steps, (y & 1) == 0 ? arrival : 0, lanes); }
         begin += kStereoGroup;
     } while (begin < items);
+    if (kFindsOpen) {
+        barrier();
+        const uint open_items = open_count * kTileSize;
+        begin = 0;
+        [[dont_unroll]] do {
+            const uint item = begin + thread;
+            const uint tile = item < open_items ? moved_tiles[open_tiles[item / kTileSize]] : tiles, x = tile * kTileSize + item % kTileSize;
+            uint steps = 0;
+            if (x < width && arrivalAt(row, x) == 0) {
+                const Resolved resolved = resolveOpen(stereo, row, uvec2(x, y));
+                steps = errorSteps(putResolved(stereo, row, uvec2(x, y), resolved, true));
+                countClass(x, resolved.pixel_class, classes);
+            }
+            if (kPredictErrors) { addErrors(first_tile + tile, steps, 0, lanes); }
+            begin += kStereoGroup;
+        } while (begin < open_items);
+    }
     if (mean_count > 0) { putMeans(y, width, tiles); }
     if (hidden_count > 0) { hideTiles(y, first_tile, width); }
     if (!kClasses) { return; }
