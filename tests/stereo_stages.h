@@ -137,9 +137,8 @@ public:
         gpu_.upload(view_buffer_, std::vector{view_});
     }
     void resample(const ResampleParts& parts) {
-        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven
-                                     : parts.moves_row             ? gpu::kRowMoved
-                                                                   : gpu::kArrivalsGiven;
+        const gpu::uint moved = parts.hidden_tiles ? gpu::kShownRowMoved : gpu::kRowMoved;
+        const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven : parts.moves_row ? moved : gpu::kArrivalsGiven;
         const std::uint32_t width = view_.size_px.x,
                             row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8e_resample",

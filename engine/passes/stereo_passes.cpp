@@ -62,14 +62,14 @@ KernelTable stereoKernels() {
                                                       {"kRowSteps", gpu::kMostRowSteps + 1},
                                                       {"kHalfColours", 2},
                                                       {"kForward", 2},
-                                                      {"kRowSource", 3}})) {
+                                                      {"kRowSource", 4}})) {
         // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they can be,
         // and odd ones of predicted are moved like even ones.
         const std::vector<std::uint32_t> values = variant.values();
         const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
         const bool can_move = values[0] == 1 && values[5] > 0;
         const bool fits = values[8] == gpu::kPlacesGiven ? values[0] == 1 && values[1] == 0 && values[4] == 0 && values[7] == 0
-                                                         : (values[8] == gpu::kRowMoved) == can_move;
+                                                         : (values[8] != gpu::kArrivalsGiven) == can_move;
         if (groups && (values[1] == 0 || values[7] == 0) && fits) { table.push_back(variant); }
     }
     append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
@@ -187,7 +187,9 @@ void StereoRecorder::reproject() {
                       offsetof(gpu::StereoCounters, per_pixel_block));
 }
 
-void StereoRecorder::resample() { resampleFrom(0, movesRows() != 0 ? gpu::kRowMoved : gpu::kArrivalsGiven, predicts()); }
+void StereoRecorder::resample() {
+    resampleFrom(0, movesRows() == 0 ? gpu::kArrivalsGiven : hidesDominant() != 0 ? gpu::kShownRowMoved : gpu::kRowMoved, predicts());
+}
 
 void StereoRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
 
