@@ -352,7 +352,8 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
     if (may_move_) {
         target.kept.moving = true;
         target.kept.spread = settings.mode == Mode::kPredicted;
-        target.kept.even_rows = target.kept.spread && relation_.rectified;
+        target.kept.even_rows =
+            target.kept.spread && relation_.rectified && !target.kept.moments && settings.stereo.depth_choice == gpu::kDepthInverse;
         target.kept.depth_choice = settings.stereo.depth_choice;
         target.moving = stereo_buffers_.moving(other);
         if (!movesRows(relation_.rectified, stereo_buffers_)) { target.arrivals = stereo_buffers_.arrivals(other); }

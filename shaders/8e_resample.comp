@@ -41,7 +41,7 @@ layout(constant_id = 8) const uint kRowSource = kArrivalsGiven;
 const uint kMaxWidth = 16384;
 const uint kLongestRow = kRowSteps == 0 ? kMaxWidth : kRowSteps * kArrivalsStep;
 const uint kSharedRow = kRowSource == kPlacesGiven ? 0 : kRowSteps * kArrivalsStep;
-const bool kMovesRow = kRowSource == kRowMoved || kRowSource == kShownRowMoved;
+const bool kMovesRow = kRowSource == kRowMoved || kRowSource == kWholeRowMoved;
 const bool kFindsOpen = kRowSource != kPlacesGiven && !kForward;
 
 shared uint row_arrivals[kSharedRow + 1];
@@ -59,7 +59,7 @@ shared uint open_count;
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
 
-bool hidesTiles() { return kRowSource == kShownRowMoved; }
+bool hidesTiles() { return kRowSource != kWholeRowMoved && any(notEqual(uvec2(pass.shown_mask), uvec2(0))); }
 
 void put(StereoView stereo, ivec2 at, uint arrival) {
     if (at.x >= 0 && at.x < int(stereo.size_px.x)) { atomicMax(row_arrivals[at.x], arrival); }

@@ -133,7 +133,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                     // What is left of the two planes lies in tiles that are rendered.
                     StereoOnDevice::ResampleParts parts{.errors = !forward,
                                                         .depths = true,
-                                                        .classes = true,
+                                                        .classes = !apart,
                                                         .forward = forward,
                                                         .moves_row = moves_row,
                                                         .hidden_tiles = moves_row && hides};

@@ -137,10 +137,12 @@ public:
         gpu_.upload(view_buffer_, std::vector{view_});
     }
     void resample(const ResampleParts& parts) {
-        const gpu::uint moved = parts.hidden_tiles ? gpu::kShownRowMoved : gpu::kRowMoved;
+        const bool whole = parts.errors && !parts.classes && !parts.hidden_tiles;
+        const gpu::uint moved = whole ? gpu::kWholeRowMoved : gpu::kRowMoved;
         const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven : parts.moves_row ? moved : gpu::kArrivalsGiven;
-        const std::uint32_t width = view_.size_px.x,
-                            row_steps = width <= gpu::kLongestSharedRow ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
+        const std::uint32_t width = view_.size_px.x;
+        const bool shares = row_source != gpu::kPlacesGiven && width <= gpu::kLongestSharedRow;
+        const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8e_resample",
                  {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
                   row_source},

@@ -56,11 +56,10 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
         rasterize({.moments = moments}, 0);
         for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
             rasterize({.moments = moments, .moving = true, .depth_choice = choice}, 0);
-            for (const bool even_rows : {false, true}) {
-                rasterize({.moments = moments, .moving = true, .spread = true, .even_rows = even_rows, .depth_choice = choice}, 0);
-            }
+            rasterize({.moments = moments, .moving = true, .spread = true, .depth_choice = choice}, 0);
         }
     }
+    rasterize({.moving = true, .spread = true, .even_rows = true}, 0);
     return table;
 }
 

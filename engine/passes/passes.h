@@ -25,7 +25,7 @@ struct Kept {
     bool moments = false;                         // I and J
     bool moving = false;                          // the picture is going to be moved into the other eye
     bool spread = false;                          // and how far its pixels' depths spread
-    bool even_rows = false;                       // an odd row is moved like the even one above it
+    bool even_rows = false;                       // odd rows are not; where depth_choice is kDepthInverse and moments are not kept
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a moving pixel
     bool half_floats = false;                     // colours are kept as these
 };

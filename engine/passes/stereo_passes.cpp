@@ -68,8 +68,11 @@ KernelTable stereoKernels() {
         const std::vector<std::uint32_t> values = variant.values();
         const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
         const bool can_move = values[0] == 1 && values[5] > 0;
-        const bool fits = values[8] == gpu::kPlacesGiven ? values[0] == 1 && values[1] == 0 && values[4] == 0 && values[7] == 0
-                                                         : (values[8] != gpu::kArrivalsGiven) == can_move;
+        bool fits = (values[8] != gpu::kArrivalsGiven) == can_move;
+        if (values[8] == gpu::kWholeRowMoved) { fits = fits && values[1] == 1 && values[3] == 0; }
+        if (values[8] == gpu::kPlacesGiven) {
+            fits = values[0] == 1 && values[1] == 0 && values[4] == 0 && values[5] == 0 && values[7] == 0;
+        }
         if (groups && (values[1] == 0 || values[7] == 0) && fits) { table.push_back(variant); }
     }
     append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
@@ -90,6 +93,7 @@ public:
     [[nodiscard]] bool predicts() const { return in_.settings.patching == Patching::kPredicted; }
     [[nodiscard]] bool followsPaper() const { return in_.settings.patching == Patching::kPaper; }
     [[nodiscard]] bool groupsHoles() const { return followsPaper() && in_.settings.center_rois; }
+    [[nodiscard]] bool keepsClasses() const { return in_.stereo.needs().classes || groupsHoles(); }
 
     void weigh();
     void clearTiles();
@@ -188,7 +192,8 @@ void StereoRecorder::reproject() {
 }
 
 void StereoRecorder::resample() {
-    resampleFrom(0, movesRows() == 0 ? gpu::kArrivalsGiven : hidesDominant() != 0 ? gpu::kShownRowMoved : gpu::kRowMoved, predicts());
+    const bool whole = predicts() && !in_.dominant_shown.hideAny() && !keepsClasses();
+    resampleFrom(0, movesRows() == 0 ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
 }
 
 void StereoRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
@@ -212,11 +217,11 @@ void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, boo
                                  .shown_mask = in_.dominant_shown.mask(),
                                  .background = in_.background,
                                  .first_row = first_row};
-    const std::uint32_t keeps_classes = in_.stereo.needs().classes || groupsHoles() ? 1 : 0;
     const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
-    const Kernel& resample_kernel = kernel("8e_resample", pass,
-                                           {alongRows(), predict_errors, with_depth, keeps_classes, groupsHoles(), in_.stereo.rowSteps(),
-                                            halfFloats(), copiesColours(), row_source});
+    const std::uint32_t row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.stereo.rowSteps();
+    const Kernel& resample_kernel = kernel(
+        "8e_resample", pass,
+        {alongRows(), predict_errors, with_depth, keepsClasses(), groupsHoles(), row_steps, halfFloats(), copiesColours(), row_source});
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
 

@@ -133,11 +133,11 @@ BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
 BINOSPLAT_CONSTANT uint kLongestSharedRow = kMostRowSteps * kArrivalsStep;
-// What 8e makes a row from: arrivals in memory, the dominant eye's pixels, these where some of its tiles are hidden, or the places that
-// the row above was sampled at.
+// What 8e makes a row from: arrivals in memory; the dominant eye's pixels; these where none of its tiles is hidden, as is most often so
+// where errors are predicted; or the places that the row above was sampled at.
 BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
 BINOSPLAT_CONSTANT uint kRowMoved = 1;
-BINOSPLAT_CONSTANT uint kShownRowMoved = 2;
+BINOSPLAT_CONSTANT uint kWholeRowMoved = 2;
 BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
 // Invocations of a workgroup in the passes of the stereo frame: as many as every device allows.
 BINOSPLAT_CONSTANT uint kStereoGroup = 128;
