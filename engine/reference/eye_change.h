@@ -14,7 +14,8 @@ public:
           source_(source.intrinsics),
           turn_(glm::mat3_cast(glm::conjugate(target.world_from_camera.orientation) * source.world_from_camera.orientation)),
           move_(glm::conjugate(target.world_from_camera.orientation) *
-                (source.world_from_camera.position - target.world_from_camera.position)) {}
+                (source.world_from_camera.position - target.world_from_camera.position)),
+          away_(glm::length(source.world_from_camera.position)) {}
 
     struct Moved {
         glm::dvec2 place_px;
@@ -33,17 +34,18 @@ public:
     [[nodiscard]] glm::dvec2 disparity(const glm::dvec2& place_px) const {
         return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z, target_.fy * move_.y + (target_.cy - place_px.y) * move_.z};
     }
-    // Whether every point keeps its row and its depth.
+    // Whether every point keeps its row and its depth, up to what poses are rounded by: far from the origin that is more.
     [[nodiscard]] bool keepsRows() const {
-        const double far = std::abs(move_.x) + 1.0;
-        return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) < 1e-12 &&
-               std::abs(move_.y) + std::abs(move_.z) < 1e-12 * far && target_.fy == source_.fy && target_.cy == source_.cy;
+        const double rounding = 1e-12 * away_ + 1e-9 * std::abs(move_.x);
+        return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) < 1e-9 &&
+               std::abs(move_.y) <= rounding && std::abs(move_.z) <= rounding && target_.fy == source_.fy && target_.cy == source_.cy;
     }
 
 private:
     Intrinsics target_, source_;
     glm::dmat3 turn_;
     glm::dvec3 move_;
+    double away_;  // of the source from the origin
 };
 
 }  // namespace binosplat::reference
