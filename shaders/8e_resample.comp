@@ -2,14 +2,13 @@
 // Where pixels move along their row alone and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
 // Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
 // depth, all others repeat the farther neighbour, since what was hidden lies behind. Few tiles have any; they are listed and gone through
-// once more for these, so that all others do without the search. A cubic kernel (Catmull and Rom 1974) reads the
-// colour. Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain
-// their disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand.
-// Errors are those of the even rows, which count for two. Where they are predicted these come first; the odd ones follow once tiles are
-// chosen, so that those to be rendered have half of their pixels sampled in vain and not all. Where pixels keep their rows an odd one is
-// sampled at the places of the even one above it, so that half of the pixels are moved: colours are still its own, but for what repeats a
-// neighbour. Where an eye does not
-// resolve two rows (8h) an odd one is the mean of those above and below.
+// once more for these, so that all other pixels do without the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
+// Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain their
+// disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand. Errors are those of the
+// even rows, which count for two. These rows come first; the odd ones follow once tiles are chosen, so that those to be rendered have half
+// of their pixels sampled in vain and not all. Where pixels keep their rows an odd one is sampled at the places of the even one above it,
+// so that half of the pixels are moved: colours are still its own, but for what repeats a neighbour. Where an eye does not resolve two
+// rows (8h) an odd one is the mean of those above and below.
 // Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
