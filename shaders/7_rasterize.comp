@@ -94,7 +94,7 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
                                                                 : 1 / depth_sum;
     if (!(inverse_depth >= 0 && inverse_depth < 1e30)) { return 0; }
     const float variance = max(inverse_depth_sums.y / alpha - mean * mean, 0);
-    return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(sqrt(variance) / inverse_depth) : 0);
+    return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(variance / (inverse_depth * inverse_depth)) : 0);
 }
 
 void main() {

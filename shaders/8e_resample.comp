@@ -143,11 +143,11 @@ struct Resolved {
     uint column;
     uint pixel_class;
     float inverse_depth;
-    float spread;
+    float variance_share;  // of the inverse depth, as a share of its square
 };
 
 Resolved resolveArrived(uvec2 at, uint arrival) {
-    return Resolved(at.x, (arrival & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(arrival), spreadOf(arrival));
+    return Resolved(at.x, (arrival & kLanded) != 0 ? kCovered : kGap, inverseDepthOf(arrival), varianceShareOf(arrival));
 }
 
 // A pixel that nothing reached.
@@ -190,14 +190,14 @@ void keepPlace(StereoView stereo, uvec2 at, Resolved resolved, float place_px) {
 
 // How uncertain a pixel's inverse depth is, as a variance: it blends several, and where its neighbours have others it may belong to these.
 float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
-    const float own = kSpreadWeight * resolved.spread * resolved.inverse_depth;
+    const float own = kSpreadWeight * resolved.inverse_depth;
     float step = 0;
     [[unroll]] for (uint side = 0; side < 2; ++side) {
         const uint beside = x + 2 * side - 1;  // beyond either end: no column
         const uint arrival = beside < width ? arrivalAt(row, beside) : 0;
         if (arrival != 0) { step = max(step, abs(inverseDepthOf(arrival) - resolved.inverse_depth)); }
     }
-    return own * own + step * step;
+    return resolved.variance_share * (own * own) + step * step;
 }
 
 vec4 dominantAt(uint i) { return colourAt(pass.dominant, pass.half_dominant, i); }
@@ -328,7 +328,7 @@ float putResolved(StereoView stereo, uint row, uvec2 at, Resolved resolved, bool
     const ivec2 size = ivec2(stereo.size_px);
     const vec2 source = floor(clamp(source_px, vec2(0), vec2(size) - 1)) + 0.5;
     const vec2 disparity = disparityPerInverseDepth(stereo.affiliated_from_dominant, source);
-    const float disparity_px = length(disparity);
+    const float disparity_px = kRectified ? abs(disparity.x) : length(disparity);
     if (movesEvenRows(stereo) && (at.y & 1) == 0) { keepPlace(stereo, at, resolved, source_px.x); }
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * stereo.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));

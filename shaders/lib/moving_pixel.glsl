@@ -21,12 +21,13 @@ ivec2 pixelOfParity(vec2 place_px, uint moving) {
     return ivec2(2 * round(0.5 * (place_px - 0.5 - parity)) + parity);
 }
 
-// `spread`: of the inverse depth, as a share of it. NaN counts as none.
-uint spreadCode(float spread) {
-    if (!(spread > 0)) { return 0; }
-    return uint(clamp(round(2 * (log2(spread) - kLeastSpreadLog2)) + 1, 0, float(kSpreadCodes)));
+// Half octaves of the spread are octaves of its square: no more than an exponent. `variance_share`: of the inverse depth, as a share of its
+// square. NaN counts as none.
+uint spreadCode(float variance_share) {
+    const int octave = int(floatBitsToUint(variance_share * 1.41421356) >> 23) - 127;  // the nearest
+    return variance_share > 0 ? uint(clamp(octave - int(2 * kLeastSpreadLog2) + 1, 0, int(kSpreadCodes))) : 0;
 }
-float spreadOf(uint moving) {
-    const uint code = moving & kSpreadBits;
-    return code == 0 ? 0 : exp2(0.5 * float(code - 1) + kLeastSpreadLog2);
+float varianceShareOf(uint moving) {
+    const int code = int(moving & kSpreadBits);
+    return code == 0 ? 0 : intBitsToFloat((code - 1 + int(2 * kLeastSpreadLog2) + 127) << 23);
 }
