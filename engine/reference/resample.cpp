@@ -41,7 +41,7 @@ std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolv
         const TileKind kind = kinds[y / kTileSize * columns + x / kTileSize];
         if (kind == TileKind::kHidden) { colours[i] = glm::dvec4(background, 0.0); }
         if (kind != TileKind::kNone) { continue; }
-        const glm::dvec2 pixel_px(resolved[i].column + 0.5, static_cast<double>(y - resolved[i].row) + 0.5);
+        const glm::dvec2 pixel_px(resolved[i].column + 0.5, static_cast<double>(y - resolved[i].rows_up) + 0.5);
         colours[i] = sample(dominant, source_from_target.move(pixel_px, resolved[i].inverse_depth).place_px);
     }
     return colours;

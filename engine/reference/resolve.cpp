@@ -57,7 +57,7 @@ void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px) {
         for (std::size_t x = 0; x < size_px.x; ++x) {
             Resolved& pixel = resolved[y * size_px.x + x];
             pixel = resolved[(y - 1) * size_px.x + x];
-            pixel.row = pixel.column != x ? 1 : 0;
+            pixel.rows_up = pixel.column != x ? 1 : 0;
         }
     }
 }

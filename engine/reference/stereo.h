@@ -107,8 +107,8 @@ struct Resolved {
     PixelClass pixel_class;
     std::uint32_t column;
     double inverse_depth;
-    std::uint32_t spread;   // a code; 0 where nothing arrived
-    std::uint32_t row = 0;  // of the source, so many above its own
+    std::uint32_t spread;       // a code; 0 where nothing arrived
+    std::uint32_t rows_up = 0;  // of the source, above its own
 };
 std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
 // Likewise 8e, where errors are predicted and pixels keep their rows: those of an odd row are those of the even one above it, seen in
