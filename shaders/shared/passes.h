@@ -192,8 +192,8 @@ struct PricePass {
     StereoViews stereo;
     Uints tile_kinds;
     Uints tile_costs;
-    Uints tile_errors;  // in; out where an eye does not resolve two rows: kSeenCoarsely
-    Uints tile_prices;  // out: bin << 22 | cost
+    Uints tile_errors;         // in; out where an eye does not resolve two rows: kSeenCoarsely
+    Uints tile_prices;         // out: bin << 22 | cost
     CoherentUints price_bins;  // cost of the tiles in each bin, of errors that are seen whole; greatest error a pair last
     ListStates masked_tiles;   // counts workgroups
     StereoCounterss counters;
