@@ -19,12 +19,14 @@ layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the domina
 layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
 layout(constant_id = 3) const bool kMayMove = true;       // the dominant eye's pixels are there to be moved
 
-// Pairs of the dominant tile that the middle of this one comes from, if it is as deep as what the dominant eye sees at that pixel.
-uint pairsNear(StereoView stereo, uint tile) {
-    if (!kMayMove) { return pass.ranges.at[tile].y - pass.ranges.at[tile].x; }
+// The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
+uvec2 middleOf(StereoView stereo, uint tile) {
     const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
-    const uvec2 middle = min(at * kTileSize + kTileSize / 2, stereo.size_px - 1) & uvec2(~0u, ~1u);  // odd rows may have no depths
-    const uint moving = pass.moving.at[middle.y * stereo.row_words + middle.x];
+    return min(at * kTileSize + kTileSize / 2, stereo.size_px - 1) & uvec2(~0u, ~1u);
+}
+
+// Pairs of the dominant tile that this pixel comes from, if it is as deep as what the dominant eye sees there.
+uint pairsNear(StereoView stereo, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(stereo.dominant_from_affiliated, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
     // Comparisons are written so that NaN stays where it is.
@@ -54,16 +56,18 @@ void main() {
     if (tile < tiles) {
         const bool hidden = kKindsGiven && pass.tile_kinds.at[tile] == kTileHidden;
         if (!hidden) {
-            const uint pairs = pairsNear(stereo, tile);
+            const uvec2 middle = middleOf(stereo, tile);
+            const uint moving = kMayMove ? pass.moving.at[middle.y * stereo.row_words + middle.x] : 0;
+            const uint pairs = kMayMove ? pairsNear(stereo, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
             const bool unseen = isUnseen(stereo, pass.shown_mask, kHiddenTiles, tile, true);
             cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
             moves = !unseen && pairs > stereo.move_cost;
             saved = moves ? pairs - stereo.move_cost : 0;
+            pass.tile_depths.at[tile] = moving;
             pass.tile_kinds.at[tile] = !kMayMove ? kTileCheap : unseen ? kTileEdge : moves ? 0 : kTileCheap;
         }
         pass.tile_costs.at[tile] = cost;
         pass.tile_errors.at[tile] = 0;
-        pass.tile_depths.at[tile] = kNothingArrived;
     }
     const uint threads = gl_NumWorkGroups.x * kStereoGroup;
     for (uint i = tile; i < maskWords(stereo.size_tiles) * stereo.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }

@@ -366,17 +366,13 @@ void countClass(uint x, uint pixel_class, inout uvec3 classes) {
 
 uint errorSteps(float error) { return uint(min(error, kMaxPixelError) * kErrorSteps); }
 
-// Lanes work side by side on a row of pixels of a tile, or of several: each 16 have a `tile`. The farthest that arrived in a tile, of
-// every other row, is what newcomers (8f) must stand in front of.
-void addErrors(uint tile, uint steps, uint arrival, uint lanes) {
-    const uint slots = max(lanes / kTileSize, 1u), depth = arrival == 0 ? kNothingArrived : arrival >> 6;
+// Lanes work side by side on a row of pixels of a tile, or of several: each 16 have a `tile`.
+void addErrors(uint tile, uint steps, uint lanes) {
+    const uint slots = max(lanes / kTileSize, 1u);
     for (uint s = 0; s < slots; ++s) {
         const bool own = lanes < kTileSize || gl_SubgroupInvocationID / kTileSize == s;
-        const uint sum = subgroupAdd(own ? steps : 0), farthest = subgroupMin(own ? depth : kNothingArrived);
-        if (gl_SubgroupInvocationID == s * kTileSize) {
-            if (sum > 0) { atomicAdd(pass.tile_errors.at[tile], sum); }
-            if (farthest != kNothingArrived) { atomicMin(pass.tile_depths.at[tile], farthest); }
-        }
+        const uint sum = subgroupAdd(own ? steps : 0);
+        if (gl_SubgroupInvocationID == s * kTileSize && sum > 0) { atomicAdd(pass.tile_errors.at[tile], sum); }
     }
 }
 
@@ -459,7 +455,7 @@ void main() {
                 countClass(x, pixel_class, classes);
             }
         }
-        if (kPredictErrors) { addErrors(first_tile + tile, steps, (y & 1) == 0 ? arrival : 0, lanes); }
+        if (kPredictErrors) { addErrors(first_tile + tile, steps, lanes); }
         begin += kStereoGroup;
     } while (begin < items);
     if (kFindsOpen) {
@@ -475,7 +471,7 @@ void main() {
                 steps = errorSteps(putResolved(stereo, row, uvec2(x, y), resolved, true));
                 countClass(x, resolved.pixel_class, classes);
             }
-            if (kPredictErrors) { addErrors(first_tile + tile, steps, 0, lanes); }
+            if (kPredictErrors) { addErrors(first_tile + tile, steps, lanes); }
             begin += kStereoGroup;
         } while (begin < open_items);
     }

@@ -26,12 +26,12 @@ const float kMaxTileError = 64;
 // Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
 const uint kMaxTiles = 1024;
 
-// Whether the splat's centre, held to the picture, is clearly nearer than the farthest that reached its tile; also in a tile that is
-// rendered.
+// Whether the splat's centre, held to the picture, is clearly nearer than what the dominant eye sees in the middle of its tile; also in a
+// tile that is rendered.
 bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
     const uint tile = tileOf(stereo, uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1))));
-    const uint farthest = pass.tile_depths.at[tile];
-    return pass.tile_kinds.at[tile] != 0 || farthest == kNothingArrived || inverse_depth > kInFrontRatio * inverseDepthOf(farthest << 6);
+    const uint moving = pass.tile_depths.at[tile];
+    return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }
 
 // Sums stop at half of what a word holds; whatever gets there is rendered anyway. By exchange, since many threads that each looked before

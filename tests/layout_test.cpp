@@ -86,7 +86,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(stereo), FIELD(tile_depths), FIELD(order), FIELD(visible),
                FIELD(dominant_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
         LAYOUT(ResamplePass, FIELD(stereo), FIELD(dominant), FIELD(half_dominant), FIELD(moving), FIELD(affiliated), FIELD(half_affiliated),
-               FIELD(depths), FIELD(tile_kinds), FIELD(tile_errors), FIELD(tile_depths), FIELD(pixel_classes), FIELD(component_pixels),
+               FIELD(depths), FIELD(tile_kinds), FIELD(tile_errors), FIELD(pixel_classes), FIELD(component_pixels),
                FIELD(counters), FIELD(shown_mask), FIELD(background), FIELD(first_row)),
         LAYOUT(ComponentsPass, FIELD(stereo), FIELD(pixels), FIELD(pixel_classes), FIELD(boxes), FIELD(tile_kinds), FIELD(counters),
                FIELD(box_capacity)),

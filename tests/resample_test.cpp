@@ -142,14 +142,13 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                     parts.odd = true;
                     parts.errors = false;
                     if (apart) { device.resample(parts); }
-                    return std::tuple(device.readAffiliated(), device.readDepths(), device.readClasses(), device.readTileErrors(),
-                                      device.readTileDepths());
+                    return std::tuple(device.readAffiliated(), device.readDepths(), device.readClasses(), device.readTileErrors());
                 };
                 for (const bool apart : {false, true}) {
                     if (apart && forward) { continue; }
                     CAPTURE(apart);
-                    const auto [colours, depths, classes, errors, tile_depths] = resampled(false, apart);
-                    const auto [own_colours, own_depths, own_classes, own_errors, own_tile_depths] = resampled(true, apart);
+                    const auto [colours, depths, classes, errors] = resampled(false, apart);
+                    const auto [own_colours, own_depths, own_classes, own_errors] = resampled(true, apart);
                     const auto kinds = test::markSome(errors.size());
                     std::size_t other = 0;
                     for (std::size_t i = 0; i < colours.size(); ++i) {
@@ -160,7 +159,6 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
                     CHECK(other == 0);
                     CHECK(own_classes == classes);
                     CHECK(own_errors == errors);
-                    CHECK(own_tile_depths == tile_depths);
                 }
                 ++pictures;
             }
@@ -254,7 +252,6 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample expects the twin's errors of tiles that are 
             device.writeTileErrors(std::vector<gpu::uint>(device.tileCount(), newcomers));
             device.resample({.errors = true});
             const auto errors = device.readTileErrors();
-            CHECK(device.readTileDepths() == test::depthsOf(arrived.words, kinds, c.sizePx()));
             const auto expected = reference::expectErrors(reference::resolve(arrived.arrivals, c.eyes, c.settings), arrived.arrivals,
                                                           c.dominant, kinds, c.eyes, c.settings);
             for (std::size_t t = 0; t < errors.size(); ++t) {
@@ -399,7 +396,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones t
                 if (!moves_row) { anew.reproject(); }
                 anew.resample({.errors = true, .classes = true, .moves_row = moves_row});
                 if (apart) { anew.resample({.classes = true, .moves_row = moves_row, .odd = true}); }
-                return std::tuple(anew.readAffiliated(), anew.readClasses(), anew.readTileErrors(), anew.readTileDepths());
+                return std::tuple(anew.readAffiliated(), anew.readClasses(), anew.readTileErrors());
             };
             if (width <= gpu::kLongestSharedRow) {
                 CHECK(moved(true, true) == moved(false, true));

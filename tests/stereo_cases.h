@@ -176,16 +176,10 @@ inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
 
-// What 8e tells 8f of tiles that are moved: the farthest that arrived in every other row.
-inline std::vector<gpu::uint> depthsOf(const std::vector<gpu::uint>& arrivals, const std::vector<reference::TileKind>& kinds,
-                                       glm::uvec2 size_px) {
-    std::vector<gpu::uint> depths(kinds.size(), gpu::kNothingArrived);
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-        const std::size_t t = tileOf(i, size_px);
-        if (i / size_px.x % 2 == 0 && arrivals[i] != 0 && kinds[t] == reference::TileKind::kNone) {
-            depths[t] = std::min(depths[t], arrivals[i] >> 6);
-        }
-    }
+// What 8a tells 8f of each tile.
+inline std::vector<gpu::uint> depthsOfTiles(const StereoCase& c) {
+    std::vector<gpu::uint> depths(std::size_t{(c.sizePx().x + 15) / 16} * ((c.sizePx().y + 15) / 16));
+    for (std::size_t t = 0; t < depths.size(); ++t) { depths[t] = packMoving(reference::movingAtMiddle(c.dominant, t, c.settings)); }
     return depths;
 }
 

@@ -57,14 +57,12 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
     const auto source = reference::project(c.scene, order, c.eyes.source, settings),
                target = reference::project(c.scene, order, c.eyes.target, settings);
     const auto source_pairs = reference::bin(source, c.sizePx(), settings), target_pairs = reference::bin(target, c.sizePx(), settings);
-    const Arrived arrived(c);
     StereoOnDevice device = toDevice(gpu, c);
     std::vector<double> expected(device.tileCount(), 0.0);
     Newcomers newcomers{};
-    newcomers.expected = reference::addNewcomers(expected, target, target_pairs, source_pairs, arrived.arrivals, kinds, c.sizePx(),
-                                                 c.settings.newcomer_error);
+    newcomers.expected = reference::addNewcomers(expected, target, target_pairs, source_pairs, c.dominant, kinds, c.settings);
 
-    device.writeTileDepths(test::depthsOf(arrived.words, kinds, c.sizePx()));
+    device.writeTileDepths(test::depthsOfTiles(c));
     device.writeTileKinds(test::kindsOf(kinds));
     std::vector<gpu::uint> source_tiles(order.size(), 0);
     for (const reference::TilePair& pair : source_pairs) { ++source_tiles[pair.splat]; }
@@ -211,7 +209,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the farthest that arrived in its tile, and against nothing where nothing did") {
+TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
     // Small discs of inverse depth 1/3 along the middle row.
     const glm::uvec2 size_px(64, 16);
     const Eye eye = test::makeEye(size_px);
@@ -223,7 +221,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the farthest that arr
     StereoCase c{"beside", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
     c.dominant.rgba.resize(64 * 16);
     const test::SceneOnDevice scene(*this, c.scene, {eye, eye}, 0.2);
-    const gpu::uint near = test::packMoving(0.5, true, 0) >> 6, far = test::packMoving(0.25, true, 0) >> 6, nothing = gpu::kNothingArrived;
+    const gpu::uint near = test::packMoving(0.5, true, 0), far = test::packMoving(0.25, true, 0), nothing = 0;
     const auto found = [&](const std::vector<gpu::uint>& depths, const std::vector<gpu::uint>& kinds) {
         StereoOnDevice device = toDevice(*this, c);
         device.writeTileDepths(depths);

@@ -349,13 +349,13 @@ TEST_CASE("the budget ends where it would if all errors were seen whole, and wha
     CHECK(chosen({9, 8, 8, 5, 5, 1}, 0) == "......");
 }
 
-TEST_CASE("a newcomer stands in front of the farthest that its tile shows, and wherever nothing is moved or nothing arrived") {
-    // Three tiles; pixels 8, 38 and 40 are reached at 1/2, 1/3 and 1/4, the one between at none. One splat each, in its own tile.
+TEST_CASE("a newcomer stands in front of what the middle of its tile shows, and wherever nothing is moved") {
+    // Three tiles whose middles are at a depth of 2, of none and of 4; all other pixels are nearer. One splat each, in its own tile.
     const glm::uvec2 size_px(48, 1);
-    std::vector<Arrival> arrivals(48);
-    arrivals[8] = {Arrival::kLanded, 0.5, 0};
-    arrivals[38] = {Arrival::kLanded, 1.0 / 3.0, 0};
-    arrivals[40] = {Arrival::kLanded, 0.25, 0};
+    Picture dominant{size_px, std::vector(48, glm::dvec4(0.5)), std::vector(48, 0.5), std::vector(48, 0.5), std::vector(48, 0.5)};
+    dominant.inverse_depth[8] = 0.5 / 2.0;
+    dominant.inverse_depth[24] = -1.0;
+    dominant.inverse_depth[40] = 0.5 / 4.0;
     const auto found = [&](double x, double depth, TileKind kind) {
         reference::ProjectedSplat splat{};
         splat.reference_px = {x, 0.5};
@@ -368,23 +368,20 @@ TEST_CASE("a newcomer stands in front of the farthest that its tile shows, and w
         kinds[static_cast<std::size_t>(tile)] = kind;
         std::vector<double> errors(3, 0.0);
         const std::vector<TilePair> pairs{{static_cast<std::uint32_t>(tile), 0}};
-        const std::size_t count = addNewcomers(errors, {&splat, 1}, pairs, {}, arrivals, kinds, size_px, 1.0);
+        reference::StereoSettings settings;
+        settings.newcomer_error = 1.0;
+        const std::size_t count = addNewcomers(errors, {&splat, 1}, pairs, {}, dominant, kinds, settings);
         return std::pair(count, errors[static_cast<std::size_t>(tile)]);
     };
     const double error = 0.25 * 3.14159265358979 / 2.0;
-    CHECK(found(20.5, 3.9, TileKind::kNone).second == doctest::Approx(error));
+    CHECK(found(4.5, 1.97, TileKind::kNone).second == doctest::Approx(error));
+    CHECK(found(4.5, 1.97, TileKind::kNone).first == 1);
+    CHECK(found(4.5, 1.99, TileKind::kNone).first == 0);
     CHECK(found(20.5, 100.0, TileKind::kNone).first == 1);
-    CHECK(found(8.5, 1.97, TileKind::kNone).first == 1);
-    CHECK(found(8.5, 1.99, TileKind::kNone).first == 0);
-    CHECK(found(44.5, 3.9, TileKind::kNone).first == 1);
+    CHECK(found(44.5, 3.95, TileKind::kNone).first == 1);
     CHECK(found(44.5, 3.97, TileKind::kNone).first == 0);
-    CHECK(found(20.5, 100.0, TileKind::kCheap) == std::pair(std::size_t{1}, 0.0));
-    // What is infinitely far has arrived, too, before or after what is near.
-    arrivals[9] = {Arrival::kLanded, 0.0, 0};
-    CHECK(found(8.5, 100.0, TileKind::kNone).first == 1);
-    arrivals[9] = {};
-    arrivals[7] = {Arrival::kLanded, 0.0, 0};
-    CHECK(found(8.5, 100.0, TileKind::kNone).first == 1);
-    arrivals.assign(48, {});
-    CHECK(found(20.5, 100.0, TileKind::kNone).first == 1);
+    CHECK(found(44.5, 100.0, TileKind::kCheap) == std::pair(std::size_t{1}, 0.0));
+    // What is infinitely far is moved, too.
+    dominant.rgba[40].w = 0.0;
+    CHECK(found(44.5, 100.0, TileKind::kNone).first == 1);
 }

@@ -31,7 +31,7 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tileArray(1); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCosts() const { return tileArray(2); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
-    // The farthest that arrived in each, until prices come.
+    // What the dominant eye sees in the middle of each, until prices come.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileDepths() const { return tilePrices(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }

@@ -210,7 +210,6 @@ void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, boo
                                  .depths = in_.affiliated.depths.address<float>(),
                                  .tile_kinds = in_.stereo.tileKinds(),
                                  .tile_errors = knows_errors ? in_.stereo.tileErrors() : gpu::DeviceAddress<gpu::uint>{},
-                                 .tile_depths = in_.stereo.tileDepths(),
                                  .pixel_classes = in_.stereo.pixelClasses(),
                                  .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),

@@ -5,7 +5,7 @@
 //   8c_edge_rois     paper: the borders that the dominant eye does not see
 //   8d_reproject     the dominant eye's pixels go to where the affiliated eye sees them; 8e does so itself where that is in their row
 //   8e_resample      every pixel's place in the dominant picture, its colour, and the error to expect
-//   8f_newcomers     predicted: splats that only the affiliated eye sees, nearer than the farthest thing moved in their tile
+//   8f_newcomers     predicted: splats that only the affiliated eye sees, nearer than the middle of their tile
 //   8g_components    paper, on request: connected holes inside the picture
 //   8h_price         predicted: what it costs to mend each tile's error
 //   8i_select        the tiles that are rendered

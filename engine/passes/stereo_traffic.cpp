@@ -33,8 +33,8 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
         traffic.emplace_back("8c_edge_rois", perTile(2));
     }
     if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
-    // A row of pixels reads its tiles' kinds; every other row adds to their errors and their depths.
-    const double of_rows = perTile(gpu::kTileSize * (predict ? 3 : 1));
+    // A row of pixels reads its tiles' kinds; every other row adds to their errors.
+    const double of_rows = perTile(gpu::kTileSize * (predict ? 2 : 1));
     // What even rows leave for odd ones is written and read.
     const double place = facts.even_rows ? kWord + (depth > 0.0 ? kWord : 0.0) : 0.0;
     traffic.emplace_back("8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace binosplat::reference {
@@ -22,21 +21,6 @@ double squareCoverage(const ProjectedSplat& splat) {
     return low_pass + std::numbers::pi / jacobian;
 }
 
-// By tile, the farthest that arrived, as an inverse depth: pixels of every other row are asked. Infinite where nothing did.
-std::vector<double> farthestByTile(std::span<const Arrival> arrivals, glm::uvec2 size_px, std::size_t tiles) {
-    std::vector<double> farthest(tiles, std::numeric_limits<double>::infinity());
-    const std::size_t columns = (size_px.x + kTileSize - 1) / kTileSize;
-    for (std::size_t y = 0; y < size_px.y; y += 2) {
-        for (std::size_t x = 0; x < size_px.x; ++x) {
-            const Arrival& arrival = arrivals[y * size_px.x + x];
-            if (arrival.way == Arrival::kNone) { continue; }
-            double& of_tile = farthest[y / kTileSize * columns + x / kTileSize];
-            of_tile = std::min(of_tile, arrival.inverse_depth);
-        }
-    }
-    return farthest;
-}
-
 std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size_t splats) {
     std::vector<std::uint32_t> counts(splats, 0);
     for (const TilePair& pair : pairs) { ++counts[pair.splat]; }
@@ -46,14 +30,15 @@ std::vector<std::uint32_t> countTiles(std::span<const TilePair> pairs, std::size
 }  // namespace
 
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
-                         std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
-                         glm::uvec2 size_px, double newcomer_error) {
-    const std::vector<double> farthest = farthestByTile(arrivals, size_px, kinds.size());
-    // Whether the centre, held to the image, is nearer than the farthest that was reprojected in its tile; where nothing was, it is.
+                         std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
+                         const StereoSettings& settings) {
+    const glm::uvec2 size_px = dominant.size_px;
+    // Whether the centre, held to the image, is nearer than the middle of its tile; where nothing is moved, it is.
     const auto standsInFront = [&](const ProjectedSplat& splat) {
         const glm::uvec2 at(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0));
         const std::size_t tile = at.y / kTileSize * ((size_px.x + kTileSize - 1) / kTileSize) + at.x / kTileSize;
-        return kinds[tile] != TileKind::kNone || std::isinf(farthest[tile]) || 1.0 / splat.depth > kInFrontRatio * farthest[tile];
+        const auto middle = movingAtMiddle(dominant, tile, settings);
+        return kinds[tile] != TileKind::kNone || !middle || 1.0 / splat.depth > kInFrontRatio * middle->inverse_depth;
     };
     const std::vector<std::uint32_t> in_target = countTiles(target_pairs, target_splats.size()),
                                      in_source = countTiles(source_pairs, target_splats.size());
@@ -72,7 +57,7 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
         const double shared_by = tilesAcross(box.x, box.z) * tilesAcross(box.y, box.w);
         // A disc that comes through the near plane may cover anything.
         const double pixels = splat.low_pass ? std::min(squareCoverage(splat) / shared_by, kTilePixels) : kTilePixels;
-        errors[pair.tile] += newcomer_error * newcomer_error * splat.opacity * splat.opacity * pixels;
+        errors[pair.tile] += settings.newcomer_error * settings.newcomer_error * splat.opacity * splat.opacity * pixels;
     }
     return newcomers;
 }

@@ -84,7 +84,7 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         std::vector<double>& errors = pictures.tile_errors;
         errors = expectErrors(pictures.resolved, arrivals, pictures.dominant, pictures.tile_kinds, eyes, stereo);
         const EyeSplats target(scene, order, eyes.target, settings);
-        addNewcomers(errors, target.splats, target.pairs, source.pairs, arrivals, pictures.tile_kinds, size_px, stereo.newcomer_error);
+        addNewcomers(errors, target.splats, target.pairs, source.pairs, pictures.dominant, pictures.tile_kinds, stereo);
         const std::vector<double> shares = stereo.target_gaze ? findSeenShares(eyes.target, *stereo.target_gaze) : std::vector<double>();
         const auto whole_prices = price(pictures.tile_kinds, errors, pictures.tile_costs);
         select(pictures.tile_kinds, price(pictures.tile_kinds, errors, pictures.tile_costs, shares), pictures.tile_costs, budget_cost,

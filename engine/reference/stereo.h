@@ -64,6 +64,8 @@ struct Weighed {
     bool moves;                              // whether any tile is moved
 };
 Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings);
+// Likewise 8a: what the source sees in the middle of this tile.
+std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile, const StereoSettings& settings);
 // Likewise 8a: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge).
 std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
 // Likewise 8a: hidden tiles of the target, whatever they were.
@@ -128,11 +130,11 @@ std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::spa
 std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
                                  std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// 8f: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than the farthest
-// that was reprojected in its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
+// 8f: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what the source
+// sees in the middle of its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
-                         std::span<const TilePair> source_pairs, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
-                         glm::uvec2 size_px, double newcomer_error);
+                         std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
+                         const StereoSettings& settings);
 
 // 8g: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
 // With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.

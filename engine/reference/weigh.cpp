@@ -12,13 +12,18 @@ constexpr std::uint64_t kTilePairs = 16, kMaxTileCost = (1u << 21) - 1;
 // Moving costs a part of what it costs a tile even where nothing is moved.
 constexpr std::uint64_t kMoveSharedPart = 2;
 
+// The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
+glm::uvec2 middleOf(std::size_t tile, glm::uvec2 size_px) {
+    const std::uint32_t columns = tileGrid(size_px).x;
+    const glm::uvec2 at(tile % columns, tile / columns);
+    return glm::min(at * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u) & glm::uvec2(~0u, ~1u);
+}
+
 // The tile of the source that the middle of a tile of the target comes from, if it is as deep as what the source has there.
-std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, const glm::uvec2& tile,
-                       const StereoSettings& settings) {
+std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_target, std::size_t tile, const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
-    const glm::uvec2 middle = glm::min(tile * unsigned{kTileSize} + unsigned{kTileSize / 2}, size_px - 1u) & glm::uvec2(~0u, ~1u);
-    const auto pixel = movingPixel(dominant, std::size_t{middle.y} * size_px.x + middle.x, settings);
-    const glm::dvec2 middle_px = glm::dvec2(middle) + 0.5;
+    const auto pixel = movingAtMiddle(dominant, tile, settings);
+    const glm::dvec2 middle_px = glm::dvec2(middleOf(tile, size_px)) + 0.5;
     const auto moved = source_from_target.move(middle_px, pixel ? pixel->inverse_depth : 0.0);
     const bool somewhere = moved.in_front && !std::isnan(moved.place_px.x) && !std::isnan(moved.place_px.y);
     const glm::dvec2 place = glm::clamp(somewhere ? moved.place_px : middle_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0);
@@ -28,15 +33,19 @@ std::size_t sourceTile(const Picture& dominant, const EyeChange& source_from_tar
 
 }  // namespace
 
+std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile, const StereoSettings& settings) {
+    const glm::uvec2 middle = middleOf(tile, dominant.size_px);
+    return movingPixel(dominant, std::size_t{middle.y} * dominant.size_px.x + middle.x, settings);
+}
+
 Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings) {
     const EyeChange source_from_target(eyes.source, eyes.target);
-    const std::uint32_t columns = tileGrid(dominant.size_px).x;
     Weighed weighed{markUnseen(eyes, settings.gap_px), {}, 0, 0, false};
     markHidden(weighed.kinds, settings);
     markBehindHidden(weighed.kinds, eyes, settings);
     std::uint64_t shown = 0;
     for (std::uint32_t t = 0; t < weighed.kinds.size(); ++t) {
-        const TileRange& range = dominant_ranges[sourceTile(dominant, source_from_target, {t % columns, t / columns}, settings)];
+        const TileRange& range = dominant_ranges[sourceTile(dominant, source_from_target, t, settings)];
         const std::uint64_t pairs = range.end - range.begin;
         weighed.costs.push_back(std::min(pairs + kTilePairs, kMaxTileCost));
         if (weighed.kinds[t] == TileKind::kHidden) { continue; }

@@ -160,11 +160,8 @@ BINOSPLAT_CONSTANT float kSpreadWeight = 0.5f;
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 
 // A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio than that of the
-// farthest thing in the tile: a wall that goes on beyond the border is as deep as what is repeated there, and rounding must not decide.
+// tile's middle: a wall that goes on beyond the border is as deep as what is repeated there, and rounding must not decide.
 BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
-
-// Of a tile in which no pixel of another eye arrived.
-BINOSPLAT_CONSTANT uint kNothingArrived = 0xffffffffu;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;

@@ -105,7 +105,7 @@ struct WeighPass {
     Uints tile_kinds;   // out, but for kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
-    Uints tile_depths;  // out: kNothingArrived
+    Uints tile_depths;  // out: what the dominant eye sees in the middle of each, a word of `moving`
     Uints tile_mask;    // out: zeros
     Uints price_bins;   // out: zeros
     Uints shown_mask;   // where the dominant eye has hidden tiles: the others
@@ -151,7 +151,6 @@ struct ResamplePass {
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
     Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where 8h says kSeenCoarsely
-    Uints tile_depths;                 // out, where errors are predicted: the farthest that arrived, see 8f_newcomers
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
     StereoCounterss counters;
@@ -165,7 +164,7 @@ struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
     StereoViews stereo;
-    Uints tile_depths;  // kNothingArrived, or a moving pixel without its last six bits
+    Uints tile_depths;  // WeighPass
     Uints order;
     ListStates visible;
     Uints dominant_counts;  // of tiles
