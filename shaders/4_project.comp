@@ -60,20 +60,28 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
     uint tiles = 0;
     small = 0;
-    for (int row = box.y; row < box.w; ++row) {
-        const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        const uint first_bit = kSmallBox * min(row - box.y, kSmallBox - 1);
-        if (!kMasked) {
-            small |= smallRow(in_row - box.x) << first_bit;
-            tiles += max(in_row.y - in_row.x, 0);
-            continue;
-        }
-        const uint end = uint(max(in_row.x, in_row.y));
-        for (uint x = uint(in_row.x); x < end; x = wordEnd(x, end)) {
-            const uint bits = maskBits(pass.tile_mask, size_tiles, row, x, wordEnd(x, end));
-            small |= bits << (x - box.x + first_bit);
-            tiles += bitCount(bits);
-        }
+    int row = box.y;
+    if (row < box.w) {
+        [[dont_unroll]] do {
+            const ivec2 in_row = tilesInRow(outline, uint(row), box);
+            const uint first_bit = kSmallBox * min(row - box.y, kSmallBox - 1);
+            if (!kMasked) {
+                small |= smallRow(in_row - box.x) << first_bit;
+                tiles += max(in_row.y - in_row.x, 0);
+            } else {
+                uint x = uint(in_row.x);
+                const uint end = uint(max(in_row.x, in_row.y));
+                if (x < end) {
+                    [[dont_unroll]] do {
+                        const uint bits = maskBits(pass.tile_mask, size_tiles, row, x, wordEnd(x, end));
+                        small |= bits << (x - box.x + first_bit);
+                        tiles += bitCount(bits);
+                        x = wordEnd(x, end);
+                    } while (x < end);
+                }
+            }
+            ++row;
+        } while (row < box.w);
     }
     return fits ? bitCount(small) : tiles;
 }

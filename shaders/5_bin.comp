@@ -48,7 +48,13 @@ void main() {
         if (pairs.x < pairs.y) {
             const uvec2 tile_set = pass.tile_sets.at[rank];
             is_large = !isSmall(tile_set);
-            for (uint bits = smallTiles(tile_set); bits != 0; bits &= bits - 1) { putPair(pairs, uvec2(tileOfBit(tile_set, findLSB(bits))), rank); }
+            uint bits = smallTiles(tile_set);
+            if (bits != 0) {
+                [[dont_unroll]] do {
+                    putPair(pairs, uvec2(tileOfBit(tile_set, findLSB(bits))), rank);
+                    bits &= bits - 1;
+                } while (bits != 0);
+            }
         }
         listLarge(is_large, rank, begin);
         begin += counts[i];

@@ -78,11 +78,94 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
         if (subgroupElect()) {
-            for (uint word = 0; word < (lanes_in_subgroup + 31) / 32; ++word) {
+            uint word = 0;
+            [[dont_unroll]] do {
                 if (lanes[word] != 0) { atomicOr(cell_splats[cell][first_slot / 32 + word], lanes[word] << (first_slot & 31)); }
-            }
+                ++word;
+            } while (word < (lanes_in_subgroup + 31) / 32);
         }
     }
+}
+
+void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_px) {
+    uint slot = threadIndex();
+    if (slot >= splats) { return; }
+    [[dont_unroll]] do {
+        loadSplat(slot, lanes, pass.ranks.at[begin + slot], middle_px, tile_px);
+        slot += kThreads;
+    } while (slot < splats);
+}
+
+// What the thread's pixels have come to.
+vec3 colour[kPixels];
+float depth[kPixels];
+vec2 moments[kPixels];
+float transmittance[kPixels];  // negated once the pixel takes no more light
+bool any_open;
+
+// `first_px`: the middle of the thread's first pixel, relative to the tile.
+void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
+    const vec4 reference = batch_reference[slot];
+    const vec4 plane = batch_plane[slot];
+    const vec4 depth_form = batch_depth[slot];
+    const vec3 splat_colour = unpackColour(batch_colour[slot]);
+
+    const vec2 d = first_px - reference.xy;
+    const float u = reference.z + plane.x * d.x;
+    const float q = depth_form.x + depth_form.y * d.x;
+    // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not even 0.
+    const bool low_pass = kSplatKind != kDiscs || plane.w > 0;
+    const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
+    const float centre_z = low_pass ? 1 / depth_form.x : 0;
+    float most_open = 0;
+    // Without branches: pixels that the splat does not reach blend it with weight 0.
+    [[unroll]] for (uint p = 0; p < kPixels; ++p) {
+        const float dy = d.y + float(p);
+        const float u_p = u + plane.y * dy;
+        const float v_p = reference.w + plane.z * dy;
+        float q_p = q + depth_form.z * dy;
+        if (kSplatKind != kDiscs) { q_p = clamp(q_p, depth_form.x / kDepthReach, depth_form.x * kDepthReach); }
+        // A hit beyond the near plane has 0 < 1/z <= 1/near. As bits, negative values and NaN are above that.
+        const float z = 1 / q_p;
+        const float square = u_p * u_p + v_p * v_p;
+        const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? square * (z * z) : kFar;
+        const float rho2 = rho2_x + plane.w * (dy * dy);
+        const bool on_disc = kSplatKind == kDiscs && rho3 <= rho2;
+        const float exponent = depth_form.w + (kSplatKind != kDiscs ? square : on_disc ? rho3 : rho2);
+        const float opacity = exp2(-exponent);
+        const float alpha = min(kMaxAlpha, opacity);
+        const float full_weight = exponent <= kLog2Of255 ? alpha * max(transmittance[p], 0) : 0;
+        const float after = full_weight > 0 ? transmittance[p] * max(1 - opacity, kMinPassing) : transmittance[p];
+        const bool closes = after < kMinTransmittance && after >= 0;
+        const float weight = closes ? 0 : full_weight;
+        transmittance[p] = closes ? -transmittance[p] : after;
+        most_open = max(most_open, transmittance[p]);
+        colour[p] += weight * splat_colour;
+        const bool moves = !kEvenRows || (p & 1) == 0;
+        if (kDepth || (kMovesByDepth && moves)) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
+        if (kMoments || (kMovesByInverseDepth && moves)) {
+            const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
+            const float weighted = weight * inverse_z;
+            moments[p].x += weighted;
+            if (kMoments || kSpread) { moments[p].y += weighted * inverse_z; }
+        }
+    }
+    any_open = most_open > 0;
+}
+
+// Those of the batch that meet the cell.
+void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bits) {
+    uint word = 0;
+    [[dont_unroll]] do {
+        uint bits = any_open ? cell_splats[cell][word] : 0;
+        if (bits != 0) {
+            [[dont_unroll]] do {
+                blend(word * 32 + uint(findLSB(bits)), first_px, max_inverse_depth_bits);
+                bits = any_open ? bits & (bits - 1) : 0;
+            } while (bits != 0);
+        }
+        ++word;
+    } while (word < (splats + 31) / 32);
 }
 
 // The pixel as it is going to be moved: at the depth that stands for it, infinitely far where nothing was blended.
@@ -112,11 +195,7 @@ void main() {
     const vec2 first_px = vec2(first_pixel - tile_px) + 0.5;  // relative to the tile
     const uvec2 range = pass.ranges.at[tile];
 
-    vec3 colour[kPixels];
-    float depth[kPixels];
-    vec2 moments[kPixels];
-    float transmittance[kPixels];  // negated once the pixel takes no more light
-    bool any_open = false;
+    any_open = false;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         colour[p] = vec3(0);
         depth[p] = 0;
@@ -125,79 +204,28 @@ void main() {
         transmittance[p] = inside ? 1 : -1;
         any_open = any_open || inside;
     }
-    const uint lanes = laneCount(), thread = threadIndex();
+    const uint lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) { threads_done = 0; }
     bool counted = false;
-
-    for (uint begin = range.x; begin < range.y; begin += kBatchSize) {
-        barrier();
-        if (!any_open && !counted) {
-            atomicAdd(threads_done, 1);
-            counted = true;
-        }
-        if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
-            cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
-        }
-        barrier();
-        if (threads_done == kThreads) { break; }
-        for (uint slot = thread; slot < kBatchSize && begin + slot < range.y; slot += kThreads) {
-            loadSplat(slot, lanes, pass.ranks.at[begin + slot], vec2(size_px) * 0.5, tile_px);
-        }
-        barrier();
-        for (uint word = 0; word < kBatchSize / 32; ++word) {
-            uint bits = any_open ? cell_splats[cell][word] : 0;
-            while (bits != 0) {
-                const uint slot = word * 32 + uint(findLSB(bits));
-                bits &= bits - 1;
-                const vec4 reference = batch_reference[slot];
-                const vec4 plane = batch_plane[slot];
-                const vec4 depth_form = batch_depth[slot];
-                const vec3 splat_colour = unpackColour(batch_colour[slot]);
-
-                const vec2 d = first_px - reference.xy;
-                const float u = reference.z + plane.x * d.x;
-                const float q = depth_form.x + depth_form.y * d.x;
-                // Without a low-pass 1/z may be 0, here and at the reference, and no weight must meet an infinite z, not even 0.
-                const bool low_pass = kSplatKind != kDiscs || plane.w > 0;
-                const float rho2_x = low_pass ? plane.w * (d.x * d.x) : kNoLowPass;
-                const float centre_z = low_pass ? 1 / depth_form.x : 0;
-                float most_open = 0;
-                // Without branches: pixels that the splat does not reach blend it with weight 0.
-                [[unroll]] for (uint p = 0; p < kPixels; ++p) {
-                    const float dy = d.y + float(p);
-                    const float u_p = u + plane.y * dy;
-                    const float v_p = reference.w + plane.z * dy;
-                    float q_p = q + depth_form.z * dy;
-                    if (kSplatKind != kDiscs) { q_p = clamp(q_p, depth_form.x / kDepthReach, depth_form.x * kDepthReach); }
-                    // A hit beyond the near plane has 0 < 1/z <= 1/near. As bits, negative values and NaN are above that.
-                    const float z = 1 / q_p;
-                    const float square = u_p * u_p + v_p * v_p;
-                    const float rho3 = floatBitsToUint(q_p) <= max_inverse_depth_bits ? square * (z * z) : kFar;
-                    const float rho2 = rho2_x + plane.w * (dy * dy);
-                    const bool on_disc = kSplatKind == kDiscs && rho3 <= rho2;
-                    const float exponent = depth_form.w + (kSplatKind != kDiscs ? square : on_disc ? rho3 : rho2);
-                    const float opacity = exp2(-exponent);
-                    const float alpha = min(kMaxAlpha, opacity);
-                    const float full_weight = exponent <= kLog2Of255 ? alpha * max(transmittance[p], 0) : 0;
-                    const float after = full_weight > 0 ? transmittance[p] * max(1 - opacity, kMinPassing) : transmittance[p];
-                    const bool closes = after < kMinTransmittance && after >= 0;
-                    const float weight = closes ? 0 : full_weight;
-                    transmittance[p] = closes ? -transmittance[p] : after;
-                    most_open = max(most_open, transmittance[p]);
-                    colour[p] += weight * splat_colour;
-                    const bool moves = !kEvenRows || (p & 1) == 0;
-                    if (kDepth || (kMovesByDepth && moves)) { depth[p] += weight * (kSplatKind != kDiscs || on_disc ? z : centre_z); }
-                    if (kMoments || (kMovesByInverseDepth && moves)) {
-                        const float inverse_z = kSplatKind != kDiscs || on_disc ? q_p : depth_form.x;
-                        const float weighted = weight * inverse_z;
-                        moments[p].x += weighted;
-                        if (kMoments || kSpread) { moments[p].y += weighted * inverse_z; }
-                    }
-                }
-                any_open = most_open > 0;
-                if (!any_open) { break; }
+    uint begin = range.x;
+    if (begin < range.y) {
+        [[dont_unroll]] do {
+            barrier();
+            if (!any_open && !counted) {
+                atomicAdd(threads_done, 1);
+                counted = true;
             }
-        }
+            if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
+                cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
+            }
+            barrier();
+            if (threads_done == kThreads) { break; }
+            const uint splats = min(range.y - begin, kBatchSize);
+            loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px);
+            barrier();
+            blendBatch(splats, cell, first_px, max_inverse_depth_bits);
+            begin += kBatchSize;
+        } while (begin < range.y);
     }
 
     const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));

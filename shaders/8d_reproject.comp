@@ -7,6 +7,7 @@
 // whose D of 0 is no depth: they are infinitely far.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/tile_mask.glsl"
 #include "lib/stereo.glsl"

@@ -72,7 +72,9 @@ bool mayBeMean(StereoView stereo, uint y) {
 
 // Which tiles of the row are moved, i.e. come from here, which are the mean of the rows beside it, and whether any is hidden.
 void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
-    for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) {
+    uint tile = gl_LocalInvocationIndex;
+    if (tile >= tiles) { return; }
+    [[dont_unroll]] do {
         const uint kind = pass.tile_kinds.at[first_tile + tile];
         if (kind == 0 && moves) {
             if (may_be_mean && pass.tile_errors.at[first_tile + tile] == kSeenCoarsely) {
@@ -82,14 +84,18 @@ void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
             }
         }
         if (kind == kTileHidden) { atomicAdd(hidden_count, 1); }
-    }
+        tile += kStereoGroup;
+    } while (tile < tiles);
 }
 
 // The dominant eye's row, to where the affiliated eye sees it; four pixels at a time, each with its right neighbour.
 void moveRow(StereoView stereo, uint y, uint width) {
-    for (uint first = 4 * gl_LocalInvocationIndex; first < width; first += 4 * kStereoGroup) {
-        Moved here = moveDominant(stereo, uvec2(first, y));
-        for (uint x = first; x < min(first + 4, width); ++x) {
+    uint x = 4 * gl_LocalInvocationIndex;
+    if (x >= width) { return; }
+    [[dont_unroll]] do {
+        Moved here = moveDominant(stereo, uvec2(x, y));
+        const uint end = min(x + 4, width);
+        [[dont_unroll]] do {
             Moved right = moveDominant(stereo, uvec2(min(x + 1, width - 1), y));
             right.valid = right.valid && x + 1 < width;
             if (here.valid && !isOut(stereo, here)) {
@@ -97,8 +103,10 @@ void moveRow(StereoView stereo, uint y, uint width) {
                 if (!kForward && stereo.gap_px > 0) { putBetween(stereo, here, right, int(y)); }
             }
             here = right;
-        }
-    }
+            ++x;
+        } while (x < end);
+        x += 4 * kStereoGroup - 4;
+    } while (x < width);
 }
 
 // Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
@@ -369,11 +377,13 @@ uint errorSteps(float error) { return uint(min(error, kMaxPixelError) * kErrorSt
 // Lanes work side by side on a row of pixels of a tile, or of several: each 16 have a `tile`.
 void addErrors(uint tile, uint steps, uint lanes) {
     const uint slots = max(lanes / kTileSize, 1u);
-    for (uint s = 0; s < slots; ++s) {
+    uint s = 0;
+    [[dont_unroll]] do {
         const bool own = lanes < kTileSize || gl_SubgroupInvocationID / kTileSize == s;
         const uint sum = subgroupAdd(own ? steps : 0);
         if (gl_SubgroupInvocationID == s * kTileSize && sum > 0) { atomicAdd(pass.tile_errors.at[tile], sum); }
-    }
+        ++s;
+    } while (s < slots);
 }
 
 // The rows beside this one are even ones, which were there before any odd one was begun.
@@ -414,16 +424,25 @@ void main() {
         open_count = 0;
     }
     if (kRowSource != kPlacesGiven) {
-        for (uint word = gl_LocalInvocationIndex; word < (width + 31) / 32; word += kStereoGroup) { arrived_bits[word] = 0; }
+        uint word = gl_LocalInvocationIndex;
+        [[dont_unroll]] do {
+            if (word < (width + 31) / 32) { arrived_bits[word] = 0; }
+            word += kStereoGroup;
+        } while (word < (width + 31) / 32);
     }
     if (kFindsOpen) {
-        for (uint word = gl_LocalInvocationIndex; word < (tiles + 31) / 32; word += kStereoGroup) { open_bits[word] = 0; }
+        if (gl_LocalInvocationIndex < (tiles + 31) / 32) { open_bits[gl_LocalInvocationIndex] = 0; }
     }
     if (kClasses) {
         for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kStereoGroup) { tile_classes[tile] = 0; }
     }
     if (kMovesRow) {
-        for (uint x = gl_LocalInvocationIndex; x < min(width + 4, kSharedRow + 1); x += kStereoGroup) { row_arrivals[x] = 0; }
+        const uint end = min(width + 4, kSharedRow + 1);
+        uint x = gl_LocalInvocationIndex;
+        [[dont_unroll]] do {
+            if (x < end) { row_arrivals[x] = 0; }
+            x += kStereoGroup;
+        } while (x < end);
     }
     barrier();
     listTiles(first_tile, tiles, pass.counters.at[0].moves != 0, mayBeMean(stereo, y));

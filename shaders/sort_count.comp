@@ -20,8 +20,12 @@ void countDigits(uint block, uint block_keys, uint count) {
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) { digit_counts[digit] = 0; }
     barrier();
     const uint begin = min(block * block_keys, count), end = begin + min(block_keys, count - begin);
-    for (uint item = begin + gl_LocalInvocationIndex; item < end; item += kThreads) {
-        atomicAdd(digit_counts[(pass.keys.at[item] >> pass.shift) & (pass.digits - 1)], 1);
+    uint item = begin + gl_LocalInvocationIndex;
+    if (item < end) {
+        [[dont_unroll]] do {
+            atomicAdd(digit_counts[(pass.keys.at[item] >> pass.shift) & (pass.digits - 1)], 1);
+            item += kThreads;
+        } while (item < end);
     }
     barrier();
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {

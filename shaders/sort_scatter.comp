@@ -49,14 +49,18 @@ uint firstLane(uvec4 lanes) {
 
 // Turns counts into places: where each digit begins, in all and in this block, and each subgroup's share of it.
 void placeDigits(uint block) {
-    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
-        uint place = pass.digit_begins.at[digit] + pass.histograms.at[block * pass.digits + digit];
-        for (uint s = 0; s < gl_NumSubgroups; ++s) {
+    uint digit = gl_LocalInvocationIndex;
+    if (digit >= pass.digits) { return; }
+    [[dont_unroll]] do {
+        uint place = pass.digit_begins.at[digit] + pass.histograms.at[block * pass.digits + digit], s = 0;
+        [[dont_unroll]] do {
             const uint in_run = subgroup_digits[s * pass.digits + digit];
             subgroup_digits[s * pass.digits + digit] = place;
             place += in_run;
-        }
-    }
+            ++s;
+        } while (s < gl_NumSubgroups);
+        digit += kThreads;
+    } while (digit < pass.digits);
 }
 
 void main() {
@@ -70,8 +74,12 @@ void main() {
     const uint block_keys = sortBlockKeys(count), run_keys = block_keys / gl_NumSubgroups;
     const uint block_begin = min(block * block_keys, count);
     const uint run_begin = block_begin + min(gl_SubgroupID * run_keys, count - block_begin), run_end = run_begin + min(run_keys, count - run_begin);
-    for (uint item = run_begin + gl_SubgroupInvocationID; item < run_end; item += lanes) {
-        atomicAdd(subgroup_digits[own_digits + digitOf(pass.keys_in.at[item])], 1);
+    uint counted = run_begin + gl_SubgroupInvocationID;
+    if (counted < run_end) {
+        [[dont_unroll]] do {
+            atomicAdd(subgroup_digits[own_digits + digitOf(pass.keys_in.at[counted])], 1);
+            counted += lanes;
+        } while (counted < run_end);
     }
     barrier();
     placeDigits(block);
@@ -80,7 +88,8 @@ void main() {
     // As many steps for every subgroup, though the runs of a list's last block may be shorter: a device may make whole workgroups wait
     // at a subgroup's barrier, as Mesa 25's software device does. The first run is the longest.
     const uint steps_end = min(run_keys, count - block_begin);
-    for (uint step_begin = 0; step_begin < steps_end; step_begin += lanes) {
+    uint step_begin = 0;
+    [[dont_unroll]] do {
         const uint item = run_begin + step_begin + gl_SubgroupInvocationID;
         const bool valid = item < run_end;
         const uint key = valid ? pass.keys_in.at[item] : 0;
@@ -97,5 +106,6 @@ void main() {
             pass.values_out.at[place] = value;
         }
         subgroupBarrier();  // the next step's first of a digit is another lane
-    }
+        step_begin += lanes;
+    } while (step_begin < steps_end);
 }

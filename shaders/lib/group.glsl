@@ -1,4 +1,8 @@
 // Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed.
+//
+// Here and elsewhere loops that matter ask at their end whether to go on: a device that runs branches under a mask, as llvmpipe does, goes
+// through the body of a `for` once more than there are items.
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -32,14 +36,15 @@ uint scanGroup(uint value, out uint total) {
     barrier();
     // The first subgroup sums the subgroups' sums, as many at a time as it is wide.
     if (gl_SubgroupID == 0) {
-        uint carry = 0;
-        for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
+        uint carry = 0, first = 0;
+        [[dont_unroll]] do {
             const uint s = first + gl_SubgroupInvocationID;
             const uint sum = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
             const uint before = subgroupExclusiveAdd(sum), of_all = subgroupAdd(sum);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = carry + before; }
             carry += of_all;
-        }
+            first += lanes;
+        } while (first < gl_NumSubgroups);
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();
@@ -56,14 +61,15 @@ uint scanGroupMax(uint value, out uint greatest) {
     if (subgroupElect()) { subgroup_sums[gl_SubgroupID] = of_subgroup; }
     barrier();
     if (gl_SubgroupID == 0) {
-        uint carry = 0;
-        for (uint first = 0; first < gl_NumSubgroups; first += lanes) {
+        uint carry = 0, first = 0;
+        [[dont_unroll]] do {
             const uint s = first + gl_SubgroupInvocationID;
             const uint own = s < gl_NumSubgroups ? subgroup_sums[s] : 0;
             const uint before = subgroupExclusiveMax(own), of_all = subgroupMax(own);
             if (s < gl_NumSubgroups) { subgroup_sums[s] = max(carry, before); }
             carry = max(carry, of_all);
-        }
+            first += lanes;
+        } while (first < gl_NumSubgroups);
         if (subgroupElect()) { subgroup_sums[gl_NumSubgroups] = carry; }
     }
     barrier();

@@ -43,9 +43,12 @@ void putLanded(StereoView stereo, Moved pixel) {
 void putBetween(StereoView stereo, Moved here, Moved right, int row) {
     const float reach = right.place_px.x - here.place_px.x;
     if (!(right.valid && reach > 1 && reach <= float(stereo.gap_px + 1))) { return; }
-    const int first = int(floor(here.place_px.x)) + 1, end = int(floor(right.place_px.x));
-    for (int x = first; x < end; ++x) {
+    int x = int(floor(here.place_px.x)) + 1;
+    const int end = int(floor(right.place_px.x));
+    if (x >= end) { return; }
+    [[dont_unroll]] do {
         const float share = (float(x) + 0.5 - here.place_px.x) / reach;
         put(stereo, ivec2(x, row), movingPixel(mix(here.inverse_depth, right.inverse_depth, share), 0, max(here.spread, right.spread)));
-    }
+        ++x;
+    } while (x < end);
 }

@@ -8,8 +8,8 @@ void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
     const uint thread = threadIndex();
     uint before_step = 0;
     // The total may not fit into 32 bits: what each thread has of it is kept in 33, the highest for "that much or more".
-    uint own = 0, own_carry = 0;
-    for (uint step_begin = 0; step_begin < count; step_begin += kGroupSize * kSumsPerThread) {
+    uint own = 0, own_carry = 0, step_begin = 0;
+    [[dont_unroll]] do {
         const uint first = step_begin + thread * kSumsPerThread;
         uint values[kSumsPerThread];
         [[unroll]] for (uint i = 0; i < kSumsPerThread; ++i) { values[i] = first + i < count ? sums.at[first + i] : 0; }
@@ -27,7 +27,8 @@ void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
             before += values[i];
         }
         before_step += of_step;
-    }
+        step_begin += kGroupSize * kSumsPerThread;
+    } while (step_begin < count);
     // By halves the sum over the threads fits. That of the lower ones follows, since it is known modulo 2^32.
     uint upper_halves;
     scanGroup((own >> 16) + (own_carry << 16), upper_halves);
