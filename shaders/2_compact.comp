@@ -2,6 +2,7 @@
 // or with their distance from the middle between the eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 const uint kSplatKind = kDiscs;  // of all kinds the centre alone
@@ -52,13 +53,16 @@ void main() {
     } else {
         eye = shareEye(pass.eyes, pass.order_eye);
     }
-    for (uint in_block = gl_LocalInvocationIndex; in_block < kCullBlock; in_block += kGroupSize) {
+    uint in_block = gl_LocalInvocationIndex;
+    [[dont_unroll]] do {
         const uint bits = visible_words[in_block / 32], bit = 1u << (in_block & 31);
-        if ((bits & bit) == 0) { continue; }
-        const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
-        const uint i = first + in_block;
-        SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-        pass.keys.at[place] = sortableBits(keyOf(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]));
-        pass.splats.at[place] = i;
-    }
+        if ((bits & bit) != 0) {
+            const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
+            const uint i = first + in_block;
+            SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
+            pass.keys.at[place] = sortableBits(keyOf(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]));
+            pass.splats.at[place] = i;
+        }
+        in_block += kGroupSize;
+    } while (in_block < kCullBlock);
 }

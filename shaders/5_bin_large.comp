@@ -2,6 +2,7 @@
 // Also clears the ranges of tiles for the next pass.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/tile_set.glsl"
@@ -16,42 +17,73 @@ layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not is all
 #include "lib/outline.glsl"
 #include "lib/pair.glsl"
 
+// Of the tiles of a row from `begin` to `end` how many count.
+uint countRow(int row, uint begin, uint end) {
+    if (!kMasked) { return end - begin; }
+    uint tiles = 0, x = begin;
+    if (x < end) {
+        [[dont_unroll]] do {
+            tiles += bitCount(maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end)));
+            x = wordEnd(x, end);
+        } while (x < end);
+    }
+    return tiles;
+}
+
+void putRow(uvec2 pairs, int row, uint begin, uint end, uint rank) {
+    uint x = begin;
+    if (x >= end) { return; }
+    [[dont_unroll]] do {
+        if (!kMasked) {
+            putPair(pairs, uvec2(x, row), rank);
+            ++x;
+        } else {
+            uint bits = maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end));
+            if (bits != 0) {
+                [[dont_unroll]] do {
+                    putPair(pairs, uvec2(x + findLSB(bits), row), rank);
+                    bits &= bits - 1;
+                } while (bits != 0);
+            }
+            x = wordEnd(x, end);
+        }
+    } while (x < end);
+}
+
+// By every lane of a subgroup: the pairs of the splat at place `i` of the list.
+void putLarge(uint i, uint lanes) {
+    const uint rank = pass.large_splats.at[i];
+    const ivec4 box = largeBox(pass.tile_sets.at[rank]);
+    const Outline outline = outlineOfProjected(pass.splats.at[rank]);
+    uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[rank]);
+    int first_row = box.y;
+    [[dont_unroll]] do {
+        const int row = first_row + int(gl_SubgroupInvocationID);
+        const ivec2 in_row = row < box.w ? tilesInRow(outline, uint(row), box) : ivec2(0);
+        const uint begin = uint(in_row.x), end = uint(max(in_row.x, in_row.y));
+        const uint tiles = countRow(row, begin, end);
+        putRow(uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y), row, begin, end, rank);
+        pairs.x += subgroupAdd(tiles);
+        first_row += int(lanes);
+    } while (first_row < box.w);
+    // 4_project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
+    for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
+        pass.tiles.at[pair] = pass.size_tiles.x * pass.size_tiles.y;
+        pass.ranks.at[pair] = rank;
+    }
+}
+
 void main() {
     // Beside that there are threads to spare.
     const uint threads = gl_NumWorkGroups.x * kBinLargeSize, places = pass.size_tiles.x * pass.size_tiles.y + 1;
-    for (uint i = gl_GlobalInvocationID.x; i < places; i += threads) { pass.ranges.at[i] = uvec2(0); }
+    for (uint place = gl_GlobalInvocationID.x; place < places; place += threads) { pass.ranges.at[place] = uvec2(0); }
 
     const uint lanes = laneCount();
     const uint large = pass.counters.at[0].large_splats;
-    for (uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID; i < large; i += gl_NumWorkGroups.x * gl_NumSubgroups) {
-        const uint rank = pass.large_splats.at[i];
-        const ivec4 box = largeBox(pass.tile_sets.at[rank]);
-        const Outline outline = outlineOfProjected(pass.splats.at[rank]);
-        uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[rank]);
-        for (int first_row = box.y; first_row < box.w; first_row += int(lanes)) {
-            const int row = first_row + int(gl_SubgroupInvocationID);
-            const ivec2 in_row = row < box.w ? tilesInRow(outline, uint(row), box) : ivec2(0);
-            const uint begin = uint(in_row.x), end = uint(max(in_row.x, in_row.y));
-            uint tiles = kMasked ? 0 : end - begin;
-            if (kMasked) {
-                for (uint x = begin; x < end; x = wordEnd(x, end)) { tiles += bitCount(maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end))); }
-            }
-            uvec2 own = uvec2(pairs.x + subgroupExclusiveAdd(tiles), pairs.y);
-            pairs.x += subgroupAdd(tiles);
-            if (!kMasked) {
-                for (uint x = begin; x < end; ++x) { putPair(own, uvec2(x, row), rank); }
-                continue;
-            }
-            for (uint x = begin; x < end; x = wordEnd(x, end)) {
-                for (uint bits = maskBits(pass.tile_mask, pass.size_tiles, row, x, wordEnd(x, end)); bits != 0; bits &= bits - 1) {
-                    putPair(own, uvec2(x + findLSB(bits), row), rank);
-                }
-            }
-        }
-        // 4_project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
-        for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
-            pass.tiles.at[pair] = pass.size_tiles.x * pass.size_tiles.y;
-            pass.ranks.at[pair] = rank;
-        }
-    }
+    uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID;
+    if (i >= large) { return; }
+    [[dont_unroll]] do {
+        putLarge(i, lanes);
+        i += gl_NumWorkGroups.x * gl_NumSubgroups;
+    } while (i < large);
 }
