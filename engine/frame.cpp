@@ -296,8 +296,8 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
                 passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
                 break;
             }
-            passes_.recordTiles(commands, *scene_, buffers_, affiliated, {stereo_buffers_.tileMask(), stereo_buffers_.tileList()},
-                                "affiliated ");
+            passes_.recordTiles(commands, *scene_, buffers_, affiliated,
+                                {stereo_buffers_.tileMask(), stereo_buffers_.tileList(), stereo_buffers_.tilesWithPairs()}, "affiliated ");
             break;
     }
     commands.endPass();
@@ -337,6 +337,7 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
     const EyeImage& image = images_[eye];
     EyeTarget target{.eye = eye,
                      .list = listOf(eye),
+                     .size_px = eyes[eye].size_px,
                      .size_tiles = tilesOf(eyes[eye].size_px),
                      .pairs = buffers_.pairs.arrays(),
                      .image = &image,

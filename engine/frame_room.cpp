@@ -39,7 +39,7 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         resize(images_[e].depths, "depths", keeps_depth ? pixels * sizeof(float) : 0);
         if (dominant) { resize(moments_, "inverse depth moments", settings.keep_moments ? pixels * sizeof(gpu::vec2) : 0); }
     }
-    resize(buffers_.tile_ranges, "tile ranges", (most_tiles + 1) * sizeof(gpu::uvec2));  // one more for pairs in no tile
+    resize(buffers_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));
     StereoBufferNeeds needs;
     if (reprojects(settings.mode)) {
         const bool components = settings.mode == Mode::kPaper && settings.stereo.center_rois;

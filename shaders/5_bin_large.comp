@@ -1,5 +1,4 @@
 // 5, second step: the pairs of the splats that 5_bin listed. A subgroup a splat and a lane a row of tiles.
-// Also clears the ranges of tiles for the next pass.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -74,10 +73,6 @@ void putLarge(uint i, uint lanes) {
 }
 
 void main() {
-    // Beside that there are threads to spare.
-    const uint threads = gl_NumWorkGroups.x * kBinLargeSize, places = pass.size_tiles.x * pass.size_tiles.y + 1;
-    for (uint place = gl_GlobalInvocationID.x; place < places; place += threads) { pass.ranges.at[place] = uvec2(0); }
-
     const uint lanes = laneCount();
     const uint large = pass.counters.at[0].large_splats;
     uint i = gl_WorkGroupID.x * gl_NumSubgroups + gl_SubgroupID;

@@ -1,16 +1,90 @@
-// 6: where each tile's pairs lie, once they are sorted by tile.
+// 6: where each tile's pairs lie, once they are sorted by tile: a thread a tile looks for the first of its own and the first of the next.
+// Under a mask tiles with pairs are listed for 7; those without become background here, which takes less than a workgroup each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
+#include "lib/group.glsl"
+#include "lib/list.glsl"
+#include "lib/last_group.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
+layout(constant_id = 0) const bool kMasked = false;  // the tiles of pass.tile_list alone
+layout(constant_id = 1) const bool kHalfColours = false;
+
+#include "lib/picture.glsl"
+
+const uint kTilePixels = kTileSize * kTileSize;
+
+shared uint empty_tiles[kMasked ? kGroupSize : 1];
+shared uint empty_count;
+
+// Of the pairs from `begin` on the first in this tile or a later one.
+uint firstPairFrom(uint tile, uint begin) {
+    uint end = pass.pairs.at[0].count;
+    while (begin < end) {
+        const uint middle = begin + (end - begin) / 2;
+        if (pass.tiles.at[middle] < tile) {
+            begin = middle + 1;
+        } else {
+            end = middle;
+        }
+    }
+    return begin;
+}
+
+// Whether it has any.
+bool findPairs(uint tile) {
+    const uint begin = firstPairFrom(tile, 0), end = firstPairFrom(tile + 1, begin);
+    pass.ranges.at[tile] = uvec2(begin, end);
+    return begin < end;
+}
+
+// By every thread of the workgroup.
+void listFull(bool full, uint tile) {
+    const uvec4 lanes = subgroupBallot(full);
+    uint place = 0;
+    if (subgroupElect()) { place = atomicAdd(pass.counters.at[0].full_tiles, subgroupBallotBitCount(lanes)); }
+    place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(lanes);
+    if (full) { pass.full_tiles.at[place] = tile; }
+}
+
+void clear(uint tile, uint pixel_of_tile) {
+    const uint columns = (pass.size_px.x + kTileSize - 1) / kTileSize;
+    const uvec2 pixel = uvec2(tile % columns, tile / columns) * kTileSize + uvec2(pixel_of_tile % kTileSize, pixel_of_tile / kTileSize);
+    if (any(greaterThanEqual(pixel, pass.size_px))) { return; }
+    const uint at = pixel.y * pass.size_px.x + pixel.x;
+    putColour(pass.colours, pass.half_colours, at, vec4(pass.background, 0));
+    if (any(notEqual(uvec2(pass.depths), uvec2(0)))) { pass.depths.at[at] = 0; }
+}
 
 void main() {
-    const uint pairs = pass.pairs.at[0].count;
-    const uint pair = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kGroupSize + gl_LocalInvocationIndex;
-    if (pair >= pairs) { return; }
-    const uint tile = pass.tiles.at[pair];
-    if (pair == 0 || pass.tiles.at[pair - 1] != tile) { pass.ranges.at[tile].x = pair; }
-    if (pair == pairs - 1 || pass.tiles.at[pair + 1] != tile) { pass.ranges.at[tile].y = pair + 1; }
+    const uint item = groupIndex() * kGroupSize + threadIndex();
+    if (!kMasked) {
+        const uvec2 size_tiles = (pass.size_px + kTileSize - 1) / kTileSize;
+        if (item < size_tiles.x * size_tiles.y) { findPairs(item); }
+        return;
+    }
+    if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
+    barrier();
+    const bool listed = item < pass.masked_tiles.at[0].count;
+    const uint tile = listed ? pass.tile_list.at[item] : 0;
+    bool full = false;
+    if (listed) {
+        full = findPairs(tile);
+        if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
+    }
+    listFull(full, tile);
+    barrier();
+    uint cleared = gl_LocalInvocationIndex;
+    if (cleared < empty_count * kTilePixels) {
+        [[dont_unroll]] do {
+            clear(empty_tiles[cleared / kTilePixels], cleared % kTilePixels);
+            cleared += kGroupSize;
+        } while (cleared < empty_count * kTilePixels);
+    }
+    if (!isLastGroup(pass.pairs) || gl_LocalInvocationIndex != 0) { return; }
+    pass.counters.at[0].per_full_tile = dispatchOver(atomicOr(pass.counters.at[0].full_tiles, 0), 1);
 }

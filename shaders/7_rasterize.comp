@@ -16,7 +16,7 @@ layout(constant_id = 1) const bool kDepth = true;
 layout(constant_id = 2) const bool kMoments = false;  // of the inverse depth
 layout(constant_id = 3) const bool kMoving = false;   // the picture is going to be moved
 layout(constant_id = 4) const bool kSpread = false;   // and how far its pixels' depths spread
-layout(constant_id = 5) const bool kMasked = false;   // the tiles of pass.tile_list alone
+layout(constant_id = 5) const bool kMasked = false;   // the tiles of pass.full_tiles alone
 layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // what a moving pixel's depth is
 layout(constant_id = 7) const bool kHalfColours = false;
 layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
@@ -185,8 +185,9 @@ void main() {
     const uvec2 size_px = eye.size_px;
     const uint max_inverse_depth_bits = floatBitsToUint(eye.max_inverse_depth);
     const uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (kMasked && group >= pass.masked_tiles.at[0].count) { return; }
-    const uint tile = kMasked ? pass.tile_list.at[spread(group, pass.masked_tiles.at[0].count)]
+    const uint full_tiles = kMasked ? pass.counters.at[0].full_tiles : 0;
+    if (kMasked && group >= full_tiles) { return; }
+    const uint tile = kMasked ? pass.full_tiles.at[spread(group, full_tiles)]
                               : spread(gl_WorkGroupID.y, gl_NumWorkGroups.y) * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     const uvec2 tile_px = uvec2(tile % eye.size_tiles.x, tile / eye.size_tiles.x) * kTileSize;
     const uint cell = gl_LocalInvocationIndex / kThreadsPerCell;

@@ -91,7 +91,7 @@ void checkLists(const StereoOnDevice::Selected& selected, const std::vector<gpu:
     CHECK(selected.tile_mask == test::maskOf(marked, size));
     CHECK(selected.masked_tiles.needed == list.size());
     CHECK(selected.masked_tiles.count == list.size());
-    CHECK(selected.masked_tiles.per_tile.x * selected.masked_tiles.per_tile.y >= list.size());
+    CHECK(selected.masked_tiles.per_item.x * selected.masked_tiles.per_item.y * gpu::kGroupSize >= list.size());
     // Where no tile is rendered, no splat is looked at.
     CHECK(selected.masked_visible.count == (list.empty() ? 0 : kVisible));
     CHECK(selected.masked_visible.per_item.x == (list.empty() ? 0 : (kVisible + gpu::kGroupSize - 1) / gpu::kGroupSize));

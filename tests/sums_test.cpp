@@ -77,7 +77,6 @@ void checkSame(const gpu::ListState& a, const gpu::ListState& b) {
     checkSame(a.per_item, b.per_item);
     checkSame(a.per_block, b.per_block);
     checkSame(a.per_sort_block, b.per_sort_block);
-    checkSame(a.per_tile, b.per_tile);
 }
 
 Values makeValues(std::size_t count, std::uint32_t below) {

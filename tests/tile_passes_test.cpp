@@ -6,6 +6,7 @@
 #include "tests/stereo_cases.h"
 
 #include <doctest/doctest.h>
+#include <glm/gtc/packing.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -45,7 +46,6 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
     const Buffer large = gpu.allocate<gpu::uint>("large splats", capacity), begins = gpu.allocate<gpu::uint>("large begins", capacity);
-    const Buffer ranges = gpu.upload("ranges", std::vector(twin.ranges.size() + 1, glm::uvec2(7)));
     gpu::BinPass pass{};
     pass.splats = projected.splats.address<gpu::ProjectedSplat>();
     pass.tile_sets = projected.tile_sets.address<gpu::uvec2>();
@@ -59,14 +59,12 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     pass.large_begins = begins.address<gpu::uint>();
     pass.counters = projected.counters.address<gpu::EyeCounters>();
     pass.tile_mask = tile_mask;
-    pass.ranges = ranges.address<gpu::uvec2>();
     pass.size_tiles = (view.eye.size_px + 15u) / 16u;
     gpu.run([&](Commands& commands) {
         commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_block));
         commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);
     });
     const std::uint32_t count = gpu.readBack<gpu::ListState>(projected.pairs, 1)[0].count;
-    CHECK(gpu.readBack<glm::uvec2>(ranges, twin.ranges.size() + 1) == std::vector(twin.ranges.size() + 1, glm::uvec2(0)));
     const auto tile_values = gpu.readBack<gpu::uint>(tiles, count), rank_values = gpu.readBack<gpu::uint>(ranks, count);
     std::vector<TilePair> result(count);
     for (std::size_t i = 0; i < count; ++i) { result[i] = {tile_values[i], rank_values[i]}; }
@@ -87,16 +85,75 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
     return greatest;
 }
 
-std::vector<glm::uvec2> rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, std::size_t tile_count) {
-    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass));
+std::vector<glm::uvec2> rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px) {
+    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass), {0, 0});
     const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
-    const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(0)));
+    const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
+    const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
+    const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(7)));
     gpu::TileRangesPass pass{};
     pass.tiles = tiles.address<gpu::uint>();
     pass.pairs = pairs.address<gpu::ListState>();
     pass.ranges = ranges.address<gpu::uvec2>();
-    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, pairs, offsetof(gpu::ListState, per_item)); });
+    pass.size_px = size_px;
+    gpu.run([&](Commands& commands) { commands.dispatchOver(kernel, pass, tile_count); });
     return gpu.readBack<glm::uvec2>(ranges, tile_count);
+}
+
+// 6_tile_ranges under a mask, on pictures that hold 7 everywhere before.
+struct MaskedRanges {
+    std::vector<glm::uvec2> ranges;
+    std::vector<std::uint32_t> full;  // ascending
+    glm::uvec3 groups;                // of 7_rasterize
+    std::vector<glm::vec4> colours;   // unpacked, where they are half floats
+    std::vector<float> depths;
+    std::uint32_t groups_done;  // of the list of pairs, afterwards
+};
+MaskedRanges maskedRangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, const std::vector<std::uint32_t>& listed,
+                                  glm::uvec2 size_px, glm::vec3 background, bool half_floats) {
+    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass), {1, half_floats});
+    const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
+    const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
+    const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
+    const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
+    const Buffer list = gpu.upload("tile list", listed), masked = gpu.upload("masked tiles", std::vector{test::makeList(listed.size())});
+    const Buffer ranges = gpu.upload("ranges", std::vector(tile_count, glm::uvec2(7)));
+    const Buffer full = gpu.upload("full tiles", std::vector<gpu::uint>(tile_count, 7));
+    const Buffer counters = gpu.upload("counters", std::vector{gpu::EyeCounters{}});
+    const Buffer colours = half_floats ? gpu.upload("colours", std::vector(pixels, glm::uvec2(0x47004700u)))
+                                       : gpu.upload("colours", std::vector(pixels, glm::vec4(7.0f)));
+    const Buffer depths = gpu.upload("depths", std::vector(pixels, 7.0f));
+    gpu::TileRangesPass pass{};
+    pass.tiles = tiles.address<gpu::uint>();
+    pass.pairs = pairs.address<gpu::ListState>();
+    pass.ranges = ranges.address<gpu::uvec2>();
+    pass.tile_list = list.address<gpu::uint>();
+    pass.masked_tiles = masked.address<gpu::ListState>();
+    pass.full_tiles = full.address<gpu::uint>();
+    pass.counters = counters.address<gpu::EyeCounters>();
+    pass.colours = colours.address<gpu::vec4>();
+    pass.half_colours = colours.address<gpu::uvec2>();
+    pass.depths = depths.address<float>();
+    pass.background = background;
+    pass.size_px = size_px;
+    gpu.run([&](Commands& commands) { commands.dispatchIndirect(kernel, pass, masked, offsetof(gpu::ListState, per_item)); });
+    const gpu::EyeCounters counted = gpu.readBack<gpu::EyeCounters>(counters, 1)[0];
+    MaskedRanges result{.ranges = gpu.readBack<glm::uvec2>(ranges, tile_count),
+                        .full = gpu.readBack<gpu::uint>(full, tile_count),
+                        .groups = {counted.per_full_tile.x, counted.per_full_tile.y, counted.per_full_tile.z},
+                        .colours = {},
+                        .depths = gpu.readBack<float>(depths, pixels),
+                        .groups_done = gpu.readBack<gpu::ListState>(pairs, 1)[0].groups_done};
+    result.full.resize(counted.full_tiles);
+    std::ranges::sort(result.full);
+    if (!half_floats) {
+        result.colours = gpu.readBack<glm::vec4>(colours, pixels);
+    } else {
+        for (const glm::uvec2 words : gpu.readBack<glm::uvec2>(colours, pixels)) {
+            result.colours.emplace_back(glm::unpackHalf2x16(words.x), glm::unpackHalf2x16(words.y));
+        }
+    }
+    return result;
 }
 
 }  // namespace
@@ -181,28 +238,73 @@ TEST_CASE_FIXTURE(Gpu, "sorting by tile keeps the depth order within each") {
     CHECK(wrong == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "6_tile_ranges finds the twin's ranges, and leaves tiles without pairs at zero") {
+TEST_CASE_FIXTURE(Gpu, "6_tile_ranges finds the twin's ranges, and tiles without pairs have empty ones") {
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
         std::vector<std::uint32_t> tiles;
         for (const TilePair& pair : twin.sorted_pairs) { tiles.push_back(pair.tile); }
-        const std::vector<glm::uvec2> ranges = rangesOnDevice(*this, tiles, twin.ranges.size());
+        const std::vector<glm::uvec2> ranges = rangesOnDevice(*this, tiles, view.eye.size_px);
         std::size_t wrong = 0;
         for (std::size_t t = 0; t < ranges.size(); ++t) {
             const auto [begin, end] = twin.ranges[t];
-            wrong += ranges[t] == (begin == end ? glm::uvec2(0) : glm::uvec2(begin, end)) ? 0 : 1;
+            wrong += begin == end ? ranges[t].x != ranges[t].y : ranges[t] != glm::uvec2(begin, end);
         }
         CHECK(wrong == 0);
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "6_tile_ranges reaches pairs beyond the groups of one row of a dispatch") {
-    const std::uint32_t count = gpu::kMaxGroupsX * gpu::kGroupSize + 300;
+TEST_CASE_FIXTURE(Gpu, "6_tile_ranges looks through any number of pairs, and past those of no tile") {
+    const std::uint32_t count = 5000000;
     std::vector<std::uint32_t> tiles(count, 1);
-    tiles[count - 1] = 2;
-    const std::vector<glm::uvec2> ranges = rangesOnDevice(*this, tiles, 3);
-    CHECK(ranges == std::vector{glm::uvec2(0), glm::uvec2(0, count - 1), glm::uvec2(count - 1, count)});
+    tiles[count - 2] = 2;
+    tiles[count - 1] = 4;
+    const std::vector<glm::uvec2> ranges = rangesOnDevice(*this, tiles, {64, 16});
+    CHECK(ranges == std::vector{glm::uvec2(0), glm::uvec2(0, count - 2), glm::uvec2(count - 2, count - 1), glm::uvec2(count - 1)});
+    CHECK(rangesOnDevice(*this, {}, {32, 16}) == std::vector(2, glm::uvec2(0)));
+}
+
+TEST_CASE_FIXTURE(Gpu, "under a mask 6_tile_ranges lists the tiles with pairs, and clears those without and no others") {
+    std::mt19937 random(3);
+    for (const glm::uvec2 size_px : {glm::uvec2(300, 170), glm::uvec2(16, 16), glm::uvec2(1001, 7)}) {
+        const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
+        const std::uint32_t tile_count = size_tiles.x * size_tiles.y;
+        for (const std::uint32_t one_in : {1u, 3u, 10000u}) {
+            for (const bool half_floats : {false, true}) {
+                CAPTURE(size_px.x);
+                CAPTURE(one_in);
+                CAPTURE(half_floats);
+                std::vector<std::uint32_t> tiles, listed, full;
+                std::vector<glm::uvec2> expected(tile_count, glm::uvec2(7));
+                for (std::uint32_t t = 0; t < tile_count; ++t) {
+                    if (random() % 3 == 0) { continue; }
+                    listed.push_back(t);
+                    const auto begin = static_cast<std::uint32_t>(tiles.size());
+                    if (random() % one_in == 0) {
+                        full.push_back(t);
+                        tiles.resize(tiles.size() + 1 + random() % 5, t);
+                    }
+                    expected[t] = {begin, tiles.size()};
+                }
+                std::ranges::shuffle(listed, random);
+                const glm::vec3 background(0.25f, 0.5f, 0.75f);
+                const MaskedRanges found = maskedRangesOnDevice(*this, tiles, listed, size_px, background, half_floats);
+                CHECK(found.ranges == expected);
+                CHECK(found.full == full);
+                CHECK(found.groups_done == 0);
+                const auto groups = static_cast<std::uint32_t>(full.size());
+                CHECK((listed.empty() || found.groups == glm::uvec3(groups, groups > 0 ? 1 : 0, 1)));
+                std::size_t wrong = 0;
+                for (std::size_t i = 0; i < found.colours.size(); ++i) {
+                    const std::size_t t = i / size_px.x / 16 * size_tiles.x + i % size_px.x / 16;
+                    const bool cleared = std::ranges::find(listed, t) != listed.end() && expected[t].x == expected[t].y;
+                    wrong += found.colours[i] == (cleared ? glm::vec4(background, 0.0f) : glm::vec4(7.0f)) ? 0 : 1;
+                    wrong += found.depths[i] == (cleared ? 0.0f : 7.0f) ? 0 : 1;
+                }
+                CHECK(wrong == 0);
+            }
+        }
+    }
 }
 
 namespace {

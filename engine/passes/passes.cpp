@@ -31,7 +31,9 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     }
     append(table, everyVariant("5_bin", sizeof(gpu::BinPass)));
     append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}, {"kSplatKind", 2}}));
-    append(table, everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass)));
+    for (const KernelVariant& variant : everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass), {{"kMasked", 2}, {"kHalfColours", 2}})) {
+        if (variant.values()[0] == 1 || variant.values()[1] == 0) { table.push_back(variant); }
+    }
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
     const auto rasterize = [&](const Kept& kept, std::uint32_t masked) {
         for (std::uint32_t choices = 0; choices < 8; ++choices) {
@@ -157,14 +159,15 @@ struct Passes::EyePart {
     [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::pairList(target.eye); }
     [[nodiscard]] auto visible() const { return buffers.state.address<gpu::ListState>(visibleList()); }
     [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(pairList()); }
-    [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(offsetof(FrameState, counters)).at(eye()); }
+    [[nodiscard]] std::uint64_t counterBytes() const { return offsetof(FrameState, counters) + eye() * sizeof(gpu::EyeCounters); }
+    [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(counterBytes()); }
     [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
     [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
 };
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                        const std::string& role) {
-    record({commands, scene, buffers, target, {target.shown, {}}, false, role});
+    record({commands, scene, buffers, target, {target.shown, {}, {}}, false, role});
 }
 
 void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
@@ -180,9 +183,7 @@ void Passes::record(const EyePart& part) {
     part.commands.beginPass(part.role + "6_sort_tiles");
     const KeyValues sorted = sort().record(part.commands, part.target.pairs.pairs, part.target.pairs.spare, part.scratch(),
                                            part.buffers.state, part.pairList(), tileBits(part.target.size_tiles));
-    part.commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(gpu::TileRangesPass)),
-                                   gpu::TileRangesPass{.tiles = sorted.keys, .pairs = part.pairs(), .ranges = part.ranges()},
-                                   part.buffers.state, part.pairList() + offsetof(gpu::ListState, per_item));
+    recordTileRanges(part, sorted);
     part.commands.beginPass(part.role + "7_rasterize");
     recordRasterized(part, sorted);
 }
@@ -221,11 +222,33 @@ void Passes::recordBinned(const EyePart& part) {
                            .large_begins = part.target.pairs.spare.values,
                            .counters = part.counters(),
                            .tile_mask = part.tiles.mask,
-                           .ranges = part.ranges(),
                            .size_tiles = part.target.size_tiles};
     part.commands.dispatchIndirect(kernels_.get("5_bin", sizeof(bin)), bin, part.buffers.state,
                                    part.visibleList() + offsetof(gpu::ListState, per_block));
     part.commands.dispatch(kernels_.get("5_bin_large", sizeof(bin), {part.masked(), part.scene.splatShape()}), bin, gpu::kBinLargeGroups);
+}
+
+void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
+    const EyeTarget& target = part.target;
+    const gpu::TileRangesPass ranges{.tiles = sorted.keys,
+                                     .pairs = part.pairs(),
+                                     .ranges = part.ranges(),
+                                     .tile_list = part.tiles.list,
+                                     .masked_tiles = part.buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                     .full_tiles = part.tiles.full,
+                                     .counters = part.counters(),
+                                     .colours = target.image->colours.address<gpu::vec4>(),
+                                     .half_colours = target.image->colours.address<gpu::uvec2>(),
+                                     .depths = target.kept.depth ? target.image->depths.address<float>() : gpu::DeviceAddress<float>{},
+                                     .background = target.background,
+                                     .size_px = target.size_px};
+    if (part.lists_tiles) {
+        part.commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(ranges), {1, target.kept.half_floats}), ranges,
+                                       part.buffers.state, offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_item));
+    } else {
+        part.commands.dispatchOver(kernels_.get("6_tile_ranges", sizeof(ranges), {0, 0}), ranges,
+                                   std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
+    }
 }
 
 void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
@@ -240,15 +263,15 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,
-                                       .tile_list = part.tiles.list,
-                                       .masked_tiles = part.buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                       .full_tiles = part.tiles.full,
+                                       .counters = part.counters(),
                                        .background = target.background,
                                        .eye = part.eye(),
                                        .row_words = target.row_words};
     const Kernel& kernel = rasterizeKernel(part.scene, target.kept, part.lists_tiles);
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,
-                                       offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_tile));
+                                       part.counterBytes() + offsetof(gpu::EyeCounters, per_full_tile));
     } else {  // hidden tiles have no pairs, and so become background
         part.commands.dispatch(kernel, rasterize, target.size_tiles.x, target.size_tiles.y);
     }

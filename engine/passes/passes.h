@@ -30,16 +30,17 @@ struct Kept {
     bool half_floats = false;                     // colours are kept as these
 };
 
-// The tiles that are rendered (shaders/lib/tile_mask.glsl); `list` only where a list says how many.
+// The tiles that are rendered (shaders/lib/tile_mask.glsl); `list` only where a list says how many, and then `full` is as long: room for
+// those of them that have pairs.
 struct TileMask {
-    gpu::DeviceAddress<gpu::uint> mask, list;
+    gpu::DeviceAddress<gpu::uint> mask, list, full;
 };
 
 // One eye's part of a frame.
 struct EyeTarget {
     int eye = 0;   // index into FrameState::eyes
     int list = 0;  // of the visible splats
-    glm::uvec2 size_tiles{0, 0};
+    glm::uvec2 size_px{0, 0}, size_tiles{0, 0};
     PairArrays pairs;
     const EyeImage* image = nullptr;
     glm::vec3 background{0.0f};
@@ -99,6 +100,7 @@ private:
     void record(const EyePart& part);
     void recordProjected(const EyePart& part);
     void recordBinned(const EyePart& part);
+    void recordTileRanges(const EyePart& part, const KeyValues& sorted);
     void recordRasterized(const EyePart& part, const KeyValues& sorted);
     const Kernel& rasterizeKernel(const GpuScene& scene, Kept kept, bool masked);
     const Sort& sort();

@@ -33,6 +33,8 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
     // What the dominant eye sees in the middle of each, until prices come.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileDepths() const { return tilePrices(); }
+    // Once tiles are chosen: of those in the list.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesWithPairs() const { return tilePrices(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }
     // The price list, or the counts of depths.

@@ -14,5 +14,5 @@ uint sortBlockKeys(uint count) { return kSortBlock * max(groupsOver(count, kSort
 ListState makeList(uint needed, uint capacity) {
     const uint count = needed <= capacity ? needed : 0;
     return ListState(needed, count, /*groups_done*/ 0, dispatchOver(count, kGroupSize), dispatchOver(count, kListBlock),
-                     dispatchOver(count, sortBlockKeys(count)), dispatchOver(count, 1));
+                     dispatchOver(count, sortBlockKeys(count)));
 }

@@ -67,15 +67,24 @@ struct BinPass {
     Uints large_begins;  // likewise: where the pairs of each begin
     EyeCounterss counters;
     Uints tile_mask;  // under a mask, as in ProjectPass
-    UVec2s ranges;    // out of 5_bin_large: zeros, of every tile and of no tile, for 6_tile_ranges
     uvec2 size_tiles;
 };
 
-// 6_tile_ranges: where each tile's pairs lie once they are sorted by tile.
+// 6_tile_ranges: where each tile's pairs lie once they are sorted by tile. Under a mask also which tiles have any; the others become
+// background.
 struct TileRangesPass {
     Uints tiles;
-    ListStates pairs;
-    UVec2s ranges;  // out: begin and end; tiles without pairs keep the zeros they came with
+    ListStates pairs;         // counts workgroups
+    UVec2s ranges;            // out: begin and end, equal where a tile has no pairs
+    Uints tile_list;          // under a mask: the tiles to render
+    ListStates masked_tiles;  // likewise: how many
+    Uints full_tiles;         // likewise out: those with pairs
+    EyeCounterss counters;    // likewise out: how many
+    FloatColours colours;     // likewise out, of those without: one of the two
+    HalfColours half_colours;
+    Floats depths;  // likewise, unless it is null
+    vec3 background;
+    uvec2 size_px;
 };
 
 // 7_rasterize: blending, a workgroup a tile.
@@ -86,12 +95,12 @@ struct RasterizePass {
     UVec2s ranges;
     FloatColours colours;  // out: one of the two
     HalfColours half_colours;
-    Floats depths;            // out where asked for: D = sum w z
-    Vec2s moments;            // out where asked for: I = sum w/z and J = sum w/z^2
-    Uints moving;             // out where the picture is going to be moved: lib/moving_pixel.glsl
-    Uints arrivals;           // likewise, unless it is null: 0, since nothing has arrived in the other eye yet
-    Uints tile_list;          // under a mask: the tiles to render
-    ListStates masked_tiles;  // likewise: how many
+    Floats depths;          // out where asked for: D = sum w z
+    Vec2s moments;          // out where asked for: I = sum w/z and J = sum w/z^2
+    Uints moving;           // out where the picture is going to be moved: lib/moving_pixel.glsl
+    Uints arrivals;         // likewise, unless it is null: 0, since nothing has arrived in the other eye yet
+    Uints full_tiles;       // under a mask: the tiles to render
+    EyeCounterss counters;  // likewise: how many
     vec3 background;
     uint eye;
     uint row_words;  // of `moving` and `arrivals`

@@ -92,7 +92,6 @@ struct ListState {
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_block;       // workgroups of kListBlock
     DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl
-    DispatchSize per_tile;        // a workgroup an item, of lists of tiles
 };
 BINOSPLAT_ARRAY_OF(ListState, ListStates);
 
@@ -181,6 +180,8 @@ struct EyeCounters {
     uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
     uint square_box_pairs_high;
     uint large_splats;  // splats that 5_bin left to 5_bin_large
+    uint full_tiles;    // under a mask: tiles with pairs
+    DispatchSize per_full_tile;
 };
 BINOSPLAT_ARRAY_OF(EyeCounters, EyeCounterss);
 
