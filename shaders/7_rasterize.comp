@@ -37,13 +37,14 @@ const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const float kFar = 3e38;                                       // a rho that is no hit
 const float kNoLowPass = 1e30;                                 // likewise, but nearer than a hit at no depth (z infinite)
+const uint kNoSplat = kBatchSize;                              // the slot of a splat of no opacity
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
-shared vec4 batch_reference[kBatchSize];  // reference_px relative to the tile, u/z and v/z there
-shared vec4 batch_plane[kBatchSize];      // A, B, D, low-pass or 0
-shared vec4 batch_depth[kBatchSize];      // 1/z there, its slopes, -log2(opacity)
-shared uvec2 batch_colour[kBatchSize];
-shared uint cell_splats[kCellsPerTile][kBatchSize / 32];
+shared vec4 batch_reference[kBatchSize + 1];  // reference_px relative to the tile, u/z and v/z there
+shared vec4 batch_plane[kBatchSize + 1];      // A, B, D, low-pass or 0
+shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(opacity)
+shared uvec2 batch_colour[kBatchSize + 1];
+shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 shared uint threads_done;
 
 // Which cells of the tile the splat meets, a bit each.
@@ -153,19 +154,20 @@ void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
     any_open = most_open > 0;
 }
 
-// Those of the batch that meet the cell.
+// Those of the batch that meet the cell, in one loop: with one for each word of bits inside another for the words, NVIDIA's compilers
+// hold a fifth more registers, and every pixel's sums would be carried through both. A word without bits blends the splat of no opacity.
 void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bits) {
-    uint word = 0;
+    uint first_slot = 0, bits = cell_splats[cell][0];
+    uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
     [[dont_unroll]] do {
-        uint bits = any_open ? cell_splats[cell][word] : 0;
-        if (bits != 0) {
-            [[dont_unroll]] do {
-                blend(word * 32 + uint(findLSB(bits)), first_px, max_inverse_depth_bits);
-                bits = any_open ? bits & (bits - 1) : 0;
-            } while (bits != 0);
+        blend(bits != 0 ? first_slot + uint(findLSB(bits)) : kNoSplat, first_px, max_inverse_depth_bits);
+        bits &= bits - 1;
+        if (bits == 0) {
+            bits = next.x;
+            next = uvec3(next.yz, 0);
+            first_slot += 32;
         }
-        ++word;
-    } while (word < (splats + 31) / 32);
+    } while (any_open && first_slot < splats);
 }
 
 // The pixel as it is going to be moved: at the depth that stands for it, infinitely far where nothing was blended.
@@ -206,28 +208,32 @@ void main() {
         any_open = any_open || inside;
     }
     const uint lanes = laneCount();
-    if (gl_LocalInvocationIndex == 0) { threads_done = 0; }
-    bool counted = false;
-    uint begin = range.x;
-    if (begin < range.y) {
-        [[dont_unroll]] do {
-            barrier();
-            if (!any_open && !counted) {
-                atomicAdd(threads_done, 1);
-                counted = true;
-            }
-            if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
-                cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
-            }
-            barrier();
-            if (threads_done == kThreads) { break; }
-            const uint splats = min(range.y - begin, kBatchSize);
-            loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px);
-            barrier();
-            blendBatch(splats, cell, first_px, max_inverse_depth_bits);
-            begin += kBatchSize;
-        } while (begin < range.y);
+    if (gl_LocalInvocationIndex == 0) {
+        threads_done = 0;
+        batch_reference[kNoSplat] = vec4(0);
+        batch_plane[kNoSplat] = vec4(0);
+        batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);
+        batch_colour[kNoSplat] = uvec2(0);
     }
+    bool counted = false;
+    uint begin = range.x;  // an empty tile goes over a batch of nothing
+    [[dont_unroll]] do {
+        barrier();
+        if (!any_open && !counted) {
+            atomicAdd(threads_done, 1);
+            counted = true;
+        }
+        if (gl_LocalInvocationIndex < kCellsPerTile * kBatchSize / 32) {
+            cell_splats[gl_LocalInvocationIndex / (kBatchSize / 32)][gl_LocalInvocationIndex % (kBatchSize / 32)] = 0;
+        }
+        barrier();
+        if (threads_done == kThreads) { break; }
+        const uint splats = min(range.y - begin, kBatchSize);
+        loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px);
+        barrier();
+        blendBatch(splats, cell, first_px, max_inverse_depth_bits);
+        begin += kBatchSize;
+    } while (begin < range.y);
 
     const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
