@@ -1,5 +1,5 @@
-// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup sums these up: where each digit
-// begins, and how many of it there are in the blocks before each.
+// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run of blocks sums up how many of
+// it there are in the run's blocks before each; the last one of all does so over the runs, and finds where each digit begins.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,7 +12,7 @@ layout(constant_id = 0) const uint kThreads = 128;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-const uint kBlocksPerStep = 16;  // loaded at a time, since each load takes as long as all of them
+const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at a time, since each load takes as long as all of them
 
 shared uint digit_counts[kMaxDigits];
 
@@ -33,23 +33,31 @@ void countDigits(uint block, uint block_keys, uint count) {
     }
 }
 
+// Replaces the counts of one digit, in `rows` rows from `first` on, by the sums of those before them; returns the sum of all.
+uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
+    uint values[kMaxColumn];
+    [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) { values[row] = row < rows ? counts.at[(first + row) * pass.digits + digit] : 0; }
+    uint sum = 0;
+    [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) {
+        if (row < rows) { counts.at[(first + row) * pass.digits + digit] = sum; }
+        sum += values[row];
+    }
+    return sum;
+}
+
 // A thread a digit, so that what they read lies side by side.
-void sumBlocks(uint blocks) {
+void sumBlocksOfRun(uint run, uint blocks) {
+    for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
+        pass.run_sums.at[run * pass.digits + digit] = sumColumn(pass.histograms, run * kSortRun, blocks, digit);
+    }
+}
+
+void sumRuns(uint runs) {
+    const uint thread = threadIndex();
     uint before_step = 0;
     for (uint first = 0; first < pass.digits; first += kThreads) {
-        const uint digit = first + threadIndex();
-        const uint own_blocks = digit < pass.digits ? blocks : 0;
-        uint sum = 0;
-        for (uint block = 0; block < own_blocks; block += kBlocksPerStep) {
-            uint counts[kBlocksPerStep];
-            [[unroll]] for (uint b = 0; b < kBlocksPerStep; ++b) {
-                counts[b] = block + b < own_blocks ? pass.histograms.at[(block + b) * pass.digits + digit] : 0;
-            }
-            [[unroll]] for (uint b = 0; b < kBlocksPerStep; ++b) {
-                if (block + b < own_blocks) { pass.histograms.at[(block + b) * pass.digits + digit] = sum; }
-                sum += counts[b];
-            }
-        }
+        const uint digit = first + thread;
+        const uint sum = digit < pass.digits ? sumColumn(pass.run_sums, 0, runs, digit) : 0;
         uint of_step;
         const uint before = before_step + scanGroup(sum, of_step);
         if (digit < pass.digits) { pass.digit_begins.at[digit] = before; }
@@ -59,7 +67,9 @@ void sumBlocks(uint blocks) {
 
 void main() {
     const uint count = pass.list.at[0].count;
-    const uint block_keys = sortBlockKeys(count);
+    const uint block_keys = sortBlockKeys(count), blocks = groupsOver(count, block_keys);
     countDigits(gl_WorkGroupID.x, block_keys, count);
-    if (isLastGroup(pass.list)) { sumBlocks(groupsOver(count, block_keys)); }
+    const uint run = gl_WorkGroupID.x / kSortRun, run_blocks = min(blocks - run * kSortRun, kSortRun);
+    if (isLastOfRun(pass.list, run, run_blocks)) { sumBlocksOfRun(run, run_blocks); }
+    if (isLastGroup(pass.list)) { sumRuns(groupsOver(blocks, kSortRun)); }
 }

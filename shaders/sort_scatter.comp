@@ -22,13 +22,14 @@ shared uint subgroup_digits[kMaxSubgroups * kMaxDigits];  // counts, then where 
 
 uint digitOf(uint key) { return (key >> pass.shift) & (pass.digits - 1); }
 
+// The lane's bit if its digit equals this lane's. A macro, since the lane has to be a constant.
+#define SAME_DIGIT(lane) (subgroupBroadcast(digit, lane) == digit ? 1u << (lane) : 0)
+
 // The lanes among `valid` whose digit equals this lane's.
 uvec4 matchDigit(uint digit, uvec4 valid) {
     if (kComparedLanes > 0) {
-        uint peers = 0;
-        [[unroll]] for (uint lane = 0; lane < kComparedLanes; ++lane) {
-            if (subgroupBroadcast(digit, lane) == digit) { peers |= 1u << lane; }
-        }
+        uint peers = SAME_DIGIT(0) | SAME_DIGIT(1) | SAME_DIGIT(2) | SAME_DIGIT(3);
+        if (kComparedLanes > 4) { peers |= SAME_DIGIT(4) | SAME_DIGIT(5) | SAME_DIGIT(6) | SAME_DIGIT(7); }
         return uvec4(peers & valid.x, 0, 0, 0);
     }
     uvec4 peers = valid;
@@ -52,7 +53,9 @@ void placeDigits(uint block) {
     uint digit = gl_LocalInvocationIndex;
     if (digit >= pass.digits) { return; }
     [[dont_unroll]] do {
-        uint place = pass.digit_begins.at[digit] + pass.histograms.at[block * pass.digits + digit], s = 0;
+        uint place = pass.digit_begins.at[digit] + pass.run_sums.at[block / kSortRun * pass.digits + digit] +
+                     pass.histograms.at[block * pass.digits + digit];
+        uint s = 0;
         [[dont_unroll]] do {
             const uint in_run = subgroup_digits[s * pass.digits + digit];
             subgroup_digits[s * pass.digits + digit] = place;

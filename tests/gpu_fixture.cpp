@@ -60,6 +60,7 @@ gpu::ListState makeList(std::uint32_t needed, std::uint32_t capacity) {
     return {needed,
             count,
             0,
+            {},
             dispatchOver(count, gpu::kGroupSize),
             dispatchOver(count, gpu::kListBlock),
             dispatchOver(count, gpu::kSortBlock * std::max(1u, static_cast<std::uint32_t>((count + kMostAtOnce - 1) / kMostAtOnce)))};

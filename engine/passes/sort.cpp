@@ -23,7 +23,7 @@ gpu::uint comparedLanes(const Context& context, DigitMatch match) {
 }  // namespace
 
 bool Sort::hasNarrowSubgroups(const Context& context) {
-    return context.maxSubgroupSize() <= 8 && context.minSubgroupSize() == context.maxSubgroupSize() && context.hasDynamicBroadcast();
+    return context.maxSubgroupSize() <= 8 && context.minSubgroupSize() == context.maxSubgroupSize();
 }
 
 KernelTable sortKernels(const Context& context, DigitMatch match) {
@@ -44,7 +44,7 @@ Sort::Sort(const Context& context, DigitMatch match) {
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
     const std::uint64_t blocks = std::min<std::uint64_t>((items + gpu::kSortBlock - 1) / gpu::kSortBlock, gpu::kMaxSortBlocks);
-    return (blocks + 1) * gpu::kMaxDigits * sizeof(gpu::uint);
+    return (1 + gpu::kMaxSortRuns + blocks) * gpu::kMaxDigits * sizeof(gpu::uint);
 }
 
 KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
@@ -52,23 +52,28 @@ KeyValues Sort::record(Commands& commands, KeyValues in, KeyValues spare, gpu::D
     const auto list = lists.address<gpu::ListState>(list_bytes);
     const std::uint64_t groups = list_bytes + offsetof(gpu::ListState, per_sort_block);
     const auto digit_begins = histograms;
-    const auto counts = histograms.at(gpu::kMaxDigits);
+    const auto run_sums = histograms.at(gpu::kMaxDigits), counts = run_sums.at(std::uint64_t{gpu::kMaxSortRuns} * gpu::kMaxDigits);
     // As few bits a round as will do.
     const unsigned rounds = roundsOf(key_bits);
     for (unsigned round = 0, shift = 0; round < rounds; ++round) {
         const unsigned bits = (key_bits - shift + rounds - round - 1) / (rounds - round);
         const gpu::uint digits = 1u << bits;
-        commands.dispatchIndirect(
-            count_,
-            gpu::SortCountPass{
-                .keys = in.keys, .histograms = counts, .digit_begins = digit_begins, .list = list, .shift = shift, .digits = digits},
-            lists, groups);
+        commands.dispatchIndirect(count_,
+                                  gpu::SortCountPass{.keys = in.keys,
+                                                     .histograms = counts,
+                                                     .run_sums = run_sums,
+                                                     .digit_begins = digit_begins,
+                                                     .list = list,
+                                                     .shift = shift,
+                                                     .digits = digits},
+                                  lists, groups);
         commands.dispatchIndirect(scatter_,
                                   gpu::SortScatterPass{.keys_in = in.keys,
                                                        .values_in = in.values,
                                                        .keys_out = spare.keys,
                                                        .values_out = spare.values,
                                                        .histograms = counts,
+                                                       .run_sums = run_sums,
                                                        .digit_begins = digit_begins,
                                                        .list = list,
                                                        .shift = shift,

@@ -26,7 +26,7 @@ public:
 
     static bool hasNarrowSubgroups(const Context& context);
 
-    // Bytes of `histograms` for lists of up to `items`: half a byte a key, 257 KiB at most.
+    // Bytes of `histograms` for lists of up to `items`: half a byte a key and 17 KiB, 273 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
     // Whether the result of `record` lies in `spare`.

@@ -5,13 +5,28 @@ shared uint group_is_last;
 
 // Whether all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
 // every workgroup, once.
-//
+bool isLastGroup(ListStates list);
+// The same for the `blocks` workgroups of one run of a sort's blocks, at most 16.
+bool isLastOfRun(ListStates list, uint run, uint blocks);
+
 // What the others wrote is then there to read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
 // each memoryBarrierBuffer releases and acquires for the whole device; two of them synchronize where a barrier() lies between them, or the
 // two atomicAdds. So a thread's writes are handed to its thread 0, from there to thread 0 of the last workgroup, and on to its threads.
-bool isLastGroup(ListStates list) {
+// What the workgroup wrote is handed to its thread 0.
+void beginLast() {
     memoryBarrierBuffer();
     barrier();
+}
+
+// And what others wrote from there to all of its threads.
+bool endLast() {
+    barrier();
+    memoryBarrierBuffer();
+    return group_is_last != 0;
+}
+
+bool isLastGroup(ListStates list) {
+    beginLast();
     if (gl_LocalInvocationIndex == 0) {
         memoryBarrierBuffer();
         const uint done = atomicAdd(list.at[0].groups_done, 1) + 1;
@@ -19,7 +34,17 @@ bool isLastGroup(ListStates list) {
         if (group_is_last != 0) { atomicExchange(list.at[0].groups_done, 0); }
         memoryBarrierBuffer();
     }
-    barrier();
-    memoryBarrierBuffer();
-    return group_is_last != 0;
+    return endLast();
+}
+
+bool isLastOfRun(ListStates list, uint run, uint blocks) {
+    beginLast();
+    if (gl_LocalInvocationIndex == 0) {
+        memoryBarrierBuffer();
+        const uint shift = 8 * (run % 4), before = atomicAdd(list.at[0].run_groups_done[run / 4], 1u << shift) >> shift & 0xff;
+        group_is_last = before + 1 == blocks ? 1 : 0;
+        if (group_is_last != 0) { atomicAdd(list.at[0].run_groups_done[run / 4], 0u - (blocks << shift)); }
+        memoryBarrierBuffer();
+    }
+    return endLast();
 }

@@ -24,10 +24,12 @@ BINOSPLAT_CONSTANT uint kListBlock = 256;
 
 // Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups, so that its histograms, one a
 // subgroup, keep to 4 KiB of shared memory and 16 keys a thread of 32-wide subgroups amortise them. From half a million keys on blocks
-// grow, since one workgroup sums up what all of them counted: 256 KiB of it.
+// grow. Counts are summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads a thread.
 BINOSPLAT_CONSTANT uint kMaxDigits = 256;
 BINOSPLAT_CONSTANT uint kSortBlock = 2048;
 BINOSPLAT_CONSTANT uint kMaxSortBlocks = 256;
+BINOSPLAT_CONSTANT uint kSortRun = 16;
+BINOSPLAT_CONSTANT uint kMaxSortRuns = kMaxSortBlocks / kSortRun;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 
 // 5_bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
@@ -49,7 +51,7 @@ BINOSPLAT_CONSTANT uint kGaussians = 1;
 BINOSPLAT_CONSTANT uint kAntialiasedGaussians = 2;
 // The low-pass of 3DGS: so much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
 BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
-// The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: beside the eye
+// The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: next to the eye
 // the linear projection breaks down (likewise).
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
 // The depth of a 3D Gaussian at a pixel is a linear guess from its centre; it stays within this ratio of the centre's.
@@ -98,7 +100,7 @@ BINOSPLAT_CONSTANT uint kTileHidden = 4;
 // Rendered because that is cheaper than moving its pixels.
 BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
-// What a tile costs to render beside its pairs, in pairs: a workgroup starts and 256 pixels are written.
+// What a tile costs to render in addition to its pairs, in pairs: a workgroup starts and 256 pixels are written.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
 // Moving costs something even where tiles are not moved, since 7 and 8e, or 8d and 8e, go over all pixels: this part of what moving all
 // tiles costs.
@@ -117,14 +119,14 @@ BINOSPLAT_CONSTANT uint kSeenInPart = 0x200000u;
 // angle from there: the more careful of the two slopes of Guenter et al. 2012, Foveated 3D Graphics.
 BINOSPLAT_CONSTANT float kFovealCycle = 0.000363610f;
 BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
-// A tile beside where the eye looks is moved, whatever the budget is, if the eye sees less than this of its squared error: a hundredth of
-// what lies between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
+// A tile outside where the eye looks is never rendered for its error if the eye sees less than this of its square: a hundredth of what lies
+// between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 // Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and 8e makes a row of
-// those above and below. 8h says so in the place of the tile's error, which is more than errors become.
+// those above and below. 8h writes this in place of the tile's error: it is more than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
-// The spread of a moving pixel's inverse depth is told in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
+// The spread of a moving pixel's inverse depth is kept in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
@@ -150,11 +152,11 @@ BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 // is at most kMaxPixelError (more than black and white differ in three channels), so that a tile's sum stays under 2^31.
 BINOSPLAT_CONSTANT float kErrorSteps = 1048576.0f;
 BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
-// What a hole's pixel counts for at least, since what it hides need not look like what stands beside it: (1/100)^2, so little
-// that it decides only between tiles that nothing else tells apart.
+// What a hole's pixel counts for at least, since what is hidden there need not look like what stands next to it: (1/100)^2, so
+// little that it decides only between tiles that are otherwise equal.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
-// How much the spread of the depths that a pixel blends counts: a part of it that moves by the mean is wrong by its distance from that,
-// but shows no more than its own weight of its texture. Between a quarter and three quarters choose equally well.
+// How much the spread of the depths that a pixel blends counts. All of the pixel moves by their mean, so each part of it is off by how far
+// its own depth lies from that, but shows only with its own weight. All values between a quarter and three quarters choose equally well.
 BINOSPLAT_CONSTANT float kSpreadWeight = 0.5f;
 // A disparity uncertain by more pixels than these is not a blur any more: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;

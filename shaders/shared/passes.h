@@ -111,7 +111,7 @@ struct WeighPass {
     StereoViews stereo;
     UVec2s ranges;  // of the dominant eye's pairs
     Uints moving;
-    Uints tile_kinds;   // out, but for kTileHidden
+    Uints tile_kinds;   // out, except where it is kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
     Uints tile_depths;  // out: what the dominant eye sees in the middle of each, a word of `moving`
@@ -136,7 +136,7 @@ struct DepthBoundsPass {
 struct EdgeRoisPass {
     StereoViews stereo;
     Uints bins;
-    Uints tile_kinds;  // out, but where it is kTileHidden
+    Uints tile_kinds;  // out, except where it is kTileHidden
     Uints shown_mask;  // as in WeighPass
     StereoCounterss counters;
 };
@@ -226,7 +226,8 @@ struct SelectPass {
 // nor a subgroup width.
 struct SortCountPass {
     Uints keys;
-    CoherentUints histograms;  // out: [block][digit], of the blocks before
+    CoherentUints histograms;  // out: [block][digit], of the run's blocks before
+    CoherentUints run_sums;    // out: [run][digit], of the runs before
     Uints digit_begins;        // out
     ListStates list;
     uint shift;
@@ -236,6 +237,7 @@ struct SortScatterPass {
     Uints keys_in, values_in;
     Uints keys_out, values_out;
     Uints histograms;
+    Uints run_sums;
     Uints digit_begins;
     ListStates list;
     uint shift;

@@ -29,7 +29,7 @@ struct SceneChunk {
     UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
     Uints sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
 };
-BINOSPLAT_ARRAY_OF(SceneChunk, SceneChunks);
+BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
 // One eye for one frame. Camera axes: x right, y down, z forward.
 struct EyeView {
@@ -88,10 +88,11 @@ struct DispatchSize {
 struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
-    uint groups_done;             // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
-    DispatchSize per_item;        // workgroups of kGroupSize
-    DispatchSize per_block;       // workgroups of kListBlock
-    DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl
+    uint groups_done;                        // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
+    uint run_groups_done[kMaxSortRuns / 4];  // the same for each run of a sort's blocks, a byte each
+    DispatchSize per_item;                   // workgroups of kGroupSize
+    DispatchSize per_block;                  // workgroups of kListBlock
+    DispatchSize per_sort_block;             // workgroups of sortBlockKeys, see lib/list.glsl
 };
 BINOSPLAT_ARRAY_OF(ListState, ListStates);
 
@@ -105,7 +106,7 @@ struct PixelMap {
     vec3 shift;
 };
 
-// What the reprojection is told at the start of a frame.
+// What the reprojection is given at the start of a frame.
 struct StereoView {
     PixelMap affiliated_from_dominant;
     PixelMap dominant_from_affiliated;
@@ -117,7 +118,7 @@ struct StereoView {
     uint margin_px;        // paper: around what needs rendering
     uint edge_samples;     // paper: N, along each edge
     uint tight_edges;      // 1: bounds of what near content uncovers as well
-    uint move_cost;        // predicted: what moving a tile costs, in pairs; tiles of fewer are rendered
+    uint move_cost;        // predicted: what moving a tile costs, in pairs; tiles of at most so many pairs are rendered
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
     float hole_error;      // predicted: what a hole's expected difference counts for
     float newcomer_error;  // predicted: what full coverage by splats that the dominant eye does not see counts for
@@ -132,7 +133,7 @@ struct ComponentPixel {
 };
 BINOSPLAT_ARRAY_OF(ComponentPixel, ComponentPixels);
 
-// What a stage says of the affiliated picture, for the report and for later stages.
+// What the passes find out about the affiliated picture, for the report and for later passes.
 struct StereoCounters {
     uint covered_pixels;
     uint gap_pixels;
@@ -175,7 +176,7 @@ struct PixelBox {
 };
 BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
-// Counters for the report that no list states.
+// Counters that are in no list: for the report, and for dispatches.
 struct EyeCounters {
     uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
     uint square_box_pairs_high;
