@@ -25,8 +25,8 @@ struct FrameSettings {
     glm::dvec3 background{0.0};
     Order order = Order::kDepth;  // of all modes; a frame of two eyes has one middle, also where nothing is shared
     StereoSettings stereo;        // how one eye is made from the other; `patching` follows from the mode
-    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The paper has two sequential strategies that differ in
-    // the second eye's picture alone (section 4.3); it says of no work that they share.
+    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The two sequential strategies that the paper compares
+    // differ only in the second eye's picture (section 4.3), and it mentions no work that the eyes share.
     bool per_eye = false;
     bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
@@ -76,12 +76,13 @@ public:
     // frame is done again: the result is never that of a truncated list. Throws Error if the device lacks the memory.
     // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
-    // For whoever shows frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last,
-    // whose result this is; empty where there is none. So the device draws a frame while the next is prepared. Lists have room ahead of
-    // what frames need. One that found no room all the same shows background, once, is counted ("frames_cut_short"), and the frame after
-    // it is waited for. So is a frame that has little to do with the one before: the first one, one of other sizes or another mode, and
-    // after a jump of the eyes. It is done again where a list had no room, before anybody sees it, once ("frames_done_again"): what it
-    // needs is counted, or where that is not possible guessed, so that it seldom is cut short all the same.
+    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last, whose
+    // result it returns (empty where there is none). So the device draws one frame while the next is prepared. Lists have room for more
+    // than the last frame needed. A frame that still finds too little room shows background for once and is counted ("frames_cut_short"),
+    // and the frame after it is waited for. So is a frame that has little in common with the one before: the first one, one of another
+    // size or mode, and one after a jump of the eyes. Where a list has no room in a frame that is waited for, the frame is done again,
+    // once, before anybody sees it ("frames_done_again"). What it needs is counted or, where that is not possible, guessed, so that even
+    // then it is seldom cut short.
     // `signals`, where given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
@@ -174,6 +175,11 @@ private:
     // Passes 8a to 8i: the dominant eye's picture goes where the affiliated eye sees it.
     void recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
                       const EyeTarget& affiliated);
+    // Whether 7_rasterize leaves odd rows out of what moves: they will be moved like even ones, and nobody asks for their moments.
+    [[nodiscard]] static bool sumsEvenRows(const FrameSettings& settings, const EyeRelation& relation) {
+        return settings.mode == Mode::kPredicted && relation.rectified && !settings.keep_moments &&
+               settings.stereo.depth_choice == gpu::kDepthInverse;
+    }
     // Whether one order of the splats is that of both eyes.
     [[nodiscard]] bool sharesOrder(Order order) const { return order == Order::kDistance || relation_.same_depths; }
     // Of visible splats, an eye's: both eyes' unless each has its own.

@@ -68,6 +68,7 @@ void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const
                                                    .may_move = flight.may_move,
                                                    .moves_rows = movesRows(flight.relation.rectified, stereo_buffers_),
                                                    .even_rows = settings.mode == Mode::kPredicted && flight.relation.rectified,
+                                                   .sums_even_rows = sumsEvenRows(settings, flight.relation),
                                                    .half_floats = settings.half_floats,
                                                    .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
                                                    .classes = stereo_buffers_.classesBuffer().bytes() > 0,

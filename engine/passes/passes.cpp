@@ -167,12 +167,18 @@ struct Passes::EyePart {
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                        const std::string& role) {
-    record({commands, scene, buffers, target, {target.shown, {}, {}}, false, role});
+    record({.commands = commands,
+            .scene = scene,
+            .buffers = buffers,
+            .target = target,
+            .tiles = {.mask = target.shown, .list = {}, .full = {}},
+            .lists_tiles = false,
+            .role = role});
 }
 
 void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
                          const TileMask& mask, const std::string& role) {
-    record({commands, scene, buffers, target, mask, true, role});
+    record({.commands = commands, .scene = scene, .buffers = buffers, .target = target, .tiles = mask, .lists_tiles = true, .role = role});
 }
 
 void Passes::record(const EyePart& part) {

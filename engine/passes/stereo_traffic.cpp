@@ -23,7 +23,8 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
-    Traffic traffic{{"dominant 7_rasterize, for moving", !facts.may_move ? 0.0 : facts.moves_rows ? moving : moving + arrival}};
+    const double summed = (facts.sums_even_rows ? 0.5 : 1.0) * kWord;  // and as many arrivals cleared
+    Traffic traffic{{"dominant 7_rasterize, for moving", !facts.may_move ? 0.0 : facts.moves_rows ? summed : 2 * summed}};
     if (predict) {
         // moving, ranges; kinds (in and out), costs, errors, depths, a bit of the mask
         traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1 + 1.0 / 32));

@@ -1,4 +1,4 @@
-// What the affiliated eye costs in memory traffic beside the tiles that are rendered for it.
+// What the affiliated eye costs in memory traffic in addition to the tiles that are rendered for it.
 #pragma once
 
 #include "engine/passes/stereo_passes.h"
@@ -19,6 +19,7 @@ struct StereoFrameFacts {
     bool may_move = true;            // the dominant picture came with what moving needs
     bool moves_rows = false;         // 8e does what 8d does otherwise
     bool even_rows = false;          // odd rows are moved like even ones
+    bool sums_even_rows = false;     // and so the dominant eye writes nothing for these
     bool half_floats = false;        // what pictures consist of
     bool affiliated_depth = false;   // its D is kept
     bool classes = false;            // of pixels are kept
