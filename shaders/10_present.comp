@@ -54,7 +54,7 @@ void main() {
     const uint i = at.y * pass.size_px.x + at.x;
     const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
-    // Blended as display-encoded values, which headsets blend as light: what was multiplied by alpha is so again, but as light.
+    // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied in anew.
     const float alpha = kSeeThrough ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
     if (kSeeThrough) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
     if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }

@@ -1,6 +1,6 @@
 // 1: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
 // the planes of the view by its support function, and its low-pass by the projected centre; a 3D Gaussian by its box on the screen.
-// The last workgroup states the list of them.
+// The last workgroup writes how long their list is.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

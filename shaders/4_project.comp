@@ -1,4 +1,5 @@
-// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup states the list of pairs.
+// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes how long the list of
+// pairs is.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

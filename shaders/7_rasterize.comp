@@ -89,7 +89,7 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
 }
 
 void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_px) {
-    uint slot = threadIndex();
+    uint slot = gl_SubgroupID * lanes + gl_SubgroupInvocationID;
     if (slot >= splats) { return; }
     [[dont_unroll]] do {
         loadSplat(slot, lanes, pass.ranks.at[begin + slot], middle_px, tile_px);

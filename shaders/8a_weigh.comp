@@ -1,7 +1,7 @@
-// 8a: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows, rendering it costs its pairs of tile
-// and splat, and the dominant eye's ranges tell how many these are about. A thread a tile; the last workgroup sums up whether moving
-// pays at all: otherwise the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did not pay in
-// the frame before, the dominant picture comes without what moving needs, and the sum only says whether the next one should have it.
+// 8a: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows. Rendering it costs in proportion to its
+// pairs of tile and splat, and the dominant eye's ranges show about how many these are. A thread per tile. The last workgroup decides
+// whether moving pays at all: if not, the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did
+// not pay in the frame before, the dominant picture comes without what moving needs, and the decision is only for the next frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -36,8 +36,10 @@ uint pairsNear(StereoView stereo, uvec2 middle, uint moving) {
     return range.y - range.x;
 }
 
-// Whether what the moved tiles save is more than what moving costs beside them and the budget for what it gets wrong. Without depths it
-// is known less well where tiles come from: moving must save clearly more then to be taken up again, or frames would take turns.
+// Whether the moved tiles save more than two costs together: what moving costs where no tile is moved (kMoveSharedPart), and the budget for
+// what it gets wrong.
+// Without depths it is less certain where tiles come from: to be taken up again, moving must then save clearly more, or frames would
+// alternate.
 bool movingPays(StereoView stereo, uint all_saved, uint picture_cost, uint tiles) {
     const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = stereo.budget * float(picture_cost);

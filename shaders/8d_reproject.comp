@@ -1,10 +1,10 @@
-// 8d: the dominant eye's pixels go to where the affiliated eye sees them. The greatest inverse depth stays, whatever the order of
-// threads; the source's place follows from it again in 8e, so that 32-bit atomics suffice (paper, section 3.4, equations 3 to 5).
-// A surface may be stretched: pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here
-// already, since what lies behind would otherwise show through the cracks. Where colours are copied nothing is: in the paper pixels alone
-// move (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 3). It does not say which pixel a place
-// belongs to nor which of two surfaces stays: the pixel that holds it, and the nearer one; nor what becomes of pixels without any splat,
-// whose D of 0 is no depth: they are infinitely far.
+// 8d: the dominant eye's pixels go to where the affiliated eye sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
+// greatest inverse depth stays, whatever the order of threads. 8e finds the source from it again, so that 32-bit atomics suffice.
+// A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here already,
+// since what lies behind would otherwise show through the cracks. Where colours are copied, they are not: in the paper only pixels move
+// (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 4).
+// The paper does not say which pixel a place belongs to: here the one that holds it. Nor does it say which of two surfaces stays: here the
+// nearer one. Nor what becomes of pixels without any splat, whose D of 0 is no depth: here they are infinitely far.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -1,15 +1,15 @@
-// 8e: every pixel of the affiliated eye that no tile renders gets a place in the dominant picture and is sampled there, a workgroup a row.
-// Where pixels move along their row alone and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
-// Pixels that something reached keep its depth. Runs of others lie between two such: short runs across a slanted surface interpolate its
-// depth, all others repeat the farther neighbour, since what was hidden lies behind. Few tiles have any; they are listed and gone through
-// once more for these, so that all other pixels do without the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
-// Where errors are predicted, a tile's sum counts what the picture changes by beside a hole; for all other pixels how uncertain their
-// disparity is times the picture's gradient, and what a cubic loses between pixels, both from the samples at hand. Errors are those of the
-// even rows, which count for two. These rows come first; the odd ones follow once tiles are chosen, so that those to be rendered have half
-// of their pixels sampled in vain and not all. Where pixels keep their rows an odd one is sampled at the places of the even one above it,
-// so that half of the pixels are moved: colours are still its own, but for what repeats a neighbour. Where an eye does not resolve two
-// rows (8h) an odd one is the mean of those above and below.
-// Where colours are copied (kForward) this is the paper to the letter instead, see copyArrived.
+// 8e: every affiliated pixel that no tile renders gets a place in the dominant picture and is sampled there. A workgroup per row.
+// Where pixels stay in their rows and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
+// A pixel that something reached keeps its depth. The others form runs between two such pixels. A short run across a slanted surface
+// interpolates its depth; any other repeats the farther neighbour, since what was hidden lies behind. Few tiles have runs: they are listed
+// and gone through once more, so that all other pixels do without the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
+// Where errors are predicted, each tile sums them up, from the samples at hand. A hole's pixel counts what the picture changes by next to
+// the hole. Any other counts how uncertain its disparity is, times the picture's gradient, and what a cubic loses between pixels.
+// Only even rows have errors, which count for two. They come first, and the odd ones once tiles are chosen: of a tile that is going to be
+// rendered only half of the pixels are then sampled in vain. Where pixels stay in their rows, an odd row is sampled at the places of the
+// even one above it, so that only half of the rows are moved. Its colours are its own, except where it repeats a neighbour. Where an eye
+// does not resolve two rows (8h), an odd row is the mean of those above and below.
+// Where colours are copied (kForward), this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -70,7 +70,7 @@ bool mayBeMean(StereoView stereo, uint y) {
     return !kPredictErrors && between && any(notEqual(uvec2(pass.tile_errors), uvec2(0)));
 }
 
-// Which tiles of the row are moved, i.e. come from here, which are the mean of the rows beside it, and whether any is hidden.
+// Which tiles of the row are moved, i.e. come from here, which are the mean of the rows above and below, and whether any is hidden.
 void listTiles(uint first_tile, uint tiles, bool moves, bool may_be_mean) {
     uint tile = gl_LocalInvocationIndex;
     if (tile >= tiles) { return; }
@@ -191,7 +191,7 @@ uint placeAt(StereoView stereo, uvec2 at) { return (at.y * stereo.size_px.x + at
 void keepPlace(StereoView stereo, uvec2 at, Resolved resolved, float place_px) {
     if (at.y + 1 >= stereo.size_px.y) { return; }
     const uint word = placeAt(stereo, at + uvec2(0, 1));
-    const uint steps = uint(clamp(place_px, 0.0, float(stereo.size_px.x)) * kPlaceSteps + 0.5);
+    const uint steps = uint(clamp(place_px, 0.0, float(stereo.size_px.x) - 0.5) * kPlaceSteps + 0.5);
     placeWords().at[word] = steps << 3 | (resolved.column != at.x ? kRepeats : 0) | resolved.pixel_class;
     if (kDepth) { placeWords().at[word + 1] = floatBitsToUint(resolved.inverse_depth); }
 }
@@ -265,7 +265,7 @@ Sample sampleAround(vec2 place_px, ivec2 size, vec2 direction) {
     return Sample(max(sum, vec4(0)), direction.x * across + direction.y * down, dot(lost_across, lost_across) + dot(lost_down, lost_down));
 }
 
-// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` beside it: what is hidden differs from that as
+// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` away: what is hidden differs from that as
 // much as what is seen equally far on the other side.
 float holeError(StereoView stereo, vec2 source_px, int repeated_px) {
     const ivec2 last = ivec2(stereo.size_px) - 1;
@@ -293,7 +293,7 @@ struct Copied {
 // The paper to the letter. Section 3.1, stage 2: the initial view is the dominant pixels where they were projected; each keeps its colour.
 // Stage 4: gaps, "small and surrounded by valid reprojected pixels", are "filled through adaptive interpolation". It does not say how
 // small, nor what adapts: here runs of a row up to gap_px, and colours linear between the run's two ends, whichever is farther. Longer
-// runs have no other filling in the paper either where centre ROIs are off (figure 3 a), and get the same; beside the picture's border
+// runs have no other filling in the paper either where centre ROIs are off (figure 3 a), and get the same; at the picture's border
 // there is one end alone. A row that nothing reached shows what lies infinitely far.
 Copied copyArrived(StereoView stereo, uint row, uvec2 at) {
     const bool here = arrivalAt(row, at.x) != 0;
@@ -386,7 +386,7 @@ void addErrors(uint tile, uint steps, uint lanes) {
     } while (s < slots);
 }
 
-// The rows beside this one are even ones, which were there before any odd one was begun.
+// The rows above and below this one are even ones, which were there before any odd one was begun.
 void putMeans(uint y, uint width, uint tiles) {
     for (uint item = gl_LocalInvocationIndex; item < mean_count * kTileSize; item += kStereoGroup) {
         const uint tile = moved_tiles[kMostTiles - 1 - item / kTileSize], x = tile * kTileSize + item % kTileSize;

@@ -1,6 +1,6 @@
-// 8h: what each tile's expected error costs to mend, in error a pair, and how much there is of each price. A thread a tile. Where it is
-// known where the eye looks, an error counts for what the eye sees of it, and tiles are marked in which it does not resolve two rows. The
-// last workgroup finds where the budget ends.
+// 8h: the price of each tile, which is its expected error per pair, and how much there is to render at each price. A thread per tile. Where
+// it is known where the eye looks, only what the eye sees of an error counts, and tiles in which it does not resolve two rows are marked.
+// The last workgroup finds the price at which the budget ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -37,7 +37,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];
     const uint bin = binOf(float(error) / float(cost));
-    // The list is of what errors are worth where they are seen whole: what a pair must be worth does not fall with what is not seen.
+    // The list has errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen.
     atomicAdd(pass.price_bins.at[bin], cost);
     if (!kFoveated) { return bin << 22 | cost; }
     const float seen = share * float(error);

@@ -1,5 +1,5 @@
-// 8i: the tiles that are rendered, as a list and as a mask. Where errors are predicted, besides those that others have marked: the tiles
-// whose error is the dearest a pair, as long as all of them together keep within the budget; the first of equals. A thread a tile.
+// 8i: the tiles that are rendered, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
+// with the greatest error per pair, as many as the budget allows. Of equal ones the first are taken. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -21,7 +21,8 @@ struct End {
     uint left;  // of the budget, for its tiles
 };
 
-// What is left is for those that are worth so much by themselves; what came down from a higher bin has had its turn there.
+// Whether what is left of the budget in the last bin is for this tile. One that the list counted in a higher bin, as if it were seen whole
+// (8h), has had its turn there, unless the budget is enough for all.
 bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
 // What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.

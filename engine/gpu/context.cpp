@@ -53,7 +53,12 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     const auto operations =
         vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot | vk::SubgroupFeatureFlagBits::eShuffle;
     if ((vulkan11.subgroupSupportedOperations & operations) != operations) { return "subgroup arithmetic, ballot and shuffle"; }
-    if (vulkan11.subgroupSize < 4 || vulkan11.subgroupSize > 128) { return "subgroups of 4 to 128 invocations"; }
+    std::uint32_t least_lanes = vulkan11.subgroupSize;
+    if (device.getProperties().apiVersion >= VK_API_VERSION_1_3) {
+        const auto sizes = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>();
+        least_lanes = std::min(least_lanes, sizes.get<vk::PhysicalDeviceSubgroupSizeControlProperties>().minSubgroupSize);
+    }
+    if (least_lanes < 4 || vulkan11.subgroupSize > 128) { return "subgroups of 4 to 128 invocations"; }
     return {};
 }
 
@@ -188,20 +193,11 @@ void Context::createDevice(const ContextOptions& options) {
     queue_family_ = queueFamilyOf(physical_device_).value();
     const float priority = 1.0f;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    // Who makes the device may add features of its own, each by its own struct: beside one for all of Vulkan 1.2 such a struct would be an
-    // error. What has no struct of its own is then left.
+    // Not one struct for all of Vulkan 1.2: whoever makes the device may add structs of single features, which must not stand beside it.
     vk::PhysicalDeviceScalarBlockLayoutFeatures scalar_layout(VK_TRUE);
     vk::PhysicalDeviceBufferDeviceAddressFeatures addresses(VK_TRUE);
     scalar_layout.pNext = &addresses;
-    vk::PhysicalDeviceVulkan12Features vulkan12;
-    vulkan12.bufferDeviceAddress = vulkan12.scalarBlockLayout = VK_TRUE;
     void* features = &scalar_layout;
-    if (!options.maker.create_device) {
-        const auto available = physical_device_.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
-        vulkan12.subgroupBroadcastDynamicId = available.get<vk::PhysicalDeviceVulkan12Features>().subgroupBroadcastDynamicId;
-        dynamic_broadcast_ = vulkan12.subgroupBroadcastDynamicId == VK_TRUE;
-        features = &vulkan12;
-    }
     std::vector<const char*> extensions;
     for (const vk::ExtensionProperties& offered : physical_device_.enumerateDeviceExtensionProperties()) {
         for (const char* wanted : options.device_extensions) {

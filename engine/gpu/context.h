@@ -73,7 +73,6 @@ public:
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
     // Of a workgroup that lies along x.
     [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
-    [[nodiscard]] bool hasDynamicBroadcast() const { return dynamic_broadcast_; }
     [[nodiscard]] bool validates() const { return validates_; }
     // Whether names and labels go into captures and messages: VK_EXT_debug_utils.
     [[nodiscard]] bool hasLabels() const { return labels_; }
@@ -121,7 +120,7 @@ private:
         std::vector<std::string> lines;
     };
 
-    bool validates_ = false, labels_ = false, dynamic_broadcast_ = false, kernel_statistics_ = false;
+    bool validates_ = false, labels_ = false, kernel_statistics_ = false;
     Messages messages_;
     std::optional<vk::raii::Context> loader_;
     vk::raii::Instance instance_{nullptr};

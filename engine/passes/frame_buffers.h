@@ -12,7 +12,7 @@
 
 namespace binosplat {
 
-// What the device is told at the start of a frame and what it tells at the end.
+// What the device is given at the start of a frame, and what it reports at the end.
 struct FrameState {
     std::array<gpu::EyeView, 2> eyes;
     std::array<gpu::ListState, 2> visible;  // [0] is both eyes' where they share it
@@ -90,7 +90,7 @@ public:
     [[nodiscard]] std::uint32_t lentCapacity() const { return lent_capacity_; }
     [[nodiscard]] std::uint32_t lentWords() const { return lent_words_; }
     [[nodiscard]] PairArrays arrays() const;
-    // With lentWords() of each pair in `idle`, none of which what remains of a sort by `key_bits`.
+    // With lentWords() words of each pair in `idle`; the one word that remains after a sort by `key_bits` is none of these.
     [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     [[nodiscard]] const Buffer& buffer() const { return buffer_; }
@@ -100,7 +100,7 @@ private:
     Buffer buffer_;
 };
 
-// All that the passes of one frame work on, but for the pictures.
+// All that the passes of one frame work on, except the pictures.
 struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState

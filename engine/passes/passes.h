@@ -7,7 +7,7 @@
 //   5_bin         a (tile, splat) pair for each tile a splat meets
 //   6_sort_tiles  the pairs by tile, front to back within
 //   7_rasterize   blending: colour, alpha and depth
-//   8, 9          the other eye from this one: see stereo_passes.h
+//   8a to 8i      the other eye from this one: see stereo_passes.h
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -19,19 +19,19 @@
 
 namespace binosplat {
 
-// What the rasterizer writes beside the colour.
+// What the rasterizer writes in addition to the colour.
 struct Kept {
     bool depth = false;                           // D, to EyeImage::depths
     bool moments = false;                         // I and J
     bool moving = false;                          // the picture is going to be moved into the other eye
     bool spread = false;                          // and how far its pixels' depths spread
-    bool even_rows = false;                       // odd rows are not; where depth_choice is kDepthInverse and moments are not kept
+    bool even_rows = false;                       // only its even rows are; needs kDepthInverse, and no moments kept
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a moving pixel
     bool half_floats = false;                     // colours are kept as these
 };
 
-// The tiles that are rendered (shaders/lib/tile_mask.glsl); `list` only where a list says how many, and then `full` is as long: room for
-// those of them that have pairs.
+// The tiles that are rendered (shaders/lib/tile_mask.glsl). `list` is there only where the device alone knows how many they are; `full` is
+// then as long, and has room for those of them that have pairs.
 struct TileMask {
     gpu::DeviceAddress<gpu::uint> mask, list, full;
 };

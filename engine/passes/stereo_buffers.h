@@ -53,7 +53,7 @@ public:
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
-    // Of a row in shared memory, see 8e; 0: it is none.
+    // How many kArrivalsStep a row takes in shared memory, see 8e; 0: rows are not kept there.
     [[nodiscard]] std::uint32_t rowSteps() const {
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }

@@ -29,7 +29,7 @@ enum class Patching {
     kPredicted,  // what is cheap to render, and the tiles of the greatest expected error for their cost
 };
 
-// What the stereo passes are told beside the two cameras.
+// What the stereo passes are given in addition to the two cameras.
 struct StereoSettings {
     Patching patching = Patching::kPredicted;
     gpu::uint depth_choice = gpu::kDepthInverse;
@@ -82,7 +82,7 @@ inline bool movesRows(bool rectified, const StereoBuffers& stereo) { return rect
 // How `gaze` looks to the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
-// All kernels of the passes 8 and 9.
+// All kernels of the passes 8.
 KernelTable stereoKernels();
 
 class StereoPasses {
@@ -93,8 +93,8 @@ public:
     // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
     void takeKernels(StereoPasses& from) { kernels_.take(from.kernels_); }
 
-    // All of passes 8: the affiliated eye's colours but in the tiles that are listed in the end; its depths, too, where it has room for
-    // them. Tiles that are hidden become background.
+    // All of the passes 8: the affiliated eye's colours, except in the tiles that are listed in the end; its depths, too, where it has room
+    // for them. Tiles that are hidden become background.
     void record(Commands& commands, const StereoPassInputs& in);
 
 private:

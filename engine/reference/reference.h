@@ -33,7 +33,7 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
 // plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
 // Of a 3D Gaussian (`gaussian`) u and v themselves stand there for u/z and v/z, 1/z is where it is greatest along the ray, to first order
-// and within kDepthReach of the centre's, and there is no low-pass beside the one in its plane_from_pixel. A splat that can show nowhere
+// and within kDepthReach of the centre's, and there is no low-pass except the one in its plane_from_pixel. A splat that can show nowhere
 // (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
@@ -114,10 +114,10 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 
-// 7 as it would be without an order of splats: each pixel blends its own hits front to back by where its ray meets each: a disc at the
-// hit or, where the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as there. Pairs
-// and splats are of `order`. With a `window` the hits come in that order and the nearest of so many is the next to be blended (Radl et al.
-// 2024, StopThePop, in its simplest form): 1 is rasterize().
+// 7 without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit or, if
+// the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs` and
+// `splats` are of `order`. With a `window`, hits come in that order, so many of them wait, and the nearest of these is blended next (Radl
+// et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
 Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
                          std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
                          std::size_t window = SIZE_MAX);

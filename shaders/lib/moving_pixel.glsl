@@ -13,8 +13,8 @@ const uint kSpreadBits = 0x1fu;
 uint movingPixel(float inverse_depth, uint landed, uint spread) { return ((((floatBitsToUint(inverse_depth) + 16) >> 5) + 1) << 6) | landed | spread; }
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
 
-// Moved back from the middle of the pixel it arrived in, a pixel is less than one off, by what it landed beside that middle: of those
-// around that place, only one has its parity.
+// A pixel is moved back from the middle of the one that it arrived in, and so comes out as far off as it had landed from that middle: by
+// less than a pixel. Of the pixels around that place only one has its parity.
 uint parityOf(uvec2 pixel) { return (pixel.x & 1) | (pixel.y & 1) << 1; }
 ivec2 pixelOfParity(vec2 place_px, uint moving) {
     const vec2 parity = vec2(moving & 1, moving >> 1 & 1);

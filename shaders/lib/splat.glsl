@@ -40,7 +40,7 @@ CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
 }
 
 // From one place in the world, in two floats, to another; both may lie close together and far from its origin: in this order the first
-// difference is exact where it is small beside its terms.
+// difference is exact where it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
     return difference;

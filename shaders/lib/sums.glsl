@@ -2,7 +2,7 @@
 
 const uint kSumsPerThread = 8;
 
-// Replaces `count` values by the sums of those before them, and states `result`: a list as long as their total, empty if that is more
+// Replaces `count` values by the sums of those before them, and writes `result`: a list as long as their total, empty if that is more
 // than `capacity`, needing 0xffffffff if that is more than kMaxItems. By all threads of one workgroup.
 void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
     const uint thread = threadIndex();
