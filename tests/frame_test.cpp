@@ -69,7 +69,7 @@ double farthestDepth(const ViewedScene& view) {
 // A frame must be the twin's but for rounding, and depths within 1e-3 wherever no threshold lies within 1e-5 of a value of the
 // twin: which is so for all but 1e-4 of the pixels. Measured: 1 of the atelier's 589,824 pixels is off, none of the others'; with Mesa 25
 // also 11 of 133,045, where two of playbot's 3D Gaussians change places.
-void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db = 55.0, double most_off = 1e-5) {
+void checkAgainstTwin(Gpu& gpu, const ViewedScene& view, const FrameSettings& settings, double least_db, double most_off = 1e-5) {
     CAPTURE(view.name);
     const auto frame = renderMono(gpu.context(), view.scene, view.eye, settings);
     const reference::Settings twin_settings = twinSettings(settings);
@@ -99,29 +99,32 @@ TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them") {
     const struct {
         const char* file;
         View view;
+        double least_db;
     } cases[] = {
-        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0)},
-        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0)},
-        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0)},
-        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0)},
-        {"statues/angel_2dgs_sh0.ply", viewAlong({0.0, -2.0, -5.0}, {0.0, -2.0, 0.0}, 60.0)},
+        // Measured: 90.9, 90.0, 90.9, 90.1 and 99.5 dB.
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0), 87.0},
+        {"playbot/playbot_lod2_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0), 87.0},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0), 87.0},
+        {"playbot/playbot_lod3_2dgs_sh2.ply", viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0), 87.0},
+        {"statues/angel_2dgs_sh0.ply", viewAlong({0.0, -2.0, -5.0}, {0.0, -2.0, 0.0}, 60.0), 96.0},
     };
-    for (const auto& [file, view] : cases) {
-        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {768, 768})}, makeSettings());
+    for (const auto& [file, view, least_db] : cases) {
+        checkAgainstTwin(*this, {file, loadScene((*data / file).string()), test::eyeOf(view, {768, 768})}, makeSettings(), least_db);
     }
 }
 
 TEST_CASE_FIXTURE(Gpu, "the atelier is rendered as the twin renders it") {
-    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}));
+    checkAgainstTwin(*this, test::viewBuiltin("builtin:atelier", {768, 768}, 200000), makeSettings({0.1, 0.2, 0.3}),
+                     80.0);  // measured: 86.5
 }
 
 TEST_CASE_FIXTURE(Gpu, "a cloud about the eye is rendered as the twin renders it") {
-    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings());
+    checkAgainstTwin(*this, test::viewCloud({320, 240}), makeSettings(), 80.0);  // measured: 84.0
 }
 
 TEST_CASE_FIXTURE(Gpu, "a cloud of 3D Gaussians is rendered as the twin renders it, dimmed or not") {
     for (const bool antialiased : {false, true}) {
-        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings({0.1, 0.2, 0.3}), 70.0);
+        checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings({0.1, 0.2, 0.3}), 78.0);  // measured: 81.7
     }
 }
 
@@ -133,10 +136,10 @@ TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin ren
     REQUIRE(scene.isGaussian3d());
     const View from_afar = viewAlong({0.0, -0.6, -1.6}, {0.0, -0.4, 0.0}, 60.0);
     const View from_near = viewAlong({0.3, -0.7, -0.8}, {0.0, -0.6, 0.0}, 90.0);
-    checkAgainstTwin(*this, {"3D playbot", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 70.0);
-    checkAgainstTwin(*this, {"3D playbot, near", scene, test::eyeOf(from_near, {512, 512})}, makeSettings(), 70.0, 1e-4);
+    checkAgainstTwin(*this, {"3D playbot", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 86.0);              // measured: 91.1
+    checkAgainstTwin(*this, {"3D playbot, near", scene, test::eyeOf(from_near, {512, 512})}, makeSettings(), 86.0, 1e-4);  // measured: 90.6
     scene.antialiased = true;
-    checkAgainstTwin(*this, {"3D playbot, dimmed", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 70.0);
+    checkAgainstTwin(*this, {"3D playbot, dimmed", scene, test::eyeOf(from_afar, {512, 512})}, makeSettings(), 86.0);  // measured: 91.9
 }
 #endif
 
@@ -144,7 +147,7 @@ TEST_CASE_FIXTURE(Gpu, "moments of inverse depth are the twin's, on a background
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {320, 200}, 20000);
     for (const glm::dvec3& background : {glm::dvec3(0.0), glm::dvec3(1.0, 0.5, 0.25)}) {
         const FrameSettings settings = makeSettings(background, true);
-        checkAgainstTwin(*this, view, settings);
+        checkAgainstTwin(*this, view, settings, 83.0);  // measured: 87.0
         const auto frame = renderMono(context(), view.scene, view.eye, settings);
         const reference::Picture twin = renderTwin(view, settings);
         const Image truth = test::toImage(twin.size_px, twin.inverse_depth, twin.inverse_depth_squared);

@@ -1,6 +1,7 @@
 // A scene as every stage of the twin leaves it, and what the device needs to take over at any of them.
 #pragma once
 
+#include "engine/eye_view.h"
 #include "engine/gpu/gpu_scene.h"
 #include "shaders/shared/passes.h"
 #include "tests/gpu_fixture.h"
@@ -32,38 +33,6 @@ struct TwinStages {
     std::vector<reference::TilePair> pairs, sorted_pairs;
     std::vector<reference::TileRange> ranges;
 };
-
-// float32, and what is left of each value beside that; volatile, or g++ 12 takes the rounded value for the value itself.
-template <typename Wide, typename Narrow>
-void split(const Wide& value, Narrow& high, Narrow& low) {
-    for (glm::length_t i = 0; i < value.length(); ++i) {
-        const volatile float rounded = static_cast<float>(value[i]);
-        high[i] = rounded;
-        low[i] = static_cast<float>(value[i] - static_cast<double>(rounded));
-    }
-}
-
-inline gpu::Place placeOf(const glm::dvec3& position) {
-    gpu::Place place{};
-    split(position, place.position, place.position_low);
-    return place;
-}
-
-inline gpu::EyeView viewOf(const Eye& eye, double near) {
-    const glm::dmat3 world_from_camera = glm::mat3_cast(eye.world_from_camera.orientation);
-    gpu::EyeView view{};
-    split(world_from_camera[0], view.camera_from_world_x, view.camera_from_world_x_low);
-    split(world_from_camera[1], view.camera_from_world_y, view.camera_from_world_y_low);
-    split(world_from_camera[2], view.camera_from_world_z, view.camera_from_world_z_low);
-    split(eye.world_from_camera.position, view.position, view.position_low);
-    split(glm::dvec2(eye.intrinsics.fx, eye.intrinsics.fy), view.focal_px, view.focal_px_low);
-    split(glm::dvec2(eye.intrinsics.cx, eye.intrinsics.cy), view.principal_px, view.principal_px_low);
-    view.size_px = eye.size_px;
-    view.size_tiles = (eye.size_px + 15u) / 16u;
-    view.near = static_cast<float>(near);
-    view.max_inverse_depth = static_cast<float>(1.0 / near);
-    return view;
-}
 
 // A scene and its eyes on the device.
 struct SceneOnDevice {

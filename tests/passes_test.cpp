@@ -85,7 +85,7 @@ Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vect
     gpu::CompactPass pass{};
     pass.chunks = device.scene.chunks();
     pass.eyes = device.eyeViews();
-    if (middle) { pass.middle = test::placeOf(*middle); }
+    if (middle) { pass.middle = placeOf(*middle); }
     pass.visible_bits = bit_buffer.address<gpu::uint>();
     pass.group_offsets = offset_buffer.address<gpu::uint>();
     pass.visible = list.address<gpu::ListState>();

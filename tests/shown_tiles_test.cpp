@@ -126,7 +126,7 @@ TEST_CASE_FIXTURE(Gpu, "a masked eye is the twin's, pair for pair but for what l
     const test::KeptKernels kept(context(), frame);
     const FrameResult result = frame.render({&view.eye, 1}, makeSettings(Mode::kMono, kLeft, true));
     CHECK(static_cast<double>(result.counters.at("tile_pairs")) == doctest::Approx(static_cast<double>(pairs.size())).epsilon(0.02));
-    CHECK(compare(frame.readPicture(0), test::toImage(twin), 4).psnrDb() >= 65.0);
+    CHECK(compare(frame.readPicture(0), test::toImage(twin), 4).psnrDb() >= 80.0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in kind, colour and depth") {

@@ -40,7 +40,7 @@ bool allFinite(const Image& image) { return compare(image, image, image.channels
 // What a picture must pass to count as the same.
 bool isAlike(const Image& a, const Image& b) {
     const Difference difference = compare(a, b, 4);
-    return difference.not_finite == 0 && difference.psnrDb() >= 55.0 && difference.shareOff() <= 0.0002;
+    return difference.not_finite == 0 && difference.psnrDb() >= 80.0 && difference.shareOff() <= 0.0002;
 }
 
 Image shiftRight(const Image& image) {
@@ -186,7 +186,7 @@ TEST_CASE_FIXTURE(Gpu, "the number of threads of a cell does not show") {
             CAPTURE(threads);
             const auto other = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono),
                                           {.first_capacity = {65536, 262144}, .threads_per_cell = threads});
-            CHECK(compare(other.picture, first.picture, 4).psnrDb() >= 90.0);
+            CHECK(compare(other.picture, first.picture, 4).psnrDb() >= 150.0);  // measured: 169.7
         }
     }
 }
@@ -223,7 +223,7 @@ TEST_CASE_FIXTURE(Gpu, "images of odd sizes are rendered as the twin renders the
         const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono));
         const auto twin = reference::render(view.scene, view.eye, {});
         CHECK(allFinite(frame.depth));
-        CHECK(compare(frame.picture, test::toImage(twin), 4).psnrDb() >= 65.0);
+        CHECK(compare(frame.picture, test::toImage(twin), 4).psnrDb() >= 80.0);
     }
 }
 

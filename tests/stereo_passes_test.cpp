@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numeric>
 
 using namespace binosplat;
 using reference::Arrival;
@@ -237,4 +238,24 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the middle of its til
     CHECK(found({near, near, near, near}, {0, 0, 0, 0}) == "0....");
     CHECK(found({near, near, near, near}, {gpu::kTileCheap, 0, gpu::kTileEdge, 0}) == "3.x..");
     CHECK(found({nothing, nothing, nothing, nothing}, {0, 0, 0, 0}) == "5xxxx");
+}
+
+TEST_CASE_FIXTURE(Gpu, "8f_newcomers stops a tile's error at what half a word holds, however many splats add to it") {
+    // A thousand discs before one tile, of which each alone adds more than is left.
+    const glm::uvec2 size_px(16, 16);
+    const Eye eye = test::makeEye(size_px);
+    std::vector<test::Splat> splats(1000, {{0.0f, 0.0f, 3.0f}, {1, 0, 0, 0}, glm::vec2(0.2f), 0.9f, glm::vec3(0.5f)});
+    std::vector<std::uint32_t> order(splats.size());
+    std::iota(order.begin(), order.end(), 0u);
+    StereoCase c{"crowd", test::makeScene(splats), {eye, eye}, {size_px, {}, {}, {}, {}}, {}};
+    c.dominant.rgba.resize(16 * 16);
+    const test::SceneOnDevice scene(*this, c.scene, {eye, eye}, 0.2);
+    for (const gpu::uint before : {0x7ffffff0u, 0x7fffffffu, 0x7fff0000u}) {
+        StereoOnDevice device = toDevice(*this, c);
+        device.writeTileDepths({0});
+        device.writeTileErrors({before});
+        device.addNewcomers(scene, order, std::vector<gpu::uint>(splats.size(), 0));
+        CHECK(device.readCounters().newcomers == splats.size());
+        CHECK(device.readTileErrors() == std::vector{0x7fffffffu});
+    }
 }

@@ -130,6 +130,10 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 const auto other_kinds = std::count(same_kind.begin(), same_kind.end(), 0u);
                 const Difference difference = compare(test::keepTiles(made.pictures[1 - dominant], same_kind),
                                                       test::keepTiles(test::toImage(size_px, twin.affiliated), same_kind), 4);
+                // And of tiles that only one of them renders: both are as near to the full render.
+                const Image full = test::toImage(reference::render(seen.view.scene, seen.eyes[1 - dominant], {}));
+                const double device_db = compare(made.pictures[1 - dominant], full).psnrDb(),
+                             twin_db = compare(test::toImage(size_px, twin.affiliated), full).psnrDb();
                 std::size_t other_classes = 0;
                 for (std::size_t i = 0; i < twin.resolved.size(); ++i) {
                     const std::size_t tile = i / size_px.x / 16 * ((size_px.x + 15) / 16) + i % size_px.x / 16;
@@ -142,6 +146,9 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
                 CAPTURE(move_cost);
                 CAPTURE(letter);
                 CHECK(difference.not_finite == 0);
+                if (std::min(device_db, twin_db) < 70.0) {
+                    CHECK(std::abs(device_db - twin_db) <= 0.25);
+                }                                        // measured: 0.19 in one, 0.12 in one
                 CHECK(difference.psnrDb() >= 80.0);      // measured: 84.5 and more; of 3D Gaussians 81.3
                 CHECK(difference.shareOff() <= 0.0001);  // measured: none
                 if (seen.view.scene.isGaussian3d()) {

@@ -312,7 +312,7 @@ namespace {
 // What 7_rasterize reads, as the twin leaves it.
 struct RasterInputs {
     RasterInputs(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const reference::Settings& settings)
-        : pixels(std::size_t{view.eye.size_px.x} * view.eye.size_px.y), eye_view(test::viewOf(view.eye, settings.near)) {
+        : pixels(std::size_t{view.eye.size_px.x} * view.eye.size_px.y), eye_view(viewOf(view.eye, settings.near)) {
         std::vector<gpu::ProjectedSplat> device_splats;
         for (const reference::ProjectedSplat& splat : twin.splats) { device_splats.push_back(test::toDevice(splat)); }
         std::vector<std::uint32_t> pair_ranks;
