@@ -51,7 +51,8 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth), FIELD(opacity),
                FIELD(colour)),
         LAYOUT(DispatchSize, FIELD(x), FIELD(y), FIELD(z)),
-        LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(groups_done), FIELD(per_item), FIELD(per_block), FIELD(per_sort_block)),
+        LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(groups_done), FIELD(run_groups_done), FIELD(per_item), FIELD(per_block),
+               FIELD(per_sort_block)),
         LAYOUT(PixelMap, FIELD(excess_x), FIELD(excess_y), FIELD(excess_z), FIELD(shift)),
         LAYOUT(StereoView, FIELD(affiliated_from_dominant), FIELD(dominant_from_affiliated), FIELD(size_px), FIELD(size_tiles),
                FIELD(row_words), FIELD(rows_apart), FIELD(gap_px), FIELD(margin_px), FIELD(edge_samples), FIELD(tight_edges),
@@ -95,8 +96,9 @@ std::vector<Layout> hostLayouts() {
                FIELD(masked_tiles), FIELD(counters), FIELD(gaze)),
         LAYOUT(SelectPass, FIELD(stereo), FIELD(tile_kinds), FIELD(tile_prices), FIELD(tile_list), FIELD(tile_mask), FIELD(tile_costs),
                FIELD(visible), FIELD(masked_tiles), FIELD(masked_visible), FIELD(counters)),
-        LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(digit_begins), FIELD(list), FIELD(shift), FIELD(digits)),
-        LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms),
+        LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(run_sums), FIELD(digit_begins), FIELD(list), FIELD(shift),
+               FIELD(digits)),
+        LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(run_sums),
                FIELD(digit_begins), FIELD(list), FIELD(shift), FIELD(digits)),
         LAYOUT(PresentPass, FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(tile_kinds), FIELD(pixel_classes), FIELD(pixels),
                FIELD(device_depths), FIELD(size_px), FIELD(near)),
@@ -139,8 +141,9 @@ private:
     }
 
     void readInstruction(std::uint32_t opcode, Words operands) {
-        constexpr std::uint32_t kName = 5, kMemberName = 6, kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeRuntimeArray = 29,
-                                kTypeStruct = 30, kTypePointer = 32, kDecorate = 71, kMemberDecorate = 72, kArrayStride = 6, kOffset = 35;
+        constexpr std::uint32_t kName = 5, kMemberName = 6, kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeArray = 28,
+                                kTypeRuntimeArray = 29, kTypeStruct = 30, kTypePointer = 32, kConstant = 43, kDecorate = 71,
+                                kMemberDecorate = 72, kArrayStride = 6, kOffset = 35;
         switch (opcode) {
             case kName:
                 names_[operands[0]] = textOf(operands.subspan(1));
@@ -154,6 +157,12 @@ private:
                 break;
             case kTypeVector:
                 bytes_[operands[0]] = bytes_[operands[1]] * operands[2];
+                break;
+            case kConstant:
+                constants_[operands[1]] = operands[2];
+                break;
+            case kTypeArray:  // of a struct's field; its stride says that it is laid out
+                if (array_strides_.contains(operands[0])) { bytes_[operands[0]] = array_strides_[operands[0]] * constants_[operands[2]]; }
                 break;
             case kTypePointer:
                 bytes_[operands[0]] = 8;
@@ -185,6 +194,7 @@ private:
     std::map<std::uint32_t, std::map<std::uint32_t, std::string>> member_names_;
     std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> offsets_;
     std::map<std::uint32_t, std::vector<std::uint32_t>> structs_;
+    std::map<std::uint32_t, std::uint32_t> constants_;
     std::map<std::uint32_t, std::size_t> bytes_, strides_, array_strides_;
 };
 
