@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
-    append(table, stereoKernels());
+    append(table, stereoKernels(context));
     append(table, presentKernels());
     return table;
 }

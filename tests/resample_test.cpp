@@ -346,9 +346,9 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample makes holes their own parents where they are
 
 TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px apart for a unit of inverse depth.
-    for (const std::uint32_t width :
-         {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep, gpu::kArrivalsStep + 1,
-          gpu::kLongestSharedRow - 1, gpu::kLongestSharedRow, gpu::kLongestSharedRow + 1, 5000u, 16384u}) {
+    const std::uint32_t longest_shared = test::longestSharedRow(context());
+    for (const std::uint32_t width : {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep,
+                                      gpu::kArrivalsStep + 1, longest_shared - 1, longest_shared, longest_shared + 1, 5000u, 16384u}) {
         const glm::uvec2 size_px(width, 2);
         const auto eyes = stereoPair({Pose{}, {200.0, 200.0, 0.5 * width, 1.0}, size_px}, 0.1);
         StereoCase c{"ramp", {}, {eyes[kLeft], eyes[kRight]}, {size_px, {}, {}, {}, {}}, {}};
@@ -365,7 +365,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones t
         test::roundToWords(c.dominant, c.settings);
         CAPTURE(width);
         for (const Rows rows : {Rows::kOwn, Rows::kShared}) {
-            if (rows == Rows::kShared && width > gpu::kLongestSharedRow) { continue; }
+            if (rows == Rows::kShared && width > longest_shared) { continue; }
             const Arrived arrived(c);
             const auto resolved = reference::resolve(arrived.arrivals, c.eyes, c.settings);
             StereoOnDevice device = toDevice(*this, c, rows);
@@ -402,7 +402,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones t
                 if (apart) { anew.resample({.classes = true, .moves_row = moves_row, .odd = true}); }
                 return std::tuple(anew.readAffiliated(), anew.readClasses(), anew.readTileErrors());
             };
-            if (width <= gpu::kLongestSharedRow) {
+            if (width <= longest_shared) {
                 CHECK(moved(true, true) == moved(false, true));
                 CHECK(moved(true, false) == moved(false, false));
             }

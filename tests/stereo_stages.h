@@ -20,6 +20,9 @@ enum class Rows { kOwn, kShared, kOwnHalves, kSharedHalves };
 inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::kSharedHalves; }
 inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
 
+// The longest row that 8e keeps in shared memory.
+inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
+
 // What passes 8 work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to write begins
 // as kUnwritten.
 class StereoOnDevice {
@@ -141,7 +144,7 @@ public:
         const gpu::uint moved = whole ? gpu::kWholeRowMoved : gpu::kRowMoved;
         const gpu::uint row_source = parts.odd && rectified() != 0 ? gpu::kPlacesGiven : parts.moves_row ? moved : gpu::kArrivalsGiven;
         const std::uint32_t width = view_.size_px.x;
-        const bool shares = row_source != gpu::kPlacesGiven && width <= gpu::kLongestSharedRow;
+        const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
         const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
         dispatch("8e_resample",
                  {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,

@@ -243,6 +243,7 @@ void Context::readLimits() {
         max_subgroup_size_ = std::max(32u, subgroup_size_);
     }
     const std::uint32_t bits = physical_device_.getQueueFamilyProperties()[queue_family_].timestampValidBits;
+    shared_memory_ = vulkan10.limits.maxComputeSharedMemorySize;
     max_group_invocations_ = std::min(vulkan10.limits.maxComputeWorkGroupInvocations, vulkan10.limits.maxComputeWorkGroupSize[0]);
     timestamp_mask_ = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
     if (bits > 0) { timestamp_period_ns_ = static_cast<double>(vulkan10.limits.timestampPeriod); }

@@ -73,6 +73,8 @@ public:
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
     // Of a workgroup that lies along x.
     [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
+    // Of a workgroup, in bytes.
+    [[nodiscard]] std::uint32_t sharedMemory() const { return shared_memory_; }
     [[nodiscard]] bool validates() const { return validates_; }
     // Whether names and labels go into captures and messages: VK_EXT_debug_utils.
     [[nodiscard]] bool hasLabels() const { return labels_; }
@@ -137,7 +139,7 @@ private:
     double timestamp_period_ns_ = 0.0;
     std::uint64_t timestamp_mask_ = 0;
     std::uint32_t subgroup_size_ = 0, min_subgroup_size_ = 0, max_subgroup_size_ = 0;
-    std::uint32_t max_group_invocations_ = 0;
+    std::uint32_t max_group_invocations_ = 0, shared_memory_ = 0;
     mutable MemoryUse memory_use_;
     mutable ShaderWords replaced_shaders_;
 };

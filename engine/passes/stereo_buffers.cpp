@@ -5,12 +5,15 @@
 
 namespace binosplat {
 
+std::uint32_t mostRowSteps(const Context& context) { return context.sharedMemory() >= 32768 ? gpu::kMostRowSteps : 1; }
+
 std::uint64_t StereoBuffers::maskWords(glm::uvec2 size_px) {
     const glm::uvec2 tiles = tilesOf(size_px);
     return std::uint64_t{(tiles.x + 31) / 32} * tiles.y;
 }
 
-StereoBuffers::StereoBuffers(const Context& context, const StereoBufferNeeds& needs) : needs_(needs) {
+StereoBuffers::StereoBuffers(const Context& context, const StereoBufferNeeds& needs)
+    : needs_(needs), longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
     if (needs.size_px.x == 0) { return; }
     const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) + std::max(gpu::kPriceBins, gpu::kDepthBins);
     tiles_ = Buffer(context, "stereo tiles", words * sizeof(gpu::uint));

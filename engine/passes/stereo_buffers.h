@@ -5,6 +5,9 @@
 
 namespace binosplat {
 
+// Of the rows that 8e keeps in shared memory, in kArrivalsStep.
+std::uint32_t mostRowSteps(const Context& context);
+
 // What a frame wants of them.
 struct StereoBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
@@ -49,7 +52,7 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return classes_.address<gpu::uint>(); }
 
     // Moving pixels and arrivals: where the first rows begin, and the words from a row to the next.
-    [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= gpu::kLongestSharedRow; }
+    [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= longest_shared_row_; }
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
@@ -64,6 +67,7 @@ private:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const { return tileKinds().at(i * tileCount()); }
 
     StereoBufferNeeds needs_;
+    std::uint32_t longest_shared_row_ = 0;
     Buffer tiles_, classes_, boxes_, planes_;
 };
 

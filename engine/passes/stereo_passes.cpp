@@ -47,7 +47,7 @@ gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
             .principal_px = {lens.cx, lens.cy}};
 }
 
-KernelTable stereoKernels() {
+KernelTable stereoKernels(const Context& context) {
     KernelTable table =
         everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
     append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
@@ -59,7 +59,7 @@ KernelTable stereoKernels() {
                                                       {"kDepth", 2},
                                                       {"kClasses", 2},
                                                       {"kComponents", 2},
-                                                      {"kRowSteps", gpu::kMostRowSteps + 1},
+                                                      {"kRowSteps", mostRowSteps(context) + 1},
                                                       {"kHalfColours", 2},
                                                       {"kForward", 2},
                                                       {"kRowSource", 4}})) {

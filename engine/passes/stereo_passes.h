@@ -83,11 +83,11 @@ inline bool movesRows(bool rectified, const StereoBuffers& stereo) { return rect
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
 // All kernels of the passes 8.
-KernelTable stereoKernels();
+KernelTable stereoKernels(const Context& context);
 
 class StereoPasses {
 public:
-    explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels()) {}
+    explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels(context)) {}
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }
     // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.

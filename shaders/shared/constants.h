@@ -130,11 +130,11 @@ BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// 8e keeps a row of arrivals in shared memory, in steps of so many pixels, up to 12 KiB; longer rows are read from memory again. 8d
-// brings pixels there, as it does for canted eyes whatever the length.
-BINOSPLAT_CONSTANT uint kArrivalsStep = 1536;
+// 8e keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where a
+// device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. 8d brings pixels there, as it
+// does for canted eyes whatever the length.
+BINOSPLAT_CONSTANT uint kArrivalsStep = 2304;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
-BINOSPLAT_CONSTANT uint kLongestSharedRow = kMostRowSteps * kArrivalsStep;
 // What 8e makes a row from: arrivals in memory; the dominant eye's pixels; these where none of its tiles is hidden, as is most often so
 // where errors are predicted; or the places that the row above was sampled at.
 BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
