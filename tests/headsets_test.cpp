@@ -1,6 +1,7 @@
 // Facts about the headsets in configs/headsets: every file reads, and what it describes is something a person could wear.
 #include "engine/error.h"
 #include "engine/setup/headset.h"
+#include "shaders/shared/constants.h"
 
 #include <doctest/doctest.h>
 
@@ -50,6 +51,13 @@ TEST_CASE("everyHeadsetSaysWhoMeasuredIt") {
     for (const fs::path& file : headsetFiles()) {
         INFO(file.string());
         CHECK(readHeadset(file).source.starts_with("https://"));
+    }
+}
+
+TEST_CASE("everyHeadsetHasRowsThatFitIntoSharedMemory") {
+    for (const fs::path& file : headsetFiles()) {
+        INFO(file.string());
+        CHECK(readHeadset(file).size_px.x <= gpu::kMostRowSteps * gpu::kArrivalsStep);
     }
 }
 
