@@ -12,6 +12,8 @@
 
 #include <chrono>
 
+TEST_SUITE_BEGIN("changing_file");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;

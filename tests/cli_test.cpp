@@ -11,6 +11,8 @@
 #include <set>
 #include <utility>
 
+TEST_SUITE_BEGIN("cli");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;

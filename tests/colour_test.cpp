@@ -6,6 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 
+TEST_SUITE_BEGIN("colour");
+
 using namespace binosplat;
 
 namespace {

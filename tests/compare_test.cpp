@@ -9,6 +9,8 @@
 #include <limits>
 #include <sstream>
 
+TEST_SUITE_BEGIN("compare");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+TEST_SUITE_BEGIN("convert");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+TEST_SUITE_BEGIN("display_pace");
+
 using binosplat::xr::DisplayPace;
 
 namespace {

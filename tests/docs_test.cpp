@@ -13,6 +13,8 @@
 #include <set>
 #include <sstream>
 
+TEST_SUITE_BEGIN("docs");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+TEST_SUITE_BEGIN("equivalent_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -89,7 +91,7 @@ Scene throughSpz(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY") {
+TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     const Scene sog = loadFlat(*data / "playbot/playbot_lod3_sog");
@@ -109,7 +111,7 @@ TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY") {
     CHECK(as_spz > 42.0);
 }
 
-TEST_CASE("angel is the same scene as a SOG bundle and as PLY") {
+TEST_CASE("angel is the same scene as a SOG bundle and as PLY" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     const Scene sog = loadFlat(*data / "statues/angel.sog");

@@ -9,6 +9,8 @@
 #include <set>
 #include <sstream>
 
+TEST_SUITE_BEGIN("fault");
+
 namespace fs = std::filesystem;
 using namespace binosplat::test;
 

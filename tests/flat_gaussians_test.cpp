@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 
+TEST_SUITE_BEGIN("flat_gaussians");
+
 using namespace binosplat;
 using test::Gpu;
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+TEST_SUITE_BEGIN("flip");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <random>
 
+TEST_SUITE_BEGIN("foveation");
+
 using namespace binosplat;
 using reference::TileKind;
 using test::AffiliatedFrame;

@@ -7,6 +7,8 @@
 
 #include <memory>
 
+TEST_SUITE_BEGIN("frame_ahead");
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;

@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+TEST_SUITE_BEGIN("frame");
+
 using namespace binosplat;
 using test::Gpu;
 using test::renderMono;
@@ -93,7 +95,7 @@ View viewAlong(const glm::dvec3& eye, const glm::dvec3& look, double fov_x_deg) 
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them") {
+TEST_CASE_FIXTURE(Gpu, "real scenes are rendered as the twin renders them" * test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     const struct {
@@ -129,7 +131,7 @@ TEST_CASE_FIXTURE(Gpu, "a cloud of 3D Gaussians is rendered as the twin renders 
 }
 
 #ifdef BINOSPLAT_OPENIMAGEIO  // which reads SOG
-TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin renders it, dimmed or not") {
+TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin renders it, dimmed or not" * test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     Scene scene = loadScene((*data / "playbot/playbot_lod3_sog").string());

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <map>
 
+TEST_SUITE_BEGIN("fuzz_corpus");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

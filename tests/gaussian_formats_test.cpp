@@ -13,6 +13,8 @@
 #include <bit>
 #include <cstring>
 
+TEST_SUITE_BEGIN("gaussian_formats");
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -126,7 +128,8 @@ double psnrDb(const Scene& a, const Scene& b) {
 
 }  // namespace
 
-TEST_CASE("a scene of 3D Gaussians is the same picture as PLY, SPZ, .splat and compressed PLY, but for what they round") {
+TEST_CASE("a scene of 3D Gaussians is the same picture as PLY, SPZ, .splat and compressed PLY, but for what they round" *
+          needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     const Folder folder;
@@ -165,7 +168,7 @@ TEST_CASE("the flag of antialiased scenes goes through SPZ") {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "twin and device draw the pictures of an independent renderer") {
+TEST_CASE_FIXTURE(Gpu, "twin and device draw the pictures of an independent renderer" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     Scene scene = loadScene((*data / "playbot/playbot_lod3_sog").string());

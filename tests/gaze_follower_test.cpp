@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+TEST_SUITE_BEGIN("gaze_follower");
+
 using namespace binosplat;
 
 namespace {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+TEST_SUITE_BEGIN("geometry");
+
 using namespace binosplat;
 
 namespace {

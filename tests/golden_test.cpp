@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+TEST_SUITE_BEGIN("golden");
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;

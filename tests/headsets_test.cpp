@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+TEST_SUITE_BEGIN("headsets");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 

@@ -8,6 +8,8 @@
 #include <array>
 #include <limits>
 
+TEST_SUITE_BEGIN("hidden_tiles");
+
 using namespace binosplat;
 using xr::findHiddenTiles;
 using xr::HiddenMesh;

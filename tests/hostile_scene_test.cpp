@@ -2,6 +2,8 @@
 #include "tests/hostile.h"
 #include "tests/hostile_scenes.h"
 
+TEST_SUITE_BEGIN("hostile_scene");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

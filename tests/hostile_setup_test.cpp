@@ -13,6 +13,8 @@
 #include <fstream>
 #include <iterator>
 
+TEST_SUITE_BEGIN("hostile_setup");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -2,6 +2,8 @@
 #include "tests/hostile.h"
 #include "tests/streamed_scenes.h"
 
+TEST_SUITE_BEGIN("hostile_sog");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

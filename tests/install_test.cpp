@@ -6,6 +6,8 @@
 #include <fstream>
 #include <regex>
 
+TEST_SUITE_BEGIN("install");
+
 namespace fs = std::filesystem;
 using binosplat::test::Outcome;
 using binosplat::test::Workplace;

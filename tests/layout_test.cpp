@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+TEST_SUITE_BEGIN("layout");
+
 using namespace binosplat;
 
 namespace {

@@ -14,6 +14,8 @@
 #include <optional>
 #include <string>
 
+TEST_SUITE_BEGIN("lpips");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -104,7 +106,7 @@ TEST_CASE("everyStageIsItsTwinsForRandomWeights") {
     checkAgainstTwin(file.path, makeWaves({45, 38}, 0.0), makeWaves({45, 38}, 1.3));
 }
 
-TEST_CASE("everyStageIsItsTwinsForTrainedWeights") {
+TEST_CASE("everyStageIsItsTwinsForTrainedWeights" * needsSharedData()) {
     const auto file = trainedWeights();
     if (!file) { return; }
     checkAgainstTwin(*file, makeWaves({52, 41}, 0.0), makeWaves({52, 41}, 1.3));
@@ -195,7 +197,7 @@ TEST_CASE("weightsThatOverflowAreRefused") {
 }
 
 #ifdef BINOSPLAT_OPENIMAGEIO
-TEST_CASE("teddysViewsAreAsFarApartAsAnotherProgramSays") {
+TEST_CASE("teddysViewsAreAsFarApartAsAnotherProgramSays" * needsSharedData()) {
     const auto data = sharedData(), file = trainedWeights();
     if (!file) { return; }
     const Image left = readPicture(*data / "middlebury/teddy/im2.png"), right = readPicture(*data / "middlebury/teddy/im6.png");

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+TEST_SUITE_BEGIN("metrics");
+
 using namespace binosplat;
 
 namespace {

@@ -11,6 +11,8 @@
 #include <limits>
 #include <string>
 
+TEST_SUITE_BEGIN("middlebury");
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -96,7 +98,8 @@ Verdict judge(const Reprojected& reprojected, const Image& truth) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "a real left picture moved by its true disparity is the right one, better than by whole pixels") {
+TEST_CASE_FIXTURE(Gpu, "a real left picture moved by its true disparity is the right one, better than by whole pixels" *
+                           test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     // Moving to the nearest pixel gives 27.8 dB (teddy) and 26.7 dB (cones) on 77 % of the pixels.
@@ -122,7 +125,8 @@ TEST_CASE_FIXTURE(Gpu, "a real left picture moved by its true disparity is the r
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a real picture that is infinitely far keeps its bytes, and one moved the wrong way is no likeness") {
+TEST_CASE_FIXTURE(Gpu, "a real picture that is infinitely far keeps its bytes, and one moved the wrong way is no likeness" *
+                           test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     StereoPair pair = loadPair(*data / "middlebury" / "teddy");

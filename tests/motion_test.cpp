@@ -9,6 +9,8 @@
 #include <numbers>
 #include <string>
 
+TEST_SUITE_BEGIN("motion");
+
 using namespace binosplat;
 
 namespace {
@@ -162,7 +164,7 @@ TEST_CASE("aCameraStartsWhereItIsPutAndMovesInItsOwnFrame") {
     CHECK(glm::length(motion.cameraAt(1.0, start).position - start.position) == doctest::Approx(0.5));
 }
 
-TEST_CASE("theSharedRecordingReadsAndItsWearerWalksForward") {
+TEST_CASE("theSharedRecordingReadsAndItsWearerWalksForward" * test::needsSharedData()) {
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const HeadMotion motion = readHeadMotion(*data / "headmotion" / "User3.csv", MotionAxes::kUnity);

@@ -1,6 +1,8 @@
 // In a build that cannot decode WebP, a SOG scene is known for what it is and refused in one line.
 #include "tests/ply_files.h"
 
+TEST_SUITE_BEGIN("no_sog_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

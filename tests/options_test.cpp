@@ -14,6 +14,8 @@
 
 #include <cmath>
 
+TEST_SUITE_BEGIN("options");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;

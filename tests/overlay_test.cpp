@@ -17,6 +17,8 @@
 #include <fstream>
 #include <iterator>
 
+TEST_SUITE_BEGIN("overlay");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -311,7 +313,8 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
 
 TEST_CASE("names of any bytes and of any length are shown, and a long message is wrapped within the panel") {
     const Workplace work;
-    const std::string longest = std::string(240, 'w') + ".ply";
+    std::string longest(240, 'w');
+    longest += ".ply";
     for (const std::string& name : {std::string("\xce\xa9\xd0\x96\xc3\xa4.ply"), std::string("line\nbreak.ply"), std::string("%s%n.ply"),
                                     std::string("\xff\xfe.ply"), longest}) {
         write(work.path / name);

@@ -8,6 +8,8 @@
 #include <map>
 #include <optional>
 
+TEST_SUITE_BEGIN("passes");
+
 using namespace binosplat;
 using test::Gpu;
 using test::SceneOnDevice;

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("patching");
+
 using namespace binosplat;
 using test::AffiliatedFrame;
 using test::Gpu;

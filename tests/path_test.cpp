@@ -11,6 +11,8 @@
 #include <fstream>
 #include <set>
 
+TEST_SUITE_BEGIN("path");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;

@@ -13,6 +13,8 @@
 #include <fstream>
 #include <limits>
 
+TEST_SUITE_BEGIN("picture_io");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 

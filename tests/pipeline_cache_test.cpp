@@ -11,6 +11,8 @@
 #include <fstream>
 #include <string>
 
+TEST_SUITE_BEGIN("pipeline_cache");
+
 using namespace binosplat;
 namespace fs = std::filesystem;
 

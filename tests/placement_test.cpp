@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
+TEST_SUITE_BEGIN("placement");
+
 using namespace binosplat;
 
 namespace {

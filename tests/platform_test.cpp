@@ -24,6 +24,8 @@
 #include <thread>
 #include <utility>
 
+TEST_SUITE_BEGIN("platform");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+TEST_SUITE_BEGIN("plot_axis");
+
 using namespace binosplat;
 
 namespace {

@@ -2,6 +2,8 @@
 #include "engine/scene/ply.h"
 #include "tests/ply_files.h"
 
+TEST_SUITE_BEGIN("ply_errors");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

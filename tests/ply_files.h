@@ -154,7 +154,7 @@ inline std::string loadError(const std::string& source, std::uint64_t splats = 0
 }
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 inline void checkSameScene(const Scene& a, const Scene& b) {
     REQUIRE(a.size() == b.size());

@@ -4,6 +4,8 @@
 #include "engine/scene/procedural.h"
 #include "tests/ply_files.h"
 
+TEST_SUITE_BEGIN("ply");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -9,6 +9,8 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
+TEST_SUITE_BEGIN("present");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+TEST_SUITE_BEGIN("read_ahead");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

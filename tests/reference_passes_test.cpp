@@ -7,6 +7,8 @@
 #include <numbers>
 #include <set>
 
+TEST_SUITE_BEGIN("reference_passes");
+
 using namespace binosplat;
 using namespace binosplat::test;
 using namespace binosplat::reference;

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+TEST_SUITE_BEGIN("reference");
+
 using namespace binosplat;
 using namespace binosplat::test;
 using reference::Picture;

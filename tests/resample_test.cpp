@@ -8,6 +8,8 @@
 #include <cmath>
 #include <tuple>
 
+TEST_SUITE_BEGIN("resample");
+
 using namespace binosplat;
 using reference::PixelClass;
 using reference::TileKind;

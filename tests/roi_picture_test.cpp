@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("roi_picture");
+
 using namespace binosplat;
 
 namespace {

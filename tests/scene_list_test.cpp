@@ -14,6 +14,8 @@
 #include <filesystem>
 #include <fstream>
 
+TEST_SUITE_BEGIN("scene_list");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;

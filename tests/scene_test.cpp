@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("scene");
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -145,7 +147,7 @@ TEST_CASE("colours are limited to the bands that are asked for") {
     CHECK(scene.sh == std::vector<float>{0.0f, 1.0f, 2.0f, 27.0f, 28.0f, 29.0f});
 }
 
-TEST_CASE("the shared scenes load whole") {
+TEST_CASE("the shared scenes load whole" * needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }
     const auto load = [&](const char* file, std::size_t splats, int degree) {

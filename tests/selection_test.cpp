@@ -9,6 +9,8 @@
 #include <numeric>
 #include <random>
 
+TEST_SUITE_BEGIN("selection");
+
 using namespace binosplat;
 using reference::TileKind;
 using test::Gpu;

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+TEST_SUITE_BEGIN("setup");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;

@@ -1,4 +1,5 @@
-// Where the shared test scenes lie. Tests that need them say so and are skipped, visibly, where they are absent.
+// Where the shared test scenes lie. A case that needs them is `"its name" * needsSharedData()`: those of a program are one line of ctest,
+// which is reported as skipped where they are absent.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -9,12 +10,17 @@
 
 namespace binosplat::test {
 
+inline bool shared_data_is_missing = false;
+
+inline doctest::test_suite needsSharedData() { return doctest::test_suite("shared_data"); }
+
 // BINOSPLAT_TEST_DATA if set, otherwise ../shared/data beside the checkout.
 inline std::optional<std::filesystem::path> sharedData() {
     const char* chosen = std::getenv("BINOSPLAT_TEST_DATA");
     const std::filesystem::path folder =
         chosen != nullptr ? std::filesystem::path(chosen) : std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "../shared/data";
     if (!std::filesystem::is_directory(folder)) {
+        shared_data_is_missing = true;
         MESSAGE("skipped: no shared test scenes at " << folder.string() << " (set BINOSPLAT_TEST_DATA)");
         return std::nullopt;
     }

@@ -17,6 +17,8 @@
 #include <algorithm>
 #include <fstream>
 
+TEST_SUITE_BEGIN("shown_scene");
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;

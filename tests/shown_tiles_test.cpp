@@ -9,6 +9,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("shown_tiles");
+
 using namespace binosplat;
 using reference::StereoMethod;
 using reference::TileKind;

@@ -1,6 +1,8 @@
 // Chapter 11 of OpenXR on the simulated runtime, before anything moves: action sets, actions, suggested bindings, attaching.
 #include "tests/simulated_fixture.h"
 
+TEST_SUITE_BEGIN("simulated_action");
+
 using namespace binosplat::test;
 
 namespace {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+TEST_SUITE_BEGIN("simulated_automation");
+
 using namespace binosplat::test;
 
 namespace {

@@ -13,6 +13,8 @@
 #include <iterator>
 #include <stdexcept>
 
+TEST_SUITE_BEGIN("simulated_compose");
+
 using namespace simulated;
 
 namespace {

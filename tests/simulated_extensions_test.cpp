@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+TEST_SUITE_BEGIN("simulated_extensions");
+
 using namespace binosplat::test;
 
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+TEST_SUITE_BEGIN("simulated_gaze");
+
 using namespace binosplat::test;
 
 namespace {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+TEST_SUITE_BEGIN("simulated_geometry");
+
 using namespace simulated;
 
 namespace {

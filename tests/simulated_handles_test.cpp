@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+TEST_SUITE_BEGIN("simulated_handles");
+
 using namespace binosplat::test;
 
 namespace {

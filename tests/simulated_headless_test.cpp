@@ -1,6 +1,8 @@
 // XR_MND_headless on the simulated runtime: sessions without graphics. There is no loader here.
 #include "tests/simulated_direct.h"
 
+TEST_SUITE_BEGIN("simulated_headless");
+
 using namespace binosplat::test;
 
 namespace {

@@ -1,6 +1,8 @@
 // Chapter 11 of OpenXR on the simulated runtime, in motion: what actions read from the script's controllers, and haptics.
 #include "tests/simulated_fixture.h"
 
+TEST_SUITE_BEGIN("simulated_input");
+
 using namespace binosplat::test;
 
 namespace {

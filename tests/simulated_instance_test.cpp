@@ -1,6 +1,8 @@
 // Chapters 4 to 6 of OpenXR on the simulated runtime: instances, systems, view configurations, paths, names of values.
 #include "tests/simulated_fixture.h"
 
+TEST_SUITE_BEGIN("simulated_instance");
+
 using namespace binosplat::test;
 
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fstream>
 
+TEST_SUITE_BEGIN("simulated_layer");
+
 using namespace binosplat::test;
 
 namespace {

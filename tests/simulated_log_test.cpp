@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+TEST_SUITE_BEGIN("simulated_log");
+
 using namespace simulated;
 using Json = nlohmann::json;
 

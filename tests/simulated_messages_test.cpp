@@ -1,6 +1,8 @@
 // XR_EXT_debug_utils on the simulated runtime: what its messengers hear. There is no loader here; sessions are headless.
 #include "tests/simulated_direct.h"
 
+TEST_SUITE_BEGIN("simulated_messages");
+
 using namespace binosplat::test;
 
 namespace {

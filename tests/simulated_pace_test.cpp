@@ -9,6 +9,8 @@
 #include <fstream>
 #include <set>
 
+TEST_SUITE_BEGIN("simulated_pace");
+
 using namespace binosplat::test;
 using simulated::Script;
 using simulated::ScriptError;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+TEST_SUITE_BEGIN("simulated_pictures");
+
 using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+TEST_SUITE_BEGIN("simulated_profiles");
+
 using namespace binosplat::test;
 
 namespace {

@@ -16,6 +16,8 @@
 #include "tests/installed.h"
 #include "xr/simulated/compose/picture_file.h"
 
+TEST_SUITE_BEGIN("simulated_recipe");
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <iterator>
 
+TEST_SUITE_BEGIN("simulated_runtime");
+
 using namespace binosplat::test;
 
 namespace {

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+TEST_SUITE_BEGIN("simulated_script_errors");
+
 using namespace simulated;
 
 namespace {

@@ -15,6 +15,8 @@
 #include <numbers>
 #include <string>
 
+TEST_SUITE_BEGIN("simulated_script");
+
 using namespace simulated;
 
 namespace {
@@ -361,7 +363,7 @@ TEST_CASE("theBeginningOfARecordingCanBeSkipped") {
     CHECK(isNear(script.at(2.0).stage_from_head.position, {1.0, 0.0, 4.0}));
 }
 
-TEST_CASE("recordingsInTicksAreRead") {
+TEST_CASE("recordingsInTicksAreRead" * binosplat::test::needsSharedData()) {
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const Script script = Script::parse("head-motion User3.csv axes unity", (*data / "headmotion" / "a.script").string());

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <thread>
 
+TEST_SUITE_BEGIN("simulated_session");
+
 using namespace binosplat::test;
 
 namespace {

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+TEST_SUITE_BEGIN("simulated_surround");
+
 using namespace binosplat::test;
 
 namespace {

@@ -4,6 +4,8 @@
 #include <set>
 #include <string_view>
 
+TEST_SUITE_BEGIN("simulated_swapchain");
+
 using namespace binosplat::test;
 
 namespace {

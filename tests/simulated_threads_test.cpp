@@ -10,6 +10,8 @@
 #include <queue>
 #include <thread>
 
+TEST_SUITE_BEGIN("simulated_threads");
+
 using namespace binosplat::test;
 
 namespace {

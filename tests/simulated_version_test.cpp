@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+TEST_SUITE_BEGIN("simulated_version");
+
 using namespace binosplat::test;
 
 namespace {

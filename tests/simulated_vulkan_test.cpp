@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 
+TEST_SUITE_BEGIN("simulated_vulkan");
+
 using namespace binosplat::test;
 
 TEST_CASE_FIXTURE(InstanceFixture, "requirements are a range of Vulkan versions, and asked for before a session") {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <set>
 
+TEST_SUITE_BEGIN("simulated_wearer");
+
 using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;

@@ -2,6 +2,8 @@
 #include "engine/picture/webp.h"
 #include "tests/sog_scenes.h"
 
+TEST_SUITE_BEGIN("sog_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -2,6 +2,8 @@
 #include "engine/scene/splat_file.h"
 #include "tests/ply_files.h"
 
+TEST_SUITE_BEGIN("splat_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+TEST_SUITE_BEGIN("spz_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

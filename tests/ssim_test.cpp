@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+TEST_SUITE_BEGIN("ssim");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

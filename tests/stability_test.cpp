@@ -9,6 +9,8 @@
 #include <cmath>
 #include <set>
 
+TEST_SUITE_BEGIN("stability");
+
 using namespace binosplat;
 using namespace binosplat::stability;
 using test::Gpu;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("stereo_frame");
+
 using namespace binosplat;
 using test::Gpu;
 using test::renderMono;

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numeric>
 
+TEST_SUITE_BEGIN("stereo_passes");
+
 using namespace binosplat;
 using reference::Arrival;
 using reference::TileKind;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+TEST_SUITE_BEGIN("stereo_reference");
+
 using namespace binosplat;
 using namespace binosplat::reference;
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <tuple>
 
+TEST_SUITE_BEGIN("stereo_twin");
+
 using namespace binosplat;
 using reference::DepthChoice;
 using reference::EyePair;

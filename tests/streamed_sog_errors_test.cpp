@@ -1,6 +1,8 @@
 // Everything that does not fit in a streamed SOG scene: one line with file and place, and nothing is loaded.
 #include "tests/streamed_scenes.h"
 
+TEST_SUITE_BEGIN("streamed_sog_errors");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -2,6 +2,8 @@
 #include "tests/run_program.h"
 #include "tests/streamed_scenes.h"
 
+TEST_SUITE_BEGIN("streamed_sog");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+TEST_SUITE_BEGIN("sums");
+
 using namespace binosplat;
 using test::Gpu;
 

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <random>
 
+TEST_SUITE_BEGIN("tile_choice");
+
 using namespace binosplat;
 using reference::Borders;
 using reference::DepthChoice;

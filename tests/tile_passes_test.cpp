@@ -12,6 +12,8 @@
 #include <iterator>
 #include <random>
 
+TEST_SUITE_BEGIN("tile_passes");
+
 using namespace binosplat;
 using reference::TilePair;
 using test::Gpu;

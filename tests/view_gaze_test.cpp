@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+TEST_SUITE_BEGIN("view_gaze");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

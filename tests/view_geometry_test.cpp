@@ -10,6 +10,8 @@
 #include <numeric>
 #include <optional>
 
+TEST_SUITE_BEGIN("view_geometry");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

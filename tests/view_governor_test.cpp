@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+TEST_SUITE_BEGIN("view_governor");
+
 using namespace binosplat::test;
 
 namespace {

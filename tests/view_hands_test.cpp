@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+TEST_SUITE_BEGIN("view_hands");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

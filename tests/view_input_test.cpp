@@ -11,6 +11,8 @@
 #include <tuple>
 #include <vector>
 
+TEST_SUITE_BEGIN("view_input");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -14,6 +14,8 @@
 #include <iterator>
 #include <span>
 
+TEST_SUITE_BEGIN("view_long");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

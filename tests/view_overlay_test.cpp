@@ -10,6 +10,8 @@
 #include <cmath>
 #include <fstream>
 
+TEST_SUITE_BEGIN("view_overlay");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -1,5 +1,5 @@
 // Facts about the pace of frames: the order in which the viewer submits frames and waits for them, as a layer notes it down, is played
-// again on a clock where the device and the program take as long as is said here. The test draws docs/overlap.svg as well.
+// again on a clock where the device and the program take as long as is said here.
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
@@ -10,6 +10,8 @@
 #include <map>
 #include <string>
 #include <vector>
+
+TEST_SUITE_BEGIN("view_pace");
 
 using namespace binosplat::test;
 
@@ -86,51 +88,6 @@ std::vector<Call> callsOfWhoWaits(std::size_t submissions) {
     return calls;
 }
 
-constexpr double kLeft = 90.0, kPeriodPx = 46.0, kRowPx = 22.0;
-constexpr std::size_t kShown = 16;
-
-// A row for the program and one for the device; late frames are red.
-std::string drawRows(const std::string& title, const std::vector<PlayedFrame>& frames, double top) {
-    std::string svg = fmt::format("<text x=\"8\" y=\"{:.0f}\" font-weight=\"bold\">{}</text>\n", top - 8.0, title);
-    svg += fmt::format("<text x=\"8\" y=\"{:.0f}\">program</text>\n<text x=\"8\" y=\"{:.0f}\">device</text>\n", top + 15.0,
-                       top + kRowPx + 15.0);
-    const double right = kLeft + kPeriodPx * (static_cast<double>(kShown) + 1.0);
-    for (std::size_t i = 0; i <= kShown + 1; ++i) {
-        const double x = kLeft + kPeriodPx * static_cast<double>(i);
-        svg += fmt::format("<path d=\"M{0:.1f} {1:.0f}V{2:.0f}\" stroke=\"#ccc\"/>\n", x, top - 2.0, top + 2.0 * kRowPx + 2.0);
-    }
-    for (std::size_t i = 0; i < std::min(kShown, frames.size()); ++i) {
-        const PlayedFrame& frame = frames[i];
-        const std::array parts{std::pair(frame.cpu_begin, frame.cpu_end), std::pair(frame.gpu_begin, frame.gpu_end)};
-        for (std::size_t row = 0; row < 2; ++row) {
-            const double x = kLeft + kPeriodPx * parts[row].first, width = kPeriodPx * (parts[row].second - parts[row].first);
-            if (x + width > right) { continue; }
-            const double y = top + kRowPx * static_cast<double>(row);
-            const char* const fill = frame.isLate() ? "#d9534f" : i % 2 == 0 ? "#4a7fb5" : "#9dbfe0";
-            svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.0f}\" width=\"{:.1f}\" height=\"18\" fill=\"{}\"/>\n", x, y + 2.0, width - 1.0,
-                               fill);
-            svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.0f}\" fill=\"#fff\" font-size=\"10\">{}</text>\n", x + 2.0, y + 15.0, i);
-        }
-    }
-    return svg;
-}
-
-std::string draw(const std::vector<PlayedFrame>& ours, const std::vector<PlayedFrame>& waiting) {
-    std::string svg =
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"900\" height=\"230\" font-family=\"sans-serif\" font-size=\"12\">\n"
-        "<rect width=\"900\" height=\"230\" fill=\"#fff\"/>\n"
-        "<text x=\"8\" y=\"18\">The program works 40 % of a period for each frame, the device 70 %. Lines: a period each, "
-        "when xrWaitFrame may return. Red: late.</text>\n";
-    svg += drawRows("as the viewer does: it waits for the frame before the last", ours, 60.0);
-    svg += drawRows("if it waited for each frame before it ended it", waiting, 155.0);
-    return svg + "</svg>\n";
-}
-
-std::string textOf(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 TEST_CASE("the device draws a frame while the program prepares the next: at 70 % and 40 % of a period every frame makes it") {
@@ -140,7 +97,4 @@ TEST_CASE("the device draws a frame while the program prepares the next: at 70 %
     for (std::size_t i = 1; i < ours.size(); ++i) { CHECK(ours[i].cpu_begin == ours[i].woken); }
     // The same clock finds who waits for every frame late.
     CHECK(countLate(waiting) > 10);
-    const std::filesystem::path drawn = std::filesystem::path(BINOSPLAT_OUTPUT_DIR) / "overlap.svg";
-    std::ofstream(drawn, std::ios::binary) << draw(ours, waiting);
-    CHECK(textOf(drawn) == textOf(BINOSPLAT_SOURCE_DIR "/docs/overlap.svg"));
 }

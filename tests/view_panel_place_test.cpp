@@ -8,6 +8,8 @@
 #include <iterator>
 #include <regex>
 
+TEST_SUITE_BEGIN("view_panel_place");
+
 using namespace binosplat::test;
 
 namespace {

@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+TEST_SUITE_BEGIN("view_quality");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <iterator>
 
+TEST_SUITE_BEGIN("view_scenes");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+TEST_SUITE_BEGIN("view_start");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

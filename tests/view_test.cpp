@@ -7,6 +7,8 @@
 
 #include <regex>
 
+TEST_SUITE_BEGIN("view");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

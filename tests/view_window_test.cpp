@@ -23,6 +23,8 @@
 #include <set>
 #include <sstream>
 
+TEST_SUITE_BEGIN("view_window");
+
 using namespace binosplat;
 using namespace binosplat::test;
 

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+TEST_SUITE_BEGIN("wearer");
+
 using namespace binosplat;
 
 namespace {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <random>
 
+TEST_SUITE_BEGIN("weigh");
+
 using namespace binosplat;
 using reference::TileKind;
 using reference::TileRange;

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+TEST_SUITE_BEGIN("window_surface");
+
 using namespace binosplat;
 
 namespace {
