@@ -1,0 +1,76 @@
+// The program in a fork of a test program that is linked with it.
+#include "app/program.h"
+#include "tests/run_program.h"
+
+#include <fcntl.h>
+#include <wordexp.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+namespace binosplat::test {
+namespace {
+
+std::ptrdiff_t countThreads() {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
+}
+// Those that libraries start when they are loaded (log4cplus, which comes with OpenImageIO) and never need again. A fork has none of them.
+const std::ptrdiff_t threads_of_libraries = countThreads();
+
+// As the shell takes them apart; false where it takes a shell: redirections, pipes, jobs.
+bool areWords(const std::string& text, wordexp_t& words) { return wordexp(text.c_str(), &words, WRDE_NOCMD | WRDE_UNDEF) == 0; }
+
+bool isOneCommand(const std::string& text) { return text.find_first_of("|&;<>(){}`\n") == std::string::npos; }
+
+void redirect(int descriptor, const std::filesystem::path& file) {
+    const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (opened < 0 || dup2(opened, descriptor) < 0) { _exit(126); }
+    close(opened);
+}
+
+[[noreturn]] void runHere(const std::string& arguments, const std::string& environment) {
+    wordexp_t words{}, variables{};
+    if (!areWords(environment, variables) || !areWords("binosplat " + arguments, words)) { _exit(126); }
+    for (std::size_t i = 0; i < variables.we_wordc; ++i) {
+        const std::string variable = variables.we_wordv[i];
+        const std::size_t equals = variable.find('=');
+        setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);
+    }
+    words.we_wordv[0] = strdup(BINOSPLAT_PROGRAM);
+    const int code = runProgram(static_cast<int>(words.we_wordc), words.we_wordv);
+    std::fflush(nullptr);
+#if defined(__SANITIZE_ADDRESS__)
+    __lsan_do_leak_check();
+#endif
+    _exit(code);  // `exit` would wait for the libraries' threads
+}
+
+int runInFork(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
+              const std::filesystem::path& outputs) {
+    if (countThreads() != threads_of_libraries || !isOneCommand(arguments) || !isOneCommand(environment)) { return -1; }
+    std::cout << std::flush;
+    std::fflush(nullptr);
+    const pid_t child = fork();
+    if (child < 0) { return -1; }
+    if (child == 0) {
+        for (const int signal : {SIGINT, SIGILL, SIGFPE, SIGSEGV, SIGTERM, SIGABRT}) { std::signal(signal, SIG_DFL); }  // not the test's
+        redirect(STDOUT_FILENO, outputs / "output");
+        redirect(STDERR_FILENO, outputs / "errors");
+        std::filesystem::current_path(folder);
+        setenv("PWD", folder.c_str(), 1);
+        runHere(arguments, environment);
+    }
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    return status;
+}
+
+const bool is_set = (run_in_fork = runInFork) != nullptr;
+
+}  // namespace
+}  // namespace binosplat::test
