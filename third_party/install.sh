@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the build needs and that are missing, and nothing else.
+# Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also those of the checks of .ci/run.
 set -euo pipefail
 
 packages=(
@@ -13,6 +13,8 @@ packages=(
     doctest-dev python3 xvfb xdotool
     dpkg-dev file
 )
+# For continuous integration besides: the check of the format.
+[[ ${1:-} != --ci ]] || packages+=(clang-format)
 
 if ! command -v dpkg-query >/dev/null; then
     echo "third_party/install.sh: this is not a Debian system; install by hand: ${packages[*]}" >&2
