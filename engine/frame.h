@@ -21,7 +21,8 @@ namespace binosplat {
 struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
-    double near = 0.2;  // scene units
+    double near = 0.2;             // scene units
+    double units_per_metre = 1.0;  // scene units in a metre of the wearer: says what a jump of the eyes is
     glm::dvec3 background{0.0};
     Order order = Order::kDepth;  // of all modes; a frame of two eyes has one middle, also where nothing is shared
     StereoSettings stereo;        // how one eye is made from the other; `patching` follows from the mode

@@ -9,8 +9,12 @@
 namespace binosplat {
 namespace {
 
-// What lists hold between two frames changes less than the room ahead of them, unless an eye turns farther than this.
-constexpr double kJumpRadians = 0.1;
+// What lists hold between two frames changes less than the room ahead of them, unless an eye goes or turns farther than this, or its angles
+// change by more than this share. Heads go at up to 3 m/s and turn at up to 400 degrees/s: at 72 frames a second by 4 cm and 5.6 degrees.
+// Turns by a step are of 15 degrees and more.
+constexpr double kJumpMetres = 0.2;
+constexpr double kJumpDegrees = 6.0;
+constexpr double kJumpZoom = 0.1;
 
 }  // namespace
 
@@ -201,9 +205,9 @@ bool StereoFrame::jumps(std::span<const Eye> eyes, const FrameSettings& settings
         if (!shown_[e].isOf(settings.hidden_tiles[e], tilesOf(eyes[e].size_px))) { return true; }
         const Pose &from = eyes_[e].world_from_camera, &to = eyes[e].world_from_camera;
         const Intrinsics &lens = eyes_[e].intrinsics, &other_lens = eyes[e].intrinsics;
-        const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * kJumpRadians);
-        const bool is_far = glm::distance(from.position, to.position) > settings.near;
-        const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpRadians * lens.fx;
+        const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
+        const bool is_far = glm::distance(from.position, to.position) > kJumpMetres * settings.units_per_metre;
+        const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
         if (turns || is_far || zooms) { return true; }
     }
     return false;

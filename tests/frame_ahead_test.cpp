@@ -123,6 +123,35 @@ TEST_CASE_FIXTURE(Gpu, "after a jump a frame is waited for, and done again befor
     CHECK(frame.readPicture(kLeft).values == waited.readPicture(kLeft).values);
 }
 
+TEST_CASE_FIXTURE(
+    Gpu, "walking is no jump, however near the near plane and however large the scene; a step of the wearer and a turn by a step are") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    // Whether a frame is waited for: then what it says comes at once.
+    const auto waits = [&](double units_per_metre, double metres, double degrees) {
+        StereoFrame frame(context(), scene);
+        const test::KeptKernels kept(context(), frame);
+        FrameSettings settings = makeSettings(Mode::kShared);
+        settings.near = 0.01 * units_per_metre;
+        settings.units_per_metre = units_per_metre;
+        Eye there = view.eye;
+        there.world_from_camera.position.x += metres * units_per_metre;
+        there.world_from_camera.orientation =
+            there.world_from_camera.orientation * glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0));
+        frame.renderAhead(stereoPair(view.eye, 0.063 * units_per_metre), settings);
+        settings.mark = 1;
+        const auto result = frame.renderAhead(stereoPair(there, 0.063 * units_per_metre), settings);
+        return result && result->mark == 1;
+    };
+    for (const double units_per_metre : {0.01, 1.0, 2.0}) {
+        CAPTURE(units_per_metre);
+        CHECK_FALSE(waits(units_per_metre, 0.04, 0.0));
+        CHECK_FALSE(waits(units_per_metre, 0.19, 5.5));
+        CHECK(waits(units_per_metre, 0.21, 0.0));
+        CHECK(waits(units_per_metre, 0.0, 6.5));
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "whatever lists have no room, a frame is done again once at most, and the one after it is whole") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);

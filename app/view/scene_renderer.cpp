@@ -80,7 +80,9 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     stereo.mode = governor_.settings().mode;
     stereo.budget = governor_.settings().budget;
     FrameSettings frame = frameSettings(options_.camera, stereo);
-    frame.near = options_.camera.near * scale;  // of the wearer, however large the scene is
+    // Of the wearer, however large the scene is.
+    frame.near = options_.camera.near * scale;
+    frame.units_per_metre = scale;
     frame.dominant = settings.stereo.dominant;
     frame.keep_depth = frame.keep_both_depths = stay.images->takesDepth();
     frame.half_floats = true;
