@@ -32,7 +32,7 @@ uint pairsNear(StereoView stereo, uvec2 middle, uint moving) {
     // Comparisons are written so that NaN stays where it is.
     const bool sane = moved.z > 0 && abs(moved.x) < 1e9 && abs(moved.y) < 1e9;
     const vec2 place_px = clamp(sane ? moved.xy : middle_px, vec2(0), vec2(stereo.size_px) - 1);
-    const uvec2 range = pass.ranges.at[tileOf(stereo, uvec2(place_px))];
+    const uvec2 range = pass.ranges.at[tileOf(stereo.size_tiles, uvec2(place_px))];
     return range.y - range.x;
 }
 

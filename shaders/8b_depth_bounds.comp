@@ -3,11 +3,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
-#include "lib/stereo.glsl"
 #include "lib/moving_pixel.glsl"
 
 layout(local_size_x = kStereoGroup) in;
-layout(constant_id = 1) const bool kHalfColours = false;
+layout(constant_id = 0) const bool kHalfColours = false;
 
 #include "lib/picture.glsl"
 

@@ -5,14 +5,14 @@
 #include "passes.h"
 #include "lib/group.glsl"
 
-layout(constant_id = 1) const uint kSplatKind = kDiscs;
+layout(constant_id = 0) const uint kSplatKind = kDiscs;
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
 #include "lib/outline.glsl"
 #include "lib/front_part.glsl"
 #include "lib/tile_box.glsl"
-#include "lib/stereo.glsl"
+#include "lib/tile_mask.glsl"
 #include "lib/moving_pixel.glsl"
 
 layout(local_size_x = kStereoGroup) in;
@@ -29,7 +29,7 @@ const uint kMaxTiles = 1024;
 // Whether the splat's centre, held to the picture, is clearly nearer than what the dominant eye sees in the middle of its tile; also in a
 // tile that is rendered.
 bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
-    const uint tile = tileOf(stereo, uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1))));
+    const uint tile = tileOf(stereo.size_tiles, uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1))));
     const uint moving = pass.tile_depths.at[tile];
     return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }

@@ -3,16 +3,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
-#include "lib/stereo.glsl"
 
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
 // The steps, each a dispatch over the pixels except the last, which strides over the boxes. 8e has made every hole its own parent.
 const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
-layout(constant_id = 1) const uint kStep = kStepUnite;
+layout(constant_id = 0) const uint kStep = kStepUnite;
 
-layout(constant_id = 2) const bool kHalfColours = false;
+layout(constant_id = 1) const bool kHalfColours = false;
 
 // Where a pixel's colour would lie.
 uint slotOf(uint pixel) { return kHalfColours ? pixel : 2 * pixel; }

@@ -1,7 +1,12 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
-// held against offsetof and sizeof.
+// held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
+#include "engine/passes/passes.h"
+#include "engine/passes/stereo_passes.h"
+#include "engine/present.h"
 #include "shaders/embedded_shaders.h"
 #include "shaders/shared/passes.h"
+#include "tests/gpu_fixture.h"
+#include "tests/shader_words.h"
 
 #include <doctest/doctest.h>
 
@@ -256,6 +261,24 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     for (const Layout& layout : host) {
         INFO("no shader has " << layout.name);
         CHECK(seen.contains(layout.name));
+    }
+}
+
+TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compiled for, and has no other") {
+    KernelTable table = passKernels(context());
+    append(table, stereoKernels(context()));
+    append(table, presentKernels());
+    std::map<std::string, std::set<std::uint32_t>> chosen;
+    for (const KernelVariant& variant : table) {
+        auto& ids = chosen[variant.shader];
+        for (std::uint32_t id = 0; id < variant.constants.size(); ++id) { ids.insert(id); }
+    }
+    CHECK(chosen.size() == shaderNames().size());
+    for (const auto& [name, ids] : chosen) {
+        CAPTURE(name);
+        const test::ShaderWords shader(embeddedShader(name));
+        CHECK(shader.declaredConstants() == ids);
+        CHECK(shader.readConstants() == ids);
     }
 }
 

@@ -87,7 +87,7 @@ public:
                  tileGroups());
     }
     void boundDepths() {
-        dispatch("8b_depth_bounds", {rectified(), areHalves(rows_)},
+        dispatch("8b_depth_bounds", {areHalves(rows_)},
                  gpu::DepthBoundsPass{.stereo = view(),
                                       .colours = colours_.address<gpu::vec4>(),
                                       .half_colours = colours_.address<gpu::uvec2>(),
@@ -113,7 +113,7 @@ public:
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
         const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
-        dispatch("8f_newcomers", {rectified(), scene.scene.splatKind()},
+        dispatch("8f_newcomers", {scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
                                     .stereo = view(),
@@ -175,10 +175,8 @@ public:
                                        .tile_kinds = words(tile_kinds_),
                                        .counters = counters(),
                                        .box_capacity = box_capacity_};
-        for (std::uint32_t step = 0; step < 3; ++step) {
-            dispatch("8g_components", {rectified(), step, areHalves(rows_)}, pass, pixelGroups());
-        }
-        dispatch("8g_components", {rectified(), 3u, areHalves(rows_)}, pass, {3, 1});
+        for (std::uint32_t step = 0; step < 3; ++step) { dispatch("8g_components", {step, areHalves(rows_)}, pass, pixelGroups()); }
+        dispatch("8g_components", {3u, areHalves(rows_)}, pass, {3, 1});
     }
     void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
         const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});

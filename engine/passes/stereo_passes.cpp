@@ -50,7 +50,7 @@ gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
 KernelTable stereoKernels(const Context& context) {
     KernelTable table =
         everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
-    append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kRectified", 2}, {"kHalfColours", 2}}));
+    append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kHalfColours", 2}}));
     append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
     append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kForward", 2}}));
     for (const KernelVariant& variant : everyVariant("8e_resample", sizeof(gpu::ResamplePass),
@@ -75,8 +75,8 @@ KernelTable stereoKernels(const Context& context) {
         }
         if (groups && (values[1] == 0 || values[7] == 0) && fits) { table.push_back(variant); }
     }
-    append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kRectified", 2}, {"kSplatKind", 3}}));
-    append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kRectified", 2}, {"kStep", 4}, {"kHalfColours", 2}}));
+    append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kSplatKind", 3}}));
+    append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kStep", 4}, {"kHalfColours", 2}}));
     append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
     append(table, everyVariant("8i_select", sizeof(gpu::SelectPass), {{"kPredicted", 2}}));
     return table;
@@ -169,8 +169,8 @@ void StereoRecorder::findDepthBounds() {
                                       .moving = moving(),
                                       .bins = in_.stereo.bins()};
     const glm::uvec2 tiles = in_.stereo.sizeTiles();
-    commands_.dispatch(kernel("8b_depth_bounds", bounds, {alongRows(), halfFloats()}), bounds,
-                       (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
+    commands_.dispatch(kernel("8b_depth_bounds", bounds, {halfFloats()}), bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles,
+                       tiles.y);
 }
 
 void StereoRecorder::findEdgeRois() {
@@ -238,7 +238,7 @@ void StereoRecorder::findNewcomers() {
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
                                   .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
-    dispatchByCounter(kernel("8f_newcomers", pass, {alongRows(), in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
+    dispatchByCounter(kernel("8f_newcomers", pass, {in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
 }
 
 void StereoRecorder::groupHoles() {
@@ -251,10 +251,9 @@ void StereoRecorder::groupHoles() {
                                    .counters = counters(),
                                    .box_capacity = in_.stereo.needs().boxes};
     for (std::uint32_t step = 0; step < 3; ++step) {
-        dispatchByCounter(kernel("8g_components", pass, {alongRows(), step, halfFloats()}), pass,
-                          offsetof(gpu::StereoCounters, component_groups));
+        dispatchByCounter(kernel("8g_components", pass, {step, halfFloats()}), pass, offsetof(gpu::StereoCounters, component_groups));
     }
-    commands_.dispatch(kernel("8g_components", pass, {alongRows(), 3u, halfFloats()}), pass, kMarkGroups);
+    commands_.dispatch(kernel("8g_components", pass, {3u, halfFloats()}), pass, kMarkGroups);
 }
 
 void StereoRecorder::price() {

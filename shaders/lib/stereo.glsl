@@ -17,5 +17,3 @@ vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return kRectified ?
 
 // Where errors are predicted, an odd row is moved like the even one above it, by that one's depths.
 bool movesEvenRows(StereoView stereo) { return kRectified && stereo.rows_apart == 2; }
-
-uint tileOf(StereoView stereo, uvec2 pixel) { return (pixel.y / kTileSize) * stereo.size_tiles.x + pixel.x / kTileSize; }

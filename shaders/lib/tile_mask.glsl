@@ -1,4 +1,6 @@
-// A set of tiles, a bit each: bit x & 31 of word x / 32 in the tile's row; every row begins a word.
+// The tile of a pixel; and a set of tiles, a bit each: bit x & 31 of word x / 32 in the tile's row; every row begins a word.
+
+uint tileOf(uvec2 size_tiles, uvec2 pixel) { return (pixel.y / kTileSize) * size_tiles.x + pixel.x / kTileSize; }
 
 uint maskWords(uvec2 size_tiles) { return (size_tiles.x + 31) / 32; }
 
