@@ -96,6 +96,23 @@ TEST_CASE_FIXTURE(Gpu, "sharing what eyes can share changes no byte, whether the
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "a pass that does not run has no time") {
+    const ViewedScene view = viewAtelier();
+    for (const Mode mode : {Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
+        for (const double canting_rad : {0.0, glm::radians(5.0)}) {
+            CAPTURE(nameOf(mode));
+            CAPTURE(canting_rad);
+            const auto made = renderPair(context(), view.scene, headsetEyes(view.eye, canting_rad), makeSettings(mode));
+            const auto ran = [&](const char* pass) {
+                return std::ranges::any_of(made.result.gpu_ms, [&](const auto& one) { return one.first == pass; });
+            };
+            // Along rows 8e moves the pixels itself.
+            CHECK(ran("affiliated 8d_reproject") == (canting_rad > 0.0));
+            CHECK(ran("affiliated 8e_resample"));
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "both eyes share one order by distance, canted or not, and sharing it changes no byte") {
     ViewedScene view = viewAtelier();
     view.eye.world_from_camera.orientation = glm::normalize(view.eye.world_from_camera.orientation * glm::dquat(0.98, 0.03, -0.07, 0.11));

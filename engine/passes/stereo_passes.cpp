@@ -157,7 +157,11 @@ void StereoRecorder::weigh() {
                        tileGroups());
 }
 
+// Timed with the pass that comes next.
 void StereoRecorder::clearTiles() {
+    commands_.beginPass(followsPaper()     ? "affiliated 8b_depth_bounds"
+                        : movesRows() != 0 ? "affiliated 8e_resample"
+                                           : "affiliated 8d_reproject");
     commands_.fillZero(in_.stereo.tiles());
     in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
 }
@@ -293,7 +297,6 @@ void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
         passes.weigh();
         if (!in.may_move) { return; }
     } else {
-        commands.beginPass(passes.followsPaper() ? "affiliated 8b_depth_bounds" : "affiliated 8d_reproject");
         passes.clearTiles();
     }
     if (passes.followsPaper()) {
