@@ -44,9 +44,11 @@ bool movingPays(StereoView stereo, uint all_saved, uint picture_cost, uint tiles
     const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = stereo.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
-    uint high, low;
-    umulExtended(stereo.move_cost, tiles, high, low);
-    return high < kMoveSharedPart && saved > mending && saved - mending > (high << 31 | low >> 1);
+    // What is left for the shared part, times kMoveSharedPart, against what moving all tiles costs: in 64 bits.
+    uvec2 gain, cost;
+    umulExtended(saved - min(saved, mending), kMoveSharedPart, gain.y, gain.x);
+    umulExtended(stereo.move_cost, tiles, cost.y, cost.x);
+    return saved > mending && (gain.y > cost.y || (gain.y == cost.y && gain.x > cost.x));
 }
 
 void main() {

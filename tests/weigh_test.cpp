@@ -151,19 +151,27 @@ TEST_CASE_FIXTURE(Gpu, "8a_weigh counts exactly over any number of tiles, from o
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8a_weigh moves nothing where that saves half of moving all or less, and holds costs to what a word has room for") {
-    // Four tiles that cost 40 each to move: more than 80 must be saved.
+TEST_CASE_FIXTURE(Gpu,
+                  "8a_weigh moves nothing where that saves no more than the shared part of moving all, as the twin, and holds costs to "
+                  "what a word has room for") {
+    // Four tiles that cost 40 each to move: more than a part of 160 must be saved.
     StereoCase c = makeStill({64, 16});
     c.settings.move_cost = 40;
     c.settings.budget = 0.0;
-    for (const auto& [pairs, moves] : {std::pair(120u, false), std::pair(121u, true)}) {
+    const gpu::uint least = 40 + 4 * 40 / gpu::kMoveSharedPart;
+    for (const auto& [pairs, moves] : {std::pair(least, false), std::pair(least + 1, true)}) {
+        const std::vector<TileRange> ranges{{0, pairs}, {0, 40}, {0, 0}, {0, 3}};
+        CHECK(reference::weigh(c.dominant, ranges, c.eyes, c.settings).moves == moves);
         StereoOnDevice device = toDevice(*this, c);
-        device.weigh({{0, pairs}, {0, 40}, {0, 0}, {0, 3}}, false, kVisible);
+        device.weigh(rangesOf(ranges), false, kVisible);
         CHECK(device.readCounters().moves == (moves ? 1u : 0u));
         CHECK(device.readTileCosts() == std::vector<gpu::uint>{pairs + 16, 56, 16, 19});
     }
     // Where nothing was moved before, an eighth of what it saves is not counted on; and nothing is moved yet.
-    for (const auto& [pairs, pays] : {std::pair(131u, false), std::pair(132u, true)}) {
+    const auto counted = [](gpu::uint saved) { return saved - saved / gpu::kResumePart; };
+    gpu::uint more = least;
+    while (counted(more - 40) <= least - 40) { ++more; }
+    for (const auto& [pairs, pays] : {std::pair(more - 1, false), std::pair(more, true)}) {
         StereoOnDevice still = toDevice(*this, c);
         still.weigh({{0, pairs}, {0, 40}, {0, 0}, {0, 3}}, false, kVisible, /*may_move=*/false);
         CHECK(still.readCounters().pays == (pays ? 1u : 0u));
