@@ -2,6 +2,7 @@
 // so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
 
@@ -20,11 +21,15 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
+// Splats over more tiles than these would take one thread long: they stay in the list, and all others leave it.
+const uint kLargeTiles = 64;
+const uint kDone = 0xffffffffu;
+shared bool any_large;
 
-// What one splat adds to a tile at most.
-const float kMaxTileError = 64;
-// Tiles of one splat that are looked at; a larger one is spread over its first ones' share.
-const uint kMaxTiles = 1024;
+// A tile's sum stops at half of what a word holds, in steps; whatever gets there is rendered anyway. The greatest float below it is what one
+// splat adds at most.
+const uint kMostSteps = 0x7fffffffu;
+const float kMostStepsOfOne = 2147483520.0;
 
 // Whether the splat's centre, held to the picture, is clearly nearer than what the dominant eye sees in the middle of its tile; also in a
 // tile that is rendered.
@@ -34,18 +39,18 @@ bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
     return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }
 
-// Sums stop at half of what a word holds; whatever gets there is rendered anyway. By exchange, since many threads that each looked before
-// they added could still go beyond together.
+// By exchange, since many threads that each looked before they added could still go beyond kMostSteps together.
 void addError(uint tile, uint steps) {
     uint seen = atomicOr(pass.tile_errors.at[tile], 0), before;
     do {
         before = seen;
-        seen = atomicCompSwap(pass.tile_errors.at[tile], before, min(before + steps, 0x7fffffffu));
+        seen = atomicCompSwap(pass.tile_errors.at[tile], before, min(before + steps, kMostSteps));
     } while (seen != before);
 }
 
-// What the splat adds to the tiles it meets.
-void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
+// What the splat adds to the tiles it meets, by one thread or, of a large one, by all `together`, which share its rows. False: it is large, and
+// one thread alone leaves it.
+bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
     const uint i = pass.order.at[rank];
     SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
     const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
@@ -54,32 +59,38 @@ void addNewcomer(uint rank, EyeView eye, StereoView stereo) {
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));
-    if (tiles == 0) { return; }
+    if (tiles == 0) { return true; }
     const vec2 middle_px = has_reference ? p.reference_px : vec2(box.xy + box.zw) * (0.5 * float(kTileSize));
-    if (has_reference && !standsInFront(stereo, middle_px, p.inverse_depth)) { return; }
-    atomicAdd(pass.counters.at[0].newcomers, 1);
+    if (has_reference && !standsInFront(stereo, middle_px, p.inverse_depth)) { return true; }
+    if (!together && tiles > kLargeTiles) { return false; }
+    if (!together || gl_LocalInvocationIndex == 0) { atomicAdd(pass.counters.at[0].newcomers, 1); }
 
     // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen and that of the low-pass.
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
     const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / kLowPass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
     const float error = stereo.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
-    const uint steps = uint(min(error * error * pixels, kMaxTileError) * kErrorSteps);
-    uint added = 0;
-    for (int row = box.y; row < box.w && added < kMaxTiles; ++row) {
+    const uint steps = uint(min(error * error * pixels * kErrorSteps, kMostStepsOfOne));
+    const int first = together ? int(gl_LocalInvocationIndex) : 0, rows_apart = together ? int(kStereoGroup) : 1;
+    for (int row = box.y + first; row < box.w; row += rows_apart) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
-        for (int x = in_row.x; x < in_row.y && added < kMaxTiles; ++x, ++added) {
+        for (int x = in_row.x; x < in_row.y; ++x) {
             const uint tile = uint(row) * eye.size_tiles.x + uint(x);
             if (pass.tile_kinds.at[tile] == 0) { addError(tile, steps); }
         }
     }
+    return true;
 }
 
-// A workgroup looks over a block of the visible splats for those that the dominant eye does not see; its threads then share these few.
+// A workgroup looks over a block of the visible splats for those that the dominant eye does not see; its threads then share these few, and
+// after that the rows of each of the large ones.
 void main() {
     const uint count = pass.visible.at[0].count;
     const uint begin = groupIndex() * kNewcomersBlock;
-    if (gl_LocalInvocationIndex == 0) { unseen_count = 0; }
+    if (gl_LocalInvocationIndex == 0) {
+        unseen_count = 0;
+        any_large = false;
+    }
     barrier();
     for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kStereoGroup) {
         const uint rank = begin + in_block;
@@ -88,5 +99,18 @@ void main() {
     barrier();
     const EyeView eye = pass.eyes.at[pass.eye];
     const StereoView stereo = pass.stereo.at[0];
-    for (uint unseen = gl_LocalInvocationIndex; unseen < unseen_count; unseen += kStereoGroup) { addNewcomer(unseen_ranks[unseen], eye, stereo); }
+    [[dont_unroll]] for (uint round = 0; round < 2; ++round) {
+        const bool together = round == 1;
+        const uint end = together && !any_large ? 0 : unseen_count;
+        for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end; unseen += together ? 1 : kStereoGroup) {
+            const uint rank = unseen_ranks[unseen];
+            if (rank == kDone) { continue; }
+            if (addNewcomer(rank, eye, stereo, together)) {
+                if (!together) { unseen_ranks[unseen] = kDone; }
+            } else {
+                any_large = true;
+            }
+        }
+        barrier();
+    }
 }

@@ -51,6 +51,8 @@ struct Newcomers {
     std::size_t found, expected;
     double error, expected_error, difference;  // sums over the tiles; the last of absolute differences
     std::size_t in_marked;                     // marked tiles that got an error
+    std::size_t tiles, other_tiles;            // that the twin gives one, and that only one of both gives one
+    gpu::uint most;                            // steps of a tile
 };
 
 Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKind>& kinds) {
@@ -76,6 +78,9 @@ Newcomers findNewcomers(Gpu& gpu, const StereoCase& c, const std::vector<TileKin
         newcomers.error += errors[t] / static_cast<double>(gpu::kErrorSteps);
         newcomers.expected_error += expected[t];
         newcomers.difference += std::abs(errors[t] / static_cast<double>(gpu::kErrorSteps) - expected[t]);
+        newcomers.tiles += expected[t] > 0.0 ? 1 : 0;
+        newcomers.other_tiles += (expected[t] > 0.0) != (errors[t] > 0) ? 1 : 0;
+        newcomers.most = std::max(newcomers.most, errors[t]);
         newcomers.in_marked += kinds[t] != TileKind::kNone && errors[t] != 0 ? 1 : 0;
     }
     return newcomers;
@@ -209,6 +214,32 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's
                 }
             }
         }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "8f_newcomers adds what a large splat near a canted eye brings to every tile it meets, up to what a sum holds") {
+    // Eyes that look past each other, and before one of them discs over nearly all of its 40x35 tiles.
+    const glm::uvec2 size_px(640, 560);
+    const auto turnBy = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0)); };
+    const auto eyeAt = [&](double x, double degrees) {
+        return Eye{{turnBy(degrees), {x, 0.0, 0.0}}, intrinsicsFromFovX(glm::radians(20.0), size_px), size_px};
+    };
+    const std::array eyes{eyeAt(-0.03, -12.0), eyeAt(0.03, 12.0)};
+    const test::Splat splat{glm::vec3(turnBy(12.0) * glm::dvec3(0.0, 0.0, 0.5) + glm::dvec3(0.03, 0.0, 0.0)), glm::quat(turnBy(12.0)),
+                            glm::vec2(0.03f), 0.9f, glm::vec3(0.5f)};
+    for (const auto& [splats, newcomer_error] : {std::pair(1u, 0.3), std::pair(1u, 8.0), std::pair(3u, 8.0)}) {
+        CAPTURE(splats);
+        CAPTURE(newcomer_error);
+        StereoCase c = test::makeCase("large", test::makeScene(std::vector(splats, splat)), eyes, kLeft);
+        c.settings.newcomer_error = newcomer_error;
+        const Newcomers newcomers = findNewcomers(*this, c, std::vector(std::size_t{40} * 35, TileKind::kNone));
+        CHECK(newcomers.expected == splats);
+        CHECK(newcomers.found == splats);
+        CHECK(newcomers.tiles > 1024);
+        CHECK(newcomers.other_tiles == 0);
+        // Steps are cut off, and outlines that differ by a tile in their box share the same error a little differently.
+        CHECK(newcomers.difference <= 0.02 * newcomers.expected_error);
+        if (splats == 3) { CHECK(newcomers.most == 0x7fffffffu); }
     }
 }
 

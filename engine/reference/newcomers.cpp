@@ -10,7 +10,8 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kTilePixels = kTileSize * kTileSize;
-constexpr double kInFrontRatio = 1.01;  // a wall that goes on beyond the border does not stand in front of itself
+constexpr double kMostTileError = 2048.0 - 0x1p-20;  // whatever has so much is rendered anyway: more than a fixed-point sum holds
+constexpr double kInFrontRatio = 1.01;               // a wall that goes on beyond the border does not stand in front of itself
 
 // The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
@@ -57,7 +58,8 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
         const double shared_by = tilesAcross(box.x, box.z) * tilesAcross(box.y, box.w);
         // A disc that comes through the near plane may cover anything.
         const double pixels = splat.low_pass ? std::min(squareCoverage(splat) / shared_by, kTilePixels) : kTilePixels;
-        errors[pair.tile] += settings.newcomer_error * settings.newcomer_error * splat.opacity * splat.opacity * pixels;
+        const double error = settings.newcomer_error * settings.newcomer_error * splat.opacity * splat.opacity * pixels;
+        errors[pair.tile] = std::min(errors[pair.tile] + error, kMostTileError);
     }
     return newcomers;
 }
