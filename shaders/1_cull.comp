@@ -68,8 +68,7 @@ void main() {
     [[dont_unroll]] do {
         const uint i = group * kCullBlock + in_block;
         if (i >= pass.splat_count) { break; }
-        SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-        const CameraSplat splat = loadWorldSplat(chunk, i & ((1u << pass.chunk_bits) - 1));
+        const CameraSplat splat = loadWorldSplat(pass.chunks, placeOfSplat(i, pass.chunk_bits));
         const bool visible = isVisible(cameraFromWorld(first_eye, splat), first_eye) ||
                              (pass.eye_count > 1 && isVisible(cameraFromWorld(last_eye, splat), last_eye));
         if (visible) {

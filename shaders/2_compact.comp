@@ -59,8 +59,7 @@ void main() {
         if ((bits & bit) != 0) {
             const uint place = pass.group_offsets.at[group] + visible_before[in_block / 32] + bitCount(bits & (bit - 1));
             const uint i = first + in_block;
-            SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-            pass.keys.at[place] = sortableBits(keyOf(eye, chunk.positions.at[i & ((1u << pass.chunk_bits) - 1)]));
+            pass.keys.at[place] = sortableBits(keyOf(eye, positionOf(pass.chunks, placeOfSplat(i, pass.chunk_bits))));
             pass.splats.at[place] = i;
         }
         in_block += kGroupSize;

@@ -89,22 +89,21 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
 
 // What a visible splat is to this eye: the tiles it meets, and for the report those of the customary bound.
 uint project(uint rank, EyeView eye, out uint square_tiles) {
-    const uint i = pass.order.at[rank];
-    SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-    const uint in_chunk = i & ((1u << pass.chunk_bits) - 1);
+    const SplatPlace at = placeOfSplat(pass.order.at[rank], pass.chunk_bits);
     const uvec2 size_tiles = eye.size_tiles;
 
-    const CameraSplat splat = loadCameraSplat(chunk, in_chunk, eye);
+    const vec3 position = positionOf(pass.chunks, at);
+    const CameraSplat splat = loadCameraSplat(pass.chunks, at, eye);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
-    if (has_reference) { placeExactly(p, chunk.positions.at[in_chunk], eye); }
+    if (has_reference) { placeExactly(p, position, eye); }
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
     square_tiles = kSquareBoxes ? squareBoxTiles(splat, eye) : 0;
     uint small;
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
-        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(chunk, in_chunk, normalize(fromEye(eye, chunk.positions.at[in_chunk]))));
+        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, position))));
         pass.splats.at[rank] = p;
     }
     // Empty where the splat meets no tile: then there is no splat either.

@@ -51,9 +51,7 @@ void addError(uint tile, uint steps) {
 // What the splat adds to the tiles it meets, by one thread or, of a large one, by all `together`, which share its rows. False: it is large, and
 // one thread alone leaves it.
 bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
-    const uint i = pass.order.at[rank];
-    SceneChunk chunk = pass.chunks.at[i >> pass.chunk_bits];
-    const CameraSplat splat = loadCameraSplat(chunk, i & ((1u << pass.chunk_bits) - 1), eye);
+    const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
     const Outline outline = outlineOfProjected(p);

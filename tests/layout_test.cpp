@@ -282,6 +282,13 @@ TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compil
     }
 }
 
+TEST_CASE("no shader copies a struct of addresses, which some compilers do not survive") {
+    for (const std::string& name : shaderNames()) {
+        CAPTURE(name);
+        CHECK(test::ShaderWords(embeddedShader(name)).copiedAddresses() == "");
+    }
+}
+
 TEST_CASE("push constants fit into the 128 bytes that every device has") {
     for (const Layout& layout : hostLayouts()) {
         if (layout.name.ends_with("Pass")) { CHECK(layout.bytes <= 128); }

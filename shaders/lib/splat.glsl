@@ -28,14 +28,21 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
+// Where a splat of the scene lies. Each of a chunk's addresses is read where it is used: not every compiler survives a copy of all of them.
+struct SplatPlace {
+    uint chunk, in_chunk;
+};
+SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
+vec3 positionOf(SceneChunks chunks, SplatPlace at) { return chunks.at[at.chunk].positions.at[at.in_chunk]; }
+
 // The same in world space.
-CameraSplat loadWorldSplat(SceneChunk chunk, uint i) {
+CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     CameraSplat splat;
-    tangents(chunk.rotations.at[i], splat.t_u, splat.t_v);
-    splat.centre = chunk.positions.at[i];
-    splat.scale = chunk.scales.at[i];
-    splat.thickness = kSplatKind != kDiscs ? chunk.thicknesses.at[i] : 0;
-    splat.opacity = chunk.opacities.at[i];
+    tangents(chunks.at[at.chunk].rotations.at[at.in_chunk], splat.t_u, splat.t_v);
+    splat.centre = positionOf(chunks, at);
+    splat.scale = chunks.at[at.chunk].scales.at[at.in_chunk];
+    splat.thickness = kSplatKind != kDiscs ? chunks.at[at.chunk].thicknesses.at[at.in_chunk] : 0;
+    splat.opacity = chunks.at[at.chunk].opacities.at[at.in_chunk];
     return splat;
 }
 
@@ -54,7 +61,7 @@ CameraSplat cameraFromWorld(EyeView eye, CameraSplat splat) {
     return splat;
 }
 
-CameraSplat loadCameraSplat(SceneChunk chunk, uint i, EyeView eye) { return cameraFromWorld(eye, loadWorldSplat(chunk, i)); }
+CameraSplat loadCameraSplat(SceneChunks chunks, SplatPlace at, EyeView eye) { return cameraFromWorld(eye, loadWorldSplat(chunks, at)); }
 
 // rho at which alpha falls to 1/255; not positive for a splat that is never seen.
 float cutOf(float opacity) { return opacity >= kMinAlpha ? (log2(opacity) + kLog2Of255) / kLog2PerRho : 0; }
