@@ -5,7 +5,7 @@
 #include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/hostile.h"
-#include "third_party/toml_guard.h"
+#include "xr/simulated/files/toml_guard.h"
 
 #include <unistd.h>
 
@@ -139,9 +139,9 @@ TEST_CASE("letters outside of ASCII are read in quotes and comments and refused 
     };
     CHECK(messageOf("\xef\xbb\xbfname = \"\u00c4 \\\" \u03e2\" # \u03e2\nother = '\u03e2'\n").empty());
     // Wherever TOML takes quotes for a text or a key.
-    CHECK_FALSE(third_party::findUnreadableToml(
-        "a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", d.e=[\"\u00e9\"], f = '\u00e9'}\n"
-        "[\"\u00e9\"]\n[[g]]\n\"\u00e9\" = 1\n"));
+    CHECK_FALSE(
+        files::findUnreadableToml("a = [\"\u00e9\", [\n'\u00e9', 1 , \"\u00e9\"]]\nb = {c = \"\u00e9\", d.e=[\"\u00e9\"], f = '\u00e9'}\n"
+                                  "[\"\u00e9\"]\n[[g]]\n\"\u00e9\" = 1\n"));
     CHECK(messageOf("a = 1\nb = \u00e9\n").find("letters.toml:2: a letter that is neither ASCII") != std::string::npos);
     CHECK(messageOf("a = 1\n\nb = '''x'''\n").find("letters.toml:3: a text over several lines") != std::string::npos);
     CHECK(messageOf("a = 1\nb = 2\"\u00e9\"\n").find("letters.toml:2: quotes within a word") != std::string::npos);

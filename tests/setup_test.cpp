@@ -9,6 +9,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <numbers>
 
 TEST_SUITE_BEGIN("setup");
@@ -26,7 +28,38 @@ fs::path writeFile(const fs::path& path, const std::string& text) {
     return path;
 }
 
+// Every line of the folder's C++ and CMake files: visit(file within the repository, line).
+void visitLines(const std::string& folder, const std::function<void(const std::string&, const std::string&)>& visit) {
+    const fs::path root(BINOSPLAT_SOURCE_DIR);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension != ".h" && extension != ".cpp" && extension != ".cmake" && entry.path().filename() != "CMakeLists.txt") { continue; }
+        std::ifstream stream(entry.path());
+        for (std::string line; std::getline(stream, line);) { visit(fs::relative(entry.path(), root).generic_string(), line); }
+    }
+}
+
 }  // namespace
+
+TEST_CASE("the readers that the engine and the simulated runtime share are a room of their own, below both") {
+    const std::string room = "xr/simulated/files/", quoted = "#include \"";
+    std::string links;
+    visitLines("xr/simulated/files", [&](const std::string& file, const std::string& line) {
+        CAPTURE(file);
+        if (line.starts_with(quoted)) { CHECK_MESSAGE(line.starts_with(quoted + room), line); }
+        if (line.starts_with("target_link_libraries")) { links += line; }
+    });
+    CHECK(links == "target_link_libraries(binosplat_files PUBLIC binosplat_flags PRIVATE third_party_toml)");
+    // Of the rest of xr/ the engine includes nothing, and nobody else compiles the room's sources.
+    for (const char* folder : {"engine", "third_party"}) {
+        visitLines(folder, [&](const std::string& file, const std::string& line) {
+            CAPTURE(file);
+            if (line.starts_with(quoted + "xr/")) { CHECK_MESSAGE(line.starts_with(quoted + room), line); }
+            const bool compiles = !file.ends_with(".h") && !file.ends_with(".cpp") && line.find(room) != std::string::npos;
+            CHECK_MESSAGE(!compiles, line);
+        });
+    }
+}
 
 TEST_CASE("cameraFileIsWorldFromCameraWithRowsAsWritten") {
     const Workplace work;

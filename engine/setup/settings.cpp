@@ -1,9 +1,9 @@
-// Settings from TOML files; the program's only place that knows toml++ (the simulated runtime has one of its own).
+// Settings from TOML files. Headset files, the only other ones, are read in xr/simulated/files.
 #include "engine/setup/settings.h"
 
 #include "engine/error.h"
 #include "engine/setup/text_file.h"
-#include "third_party/toml_guard.h"
+#include "xr/simulated/files/toml_guard.h"
 
 #include <algorithm>
 #include <optional>
@@ -84,7 +84,7 @@ std::string Setting::text() const {
 std::vector<SettingsTable> readSettingsFile(const std::filesystem::path& path) {
     const std::string file = path.string();
     const std::string text = readTextFile(path, "a TOML file");
-    if (const auto found = third_party::findUnreadableToml(text)) { fail("{}:{}: {}", file, found->line, found->problem); }
+    if (const auto found = files::findUnreadableToml(text)) { fail("{}:{}: {}", file, found->line, found->problem); }
 
     toml::table root;
     try {

@@ -24,7 +24,7 @@ file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/include/xr/simu
 add_library(binosplat_flags INTERFACE)
 target_include_directories(binosplat_flags INTERFACE ${CMAKE_BINARY_DIR}/include)
 
-foreach(name vulkan openxr_headers glm fmt_inside json png)
+foreach(name vulkan openxr_headers glm fmt_inside json png toml)
     add_library(third_party_${name} INTERFACE)
 endforeach()
 target_link_libraries(third_party_vulkan INTERFACE Vulkan::Headers)
@@ -35,8 +35,6 @@ target_compile_definitions(third_party_glm INTERFACE GLM_FORCE_EXPLICIT_CTOR GLM
 target_link_libraries(third_party_fmt_inside INTERFACE fmt::fmt-header-only)
 target_link_libraries(third_party_json INTERFACE nlohmann_json::nlohmann_json)
 target_link_libraries(third_party_png INTERFACE PNG::PNG)
-add_library(third_party_toml STATIC files/toml_guard.cpp)
-set_target_properties(third_party_toml PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_link_libraries(third_party_toml PRIVATE binosplat_flags)
 target_compile_definitions(third_party_toml INTERFACE TOML_ASSERT=static_cast<void>)
 target_include_directories(third_party_toml SYSTEM INTERFACE $<TARGET_PROPERTY:tomlplusplus::tomlplusplus,INTERFACE_INCLUDE_DIRECTORIES>)
+add_subdirectory(files)

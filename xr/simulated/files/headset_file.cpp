@@ -159,7 +159,7 @@ Lens lensOf(const Table& root, std::string_view side) {
 }  // namespace
 
 HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
-    if (const auto found = third_party::findUnreadableToml(text)) { failAt(file, static_cast<std::size_t>(found->line), found->problem); }
+    if (const auto found = findUnreadableToml(text)) { failAt(file, static_cast<std::size_t>(found->line), found->problem); }
     toml::table root;
     try {
         root = toml::parse(text, file);

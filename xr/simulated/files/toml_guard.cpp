@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace third_party {
+namespace files {
 
 namespace {
 
@@ -101,4 +101,4 @@ std::optional<UnreadableToml> findUnreadableToml(std::string_view text) {
     return std::nullopt;
 }
 
-}  // namespace third_party
+}  // namespace files

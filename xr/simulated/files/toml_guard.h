@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace third_party {
+namespace files {
 
 struct UnreadableToml {
     int line;             // from 1
@@ -16,4 +16,4 @@ struct UnreadableToml {
 // no value begins; a text over several lines. None of them: nullopt, and toml++ may have the text, be it TOML or not.
 std::optional<UnreadableToml> findUnreadableToml(std::string_view text);
 
-}  // namespace third_party
+}  // namespace files
