@@ -35,7 +35,7 @@ void run(int argument_count, const char* const* arguments) {
               [](const CompareOptions& options) { runCompare(options); }, [](const StabilityOptions& options) { runStability(options); },
               [](const KernelsOptions& options) { runKernels(options); }, [](const HelpText& help) { fmt::print("{}", help.text); }},
         parseOptions(argument_count, arguments));
-    if (std::fflush(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) { fail("standard output: cannot be written ({})", std::strerror(errno)); }
 }
 
 int report(ExitCode code, std::string message) {

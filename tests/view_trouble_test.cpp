@@ -56,6 +56,54 @@ TEST_CASE("sessions that are lost again and again before they show anything are 
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
 }
 
+TEST_CASE("what only decorates and fails is said once and done without, and a first session that is lost is followed by another one") {
+    const Workplace work;
+    std::ofstream(work.path / "wishes.toml") << "[view]\nrefresh-rate = 72\neye-tracking = true\n";
+    // The hand points at the panel, which pulses; the fifth action space is the gaze's, the tenth frame has layers.
+    const std::string script = kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
+    const std::string arguments = "builtin:slanted-wall --load-first --mode mono --frames 200 --config wishes.toml";
+    const auto runFaulty = [&](const std::string& name, const std::string& faults) {
+        return runView(work, name, script, arguments,
+                       "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
+                       "XR_API_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "/openxr' BINOSPLAT_XR_FAULT=" +
+                           faults);
+    };
+    const ViewRun run = runFaulty("decorations",
+                                  "xrCreateSession:-17:1,xrSuggestInteractionProfileBindings:-22:1,xrApplyHapticFeedback:-2,"
+                                  "xrLocateHandJointsEXT:-2,xrGetDisplayRefreshRateFB:missing,xrRequestDisplayRefreshRateFB:missing,"
+                                  "xrEnumerateReferenceSpaces:-2,xrCreateActionSpace:-2:1:4,xrEndFrame:-2:1:10");
+    INFO(run.outcome.output);
+    CHECK(run.outcome.errors == "");
+    CHECK(run.outcome.exit_code == 0);
+    CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
+    CHECK(run.layers(run.frames.size() - 4, "projection").at(0).at("views").at(0).contains("depth"));
+    const auto checkOnce = [](const ViewRun& in, const std::string& sentence) {
+        CAPTURE(sentence);
+        const std::size_t first = in.outcome.output.find(sentence);
+        CHECK(first != std::string::npos);
+        CHECK(in.outcome.output.find(sentence, first + 1) == std::string::npos);
+    };
+    checkOnce(run, "xrCreateSession failed: XR_ERROR_SESSION_LOST; another one begins\n");
+    checkOnce(run, "controllers that the OpenXR runtime does not take: khr/simple_controller (XR_ERROR_PATH_UNSUPPORTED)\n");
+    checkOnce(run, "xrApplyHapticFeedback failed: XR_ERROR_RUNTIME_FAILURE; on without pulses\n");
+    checkOnce(run, "xrLocateHandJointsEXT failed: XR_ERROR_RUNTIME_FAILURE; on without hand tracking\n");
+    checkOnce(run, "xrGetDisplayRefreshRateFB failed: XR_ERROR_FUNCTION_UNSUPPORTED; on without the display's refresh rate\n");
+    checkOnce(run, "refresh-rate is 72, this headset refuses it (OpenXR: xrRequestDisplayRefreshRateFB failed: ");
+    checkOnce(run, "xrEnumerateReferenceSpaces failed: XR_ERROR_RUNTIME_FAILURE; on without the stage's floor\n");
+    checkOnce(run, "xrCreateActionSpace failed: XR_ERROR_RUNTIME_FAILURE; on without eye tracking\n");
+    checkOnce(run, "xrEndFrame failed: XR_ERROR_RUNTIME_FAILURE; on without hands, rays and the vignette\n");
+    // The panel is the first to get its images; what hangs beside it gets none. And of a program that crashes each line was written.
+    const ViewRun crash = runFaulty("crash",
+                                    "xrCreateSwapchain:-2:1:1,xrCreateHandTrackerEXT:missing,xrEnumerateDisplayRefreshRatesFB:missing,"
+                                    "xrApplyHapticFeedback:crash");
+    INFO(crash.outcome.output);
+    CHECK(crash.outcome.exit_code != 0);
+    checkOnce(crash, "xrCreateSwapchain failed: XR_ERROR_RUNTIME_FAILURE; on without rays, controllers and the vignette\n");
+    checkOnce(crash, "xrCreateHandTrackerEXT failed: XR_ERROR_FUNCTION_UNSUPPORTED; on without hand tracking\n");
+    checkOnce(crash, "xrEnumerateDisplayRefreshRatesFB failed: XR_ERROR_FUNCTION_UNSUPPORTED; on without a choice of refresh rates\n");
+    checkOnce(crash, ": the room now begins where the wearer stands");
+}
+
 TEST_CASE("a lost runtime gives one line and exit code 3") {
     const Workplace work;
     for (const char* time : {"0", "0.02", "0.2"}) {

@@ -4,22 +4,27 @@
 #include "xr/convert.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace binosplat::xr {
 
 HandTracking::HandTracking(const Session& session) : session_(session) {
     const Instance& instance = session.instance();
     if (!instance.tracksHands()) { return; }
-    const auto create = instance.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
-    destroy_ = instance.function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
-    locate_ = instance.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
-    for (std::size_t h = 0; h < 2; ++h) {
-        auto info = structure<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
-        info.hand = h == kLeft ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
-        info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
-        // A runtime may offer hands that this headset, or its wearer, does not allow: controllers are drawn then.
-        if (XR_FAILED(create(session.handle(), &info, &trackers_[h]))) { trackers_[h] = XR_NULL_HANDLE; }
-    }
+    instance.troubles().tryFor("hand tracking", [&] {
+        const auto create = instance.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
+        destroy_ = instance.function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
+        locate_ = instance.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
+        for (std::size_t h = 0; h < 2; ++h) {
+            auto info = structure<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
+            info.hand = h == kLeft ? XR_HAND_LEFT_EXT : XR_HAND_RIGHT_EXT;
+            info.handJointSet = XR_HAND_JOINT_SET_DEFAULT_EXT;
+            // A runtime may offer hands that this headset, or its wearer, does not allow: controllers are drawn then.
+            XrHandTrackerEXT made = XR_NULL_HANDLE;
+            checkResult(create(session.handle(), &info, &made), "xrCreateHandTrackerEXT");
+            trackers_[h] = made;
+        }
+    });
 }
 
 HandTracking::~HandTracking() {
@@ -28,8 +33,8 @@ HandTracking::~HandTracking() {
     }
 }
 
-std::optional<HandJoints> HandTracking::locate(int hand) const {
-    const XrHandTrackerEXT tracker = trackers_[static_cast<std::size_t>(hand)];
+std::optional<HandJoints> HandTracking::locate(int hand) {
+    XrHandTrackerEXT& tracker = trackers_[static_cast<std::size_t>(hand)];
     if (tracker == XR_NULL_HANDLE) { return std::nullopt; }
     std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> found{};
     auto info = structure<XrHandJointsLocateInfoEXT>(XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
@@ -38,7 +43,11 @@ std::optional<HandJoints> HandTracking::locate(int hand) const {
     auto locations = structure<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
     locations.jointCount = XR_HAND_JOINT_COUNT_EXT;
     locations.jointLocations = found.data();
-    checkResult(locate_(tracker, &info, &locations), "xrLocateHandJointsEXT");
+    const auto ask = [&] { checkResult(locate_(tracker, &info, &locations), "xrLocateHandJointsEXT"); };
+    if (!session_.instance().troubles().tryFor("hand tracking", ask)) {
+        destroy_(std::exchange(tracker, XrHandTrackerEXT(XR_NULL_HANDLE)));
+        return std::nullopt;
+    }
     const auto isKnown = [](const XrHandJointLocationEXT& joint) {
         return (joint.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) != 0;
     };

@@ -16,7 +16,7 @@ struct HandJoint {
 };
 using HandJoints = std::array<HandJoint, XR_HAND_JOINT_COUNT_EXT>;
 
-// Both hands of a session; empty ones where the runtime has none.
+// Both hands of a session; empty ones where the runtime has none, or fails to find them: see Troubles.
 class HandTracking {
 public:
     explicit HandTracking(const Session& session);
@@ -25,7 +25,7 @@ public:
     ~HandTracking();
 
     // At the open frame's display time; empty while the hand is not seen whole.
-    [[nodiscard]] std::optional<HandJoints> locate(int hand) const;
+    [[nodiscard]] std::optional<HandJoints> locate(int hand);
 
 private:
     const Session& session_;

@@ -43,8 +43,8 @@ void Input::attachActions() {
     stick_click_ = makeAction("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT);
     menu_ = makeAction("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT);
     haptic_ = makeAction("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT);
-    if (instance.tracksEyes()) { gaze_ = makeAction("gaze", "Sharp where you look", XR_ACTION_TYPE_POSE_INPUT, false); }
     suggestBindings();
+    if (instance.tracksEyes()) { makeGazeAction(); }
     auto attach = structure<XrSessionActionSetsAttachInfo>(XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
     attach.countActionSets = 1;
     attach.actionSets = &set_;
@@ -58,12 +58,25 @@ void Input::attachActions() {
         space.action = grip_;
         BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &grip_spaces_[h]));
     }
-    if (gaze_ != XR_NULL_HANDLE) {
-        auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
-        space.poseInActionSpace.orientation.w = 1.0f;
-        space.action = gaze_;
-        BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &gaze_space_));
-    }
+    if (gaze_ != XR_NULL_HANDLE) { makeGazeSpace(); }
+}
+
+void Input::makeGazeAction() {
+    const Instance& instance = session_.instance();
+    const bool made = instance.troubles().tryFor("eye tracking", [&] {
+        gaze_ = makeAction("gaze", "Sharp where you look", XR_ACTION_TYPE_POSE_INPUT, false);
+        const XrPath pose = instance.path("/user/eyes_ext/input/gaze_ext/pose");
+        checkResult(suggest("ext/eye_gaze_interaction", {{gaze_, pose}}), "xrSuggestInteractionProfileBindings");
+    });
+    if (!made) { gaze_ = XR_NULL_HANDLE; }
+}
+
+void Input::makeGazeSpace() {
+    auto space = structure<XrActionSpaceCreateInfo>(XR_TYPE_ACTION_SPACE_CREATE_INFO);
+    space.poseInActionSpace.orientation.w = 1.0f;
+    space.action = gaze_;
+    const auto make = [&] { BINOSPLAT_XR(xrCreateActionSpace(session_.handle(), &space, &gaze_space_)); };
+    if (!session_.instance().troubles().tryFor("eye tracking", make)) { gaze_ = XR_NULL_HANDLE; }
 }
 
 Input::~Input() {
@@ -91,6 +104,7 @@ XrAction Input::makeAction(const char* name, const char* description, XrActionTy
 
 void Input::suggestBindings() const {
     const Instance& instance = session_.instance();
+    std::string rejected;
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension != nullptr && !instance.hasExtension(profile.extension)) { continue; }
         std::vector<XrActionSuggestedBinding> bindings;
@@ -107,20 +121,22 @@ void Input::suggestBindings() const {
             bind(menu_, profile.menu[h]);
             bind(haptic_, profile.haptic);
         }
-        suggest(profile.path, bindings);
+        // A runtime need not know every controller.
+        const XrResult result = suggest(profile.path, bindings);
+        if (XR_FAILED(result)) { rejected += fmt::format("{}{} ({})", rejected.empty() ? "" : ", ", profile.path, nameOf(result)); }
     }
-    if (gaze_ != XR_NULL_HANDLE) { suggest("ext/eye_gaze_interaction", {{gaze_, instance.path("/user/eyes_ext/input/gaze_ext/pose")}}); }
+    if (!rejected.empty()) { instance.troubles().add("controllers that the OpenXR runtime does not take: " + rejected); }
 }
 
-void Input::suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
+XrResult Input::suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const {
     const Instance& instance = session_.instance();
     auto suggestion = structure<XrInteractionProfileSuggestedBinding>(XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
     suggestion.interactionProfile = instance.path(fmt::format("/interaction_profiles/{}", profile).c_str());
     suggestion.countSuggestedBindings = static_cast<std::uint32_t>(bindings.size());
     suggestion.suggestedBindings = bindings.data();
     const XrResult result = xrSuggestInteractionProfileBindings(instance.handle(), &suggestion);
-    // A runtime need not know every controller.
-    if (result != XR_ERROR_PATH_UNSUPPORTED) { checkResult(result, "xrSuggestInteractionProfileBindings"); }
+    if (result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrSuggestInteractionProfileBindings"); }
+    return result;
 }
 
 std::array<Hand, 2> Input::read() {
@@ -153,14 +169,17 @@ std::array<Hand, 2> Input::read() {
     return hands;
 }
 
-std::optional<glm::dvec3> Input::gaze() const {
+std::optional<glm::dvec3> Input::gaze() {
     if (gaze_ == XR_NULL_HANDLE) { return std::nullopt; }
-    const std::optional<Pose> pose = locate(gaze_, XR_NULL_PATH, gaze_space_, kKnown | kTracked);
+    std::optional<Pose> pose;
+    const auto find = [&] { pose = locate(gaze_, XR_NULL_PATH, gaze_space_, kKnown | kTracked); };
+    if (!session_.instance().troubles().tryFor("eye tracking", find)) { gaze_ = XR_NULL_HANDLE; }
     if (!pose) { return std::nullopt; }
     return pose->orientation * glm::dvec3(0.0, 0.0, 1.0);
 }
 
-void Input::pulse(int hand) const {
+void Input::pulse(int hand) {
+    if (!pulses_) { return; }
     auto info = structure<XrHapticActionInfo>(XR_TYPE_HAPTIC_ACTION_INFO);
     info.action = haptic_;
     info.subactionPath = hands_[static_cast<std::size_t>(hand)];
@@ -168,7 +187,9 @@ void Input::pulse(int hand) const {
     vibration.duration = kPulseNs;
     vibration.frequency = XR_FREQUENCY_UNSPECIFIED;
     vibration.amplitude = kPulseStrength;
-    BINOSPLAT_XR(xrApplyHapticFeedback(session_.handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)));
+    pulses_ = session_.instance().troubles().tryFor("pulses", [&] {
+        BINOSPLAT_XR(xrApplyHapticFeedback(session_.handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)));
+    });
 }
 
 std::optional<bool> Input::readButton(XrAction action, XrPath hand) const {

@@ -38,7 +38,8 @@ private:
 
 class Input {
 public:
-    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them.
+    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them. Controllers that it does not take
+    // are among the Troubles.
     explicit Input(const Session& session);
     Input(const Input&) = delete;
     Input& operator=(const Input&) = delete;
@@ -48,16 +49,19 @@ public:
     [[nodiscard]] std::array<Hand, 2> read();
     // Where the eyes look, as of the last read(): a direction in the room (ours). Empty where the headset does not see it well enough to
     // rely on, or nobody let this program see it.
-    [[nodiscard]] std::optional<glm::dvec3> gaze() const;
+    [[nodiscard]] std::optional<glm::dvec3> gaze();
     // A short buzz in a hand, where its controller can.
-    void pulse(int hand) const;
+    void pulse(int hand);
 
 private:
     void attachActions();
     // By hand, unless there is one of it.
     [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;
-    void suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
+    [[nodiscard]] XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
+    // Before the actions are attached, and after it.
+    void makeGazeAction();
+    void makeGazeSpace();
     // Empty: there is none.
     [[nodiscard]] std::optional<double> readNumber(XrAction action, XrPath hand) const;
     [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;
@@ -75,6 +79,7 @@ private:
     std::array<XrPath, 2> hands_{};
     std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
     std::array<Hold, 2> clicks_, grabs_, menus_;
+    bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()
     bool is_at_rest_ = false;  // likewise
 };

@@ -135,10 +135,17 @@ void Instance::readSystem() {
     auto properties = structure<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
     auto hands = structure<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
     auto eyes = structure<XrSystemEyeGazeInteractionPropertiesEXT>(XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT);
+    BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
     // One after the other: OpenXR's own validation layer refuses a chain of two.
-    for (const auto& [has, chained] : {std::pair<bool, void*>(knows_hands_, &hands), std::pair<bool, void*>(knows_eyes_, &eyes)}) {
-        properties.next = has ? chained : nullptr;
+    const auto read = [&](void* chained) {
+        properties.next = chained;
         BINOSPLAT_XR(xrGetSystemProperties(instance_, system_, &properties));
+    };
+    if (knows_hands_) {
+        troubles_.tryFor("hand tracking", [&] { read(&hands); });
+    }
+    if (knows_eyes_) {
+        troubles_.tryFor("eye tracking", [&] { read(&eyes); });
     }
     tracks_hands_ = knows_hands_ && hands.supportsHandTracking == XR_TRUE;
     tracks_eyes_ = knows_eyes_ && eyes.supportsEyeGazeInteraction == XR_TRUE;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/gpu/context.h"
-#include "xr/check.h"
+#include "xr/troubles.h"
 
 #include <glm/glm.hpp>
 
@@ -71,6 +71,8 @@ public:
     [[nodiscard]] DeviceMaker deviceMaker() const;
 
     [[nodiscard]] XrPath path(const char* text) const;
+    // What this headset is used without.
+    [[nodiscard]] Troubles& troubles() const { return troubles_; }
     // A function of an extension. Throws Error if the runtime lists the extension but lacks the function.
     template <typename Function>
     [[nodiscard]] Function function(const char* name) const {
@@ -99,6 +101,7 @@ private:
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
     std::optional<XrEnvironmentBlendMode> see_through_;
+    mutable Troubles troubles_;  // of all sessions
 };
 
 }  // namespace binosplat::xr

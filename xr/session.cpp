@@ -111,20 +111,27 @@ double Session::periodMs() const {
 
 std::vector<double> Session::refreshRates() const {
     if (!instance_.hasRefreshRates()) { return {}; }
-    const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
-    std::uint32_t count = 0;
-    // It is no reason to do without the headset if it does not tell.
-    if (XR_FAILED(list(session_, 0, &count, nullptr))) { return {}; }
-    std::vector<float> rates(count);
-    if (XR_FAILED(list(session_, count, &count, rates.data()))) { return {}; }
-    return {rates.begin(), rates.begin() + count};
+    std::vector<float> rates;
+    instance_.troubles().tryFor("a choice of refresh rates", [&] {
+        const auto list = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
+        std::uint32_t count = 0;
+        checkResult(list(session_, 0, &count, nullptr), "xrEnumerateDisplayRefreshRatesFB");
+        std::vector<float> found(count);
+        checkResult(list(session_, count, &count, found.data()), "xrEnumerateDisplayRefreshRatesFB");
+        found.resize(count);
+        rates = std::move(found);
+    });
+    return {rates.begin(), rates.end()};
 }
 
 XrDuration Session::askForPeriod() const {
     if (!instance_.hasRefreshRates()) { return 0; }
-    const auto get = instance_.function<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB");
     float rate_hz = 0.0f;
-    return XR_SUCCEEDED(get(session_, &rate_hz)) && rate_hz > 0.0f ? std::llround(1e9 / static_cast<double>(rate_hz)) : 0;
+    const bool is_known = instance_.troubles().tryFor("the display's refresh rate", [&] {
+        const auto get = instance_.function<PFN_xrGetDisplayRefreshRateFB>("xrGetDisplayRefreshRateFB");
+        checkResult(get(session_, &rate_hz), "xrGetDisplayRefreshRateFB");
+    });
+    return is_known && rate_hz > 0.0f ? std::llround(1e9 / static_cast<double>(rate_hz)) : 0;
 }
 
 std::string Session::askForRate(double rate_hz) {
@@ -139,11 +146,13 @@ std::string Session::askForRate(double rate_hz) {
         for (const double rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
-    const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-    const XrResult result = request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found));
-    if (XR_SUCCEEDED(result)) { return {}; }
-    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
-    return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, nameOf(result));
+    try {
+        const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+        checkResult(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)), "xrRequestDisplayRefreshRateFB");
+    } catch (const Lost&) { throw; } catch (const InstanceLost&) {
+        throw;
+    } catch (const Error& error) { return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, error.what()); }
+    return {};
 }
 
 void Session::requestExit() {
@@ -268,10 +277,11 @@ bool Session::settle(bool demanded) {
     return true;
 }
 
-std::optional<double> Session::floorBelowMetres() const {
+std::optional<double> Session::floorBelowMetres() {
     if (floor_ == XR_NULL_HANDLE) { return std::nullopt; }
     auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
-    BINOSPLAT_XR(xrLocateSpace(floor_, space_, frame_state_.predictedDisplayTime, &location));
+    const auto locate = [&] { BINOSPLAT_XR(xrLocateSpace(floor_, space_, frame_state_.predictedDisplayTime, &location)); };
+    if (!instance_.troubles().tryFor("a floor", locate)) { xrDestroySpace(std::exchange(floor_, XrSpace(XR_NULL_HANDLE))); }
     if ((location.locationFlags & XR_SPACE_LOCATION_POSITION_VALID_BIT) == 0) { return std::nullopt; }
     return -static_cast<double>(location.pose.position.y);
 }
@@ -286,18 +296,22 @@ XrSpace Session::makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const
 }
 
 void Session::findFloor() {
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, 0, &count, nullptr));
-    std::vector<XrReferenceSpaceType> offered(count);
-    BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, count, &count, offered.data()));
+    std::vector<XrReferenceSpaceType> offered;
+    instance_.troubles().tryFor("the stage's floor", [&] {
+        std::uint32_t count = 0;
+        BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, 0, &count, nullptr));
+        std::vector<XrReferenceSpaceType> found(count);
+        BINOSPLAT_XR(xrEnumerateReferenceSpaces(session_, count, &count, found.data()));
+        offered = std::move(found);
+    });
     for (const XrReferenceSpaceType type : {XR_REFERENCE_SPACE_TYPE_STAGE, kLocalFloor}) {
         const bool is_floor = type == kLocalFloor ? instance_.hasLocalFloor() : std::ranges::find(offered, type) != offered.end();
         if (!is_floor || floor_ != XR_NULL_HANDLE) { continue; }
         auto info = structure<XrReferenceSpaceCreateInfo>(XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         info.referenceSpaceType = type;
         info.poseInReferenceSpace = kHere;
-        // Where it is offered and refused the floor is not known, which is no reason to stay out.
-        if (XR_FAILED(xrCreateReferenceSpace(session_, &info, &floor_))) { floor_ = XR_NULL_HANDLE; }
+        const auto make = [&] { BINOSPLAT_XR(xrCreateReferenceSpace(session_, &info, &floor_)); };
+        if (!instance_.troubles().tryFor("a floor", make)) { floor_ = XR_NULL_HANDLE; }
     }
 }
 

@@ -73,7 +73,7 @@ public:
     // its space, and where `demanded`. Whether it did.
     bool settle(bool demanded);
     // How far below the room's origin the floor lies, in metres; empty where the runtime does not know.
-    [[nodiscard]] std::optional<double> floorBelowMetres() const;
+    [[nodiscard]] std::optional<double> floorBelowMetres();
 
     // How often input has begun to come to this program.
     [[nodiscard]] int timesFocused() const { return times_focused_; }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <string>
 
 namespace binosplat {
@@ -11,7 +12,12 @@ namespace binosplat {
 struct FrameLog {
     std::uint64_t frame = 0;  // shown so far
 
-    void say(const std::string& message) const { fmt::print("frame {}: {}\n", frame, message); }
+    void say(const std::string& message) const { print(fmt::format("frame {}: {}", frame, message)); }
+    // A line without it. Each is written at once: who looks into a crash wants the last ones.
+    static void print(const std::string& line) {
+        fmt::print("{}\n", line);
+        std::fflush(stdout);
+    }
 };
 
 }  // namespace binosplat

@@ -34,8 +34,7 @@ ViewSettings startSettings(const ViewOptions& options) {
 // Until the headset is there, or until Ctrl-C, Escape or the window's cross. The first look opens the window.
 void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& window) {
     if (!window) {
-        fmt::print("{} has no headset yet: waiting for it (Ctrl-C ends)\n", runtime);
-        std::fflush(stdout);
+        FrameLog::print(runtime + " has no headset yet: waiting for it (Ctrl-C ends)");
         window = std::make_unique<WaitingWindow>();
     }
     stopIfInterrupted();
@@ -52,7 +51,7 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     }
     const Context context(context_options);
     const glm::uvec2 size_px = instance.recommendedSizePx();
-    fmt::print("{}, {}x{} per eye, on {}\n", instance.description(), size_px.x, size_px.y, context.deviceName());
+    FrameLog::print(fmt::format("{}, {}x{} per eye, on {}", instance.description(), size_px.x, size_px.y, context.deviceName()));
     Viewer(options, settings, instance, context, windows != nullptr).run();
     if (!options.out.empty()) { fmt::print("what the wearer saw: {}\n", options.out.string()); }
     context.requireNoValidationMessages();
@@ -72,9 +71,10 @@ void runView(const ViewOptions& given) {
     std::unique_ptr<xr::Instance> instance;
     try {
         instance = std::make_unique<xr::Instance>(instance_options);
-    } catch (const Interrupted&) {
+        waiting.reset();
+        showScene(options, settings, *instance);
+    } catch (const Interrupted&) {  // while one was waited for
         fmt::print("0 frames; stopped before there was a headset\n");
-        return;
     } catch (const xr::RuntimeFailed&) {
         // The runtime has said where and why.
         check(!options.simulate || options.script.empty(),
@@ -82,8 +82,6 @@ void runView(const ViewOptions& given) {
         check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());
         throw;
     }
-    waiting.reset();
-    showScene(options, settings, *instance);
 }
 
 }  // namespace binosplat

@@ -27,14 +27,14 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       instance_(instance),
       context_(context),
       settings_(settings),
-      headset_(instance, context, kPanelPx),
+      headset_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
       renderer_(instance, context, options_.run, log_, headset_.format()),
       panel_(context, headset_.format()),
       commands_(context_),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
     panel_.status().can_reload_shaders = !shaderFolder(options.shaders).empty();
-    if (const std::string& complaint = panel_.canvas().fontComplaint(); !complaint.empty()) { fmt::print("{}\n", complaint); }
+    if (const std::string& complaint = panel_.canvas().fontComplaint(); !complaint.empty()) { log_.print(complaint); }
     if (mirrored) { openWindow(); }
 }
 
@@ -60,15 +60,16 @@ void Viewer::run() {
             }
         }
     } catch (const xr::InstanceLost& lost) {
-        fmt::print("{} frames; {}\n", log_.frame, lost.what());
+        log_.print(fmt::format("{} frames; {}", log_.frame, lost.what()));
         throw;
     }
     sayPicture(pictures_.finish());
     const std::string why = headset_.stay() != nullptr ? stay().session.whyEnded() : "stopped while there was no headset";
-    fmt::print("{} frames; {}\n", log_.frame, why.empty() ? "the session was lost as it ended" : why);
+    log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
 }
 
 bool Viewer::step() {
+    for (const std::string& trouble : instance_.troubles().take()) { say(trouble); }
     switch (stay().session.beginFrame()) {
         case xr::FrameOutcome::kExit:
             return false;
@@ -211,24 +212,40 @@ void Viewer::showFrame(const FrameViews& views) {
     panel_.release(stay());
     stay().things.release();
     stay().session.seeThrough(renderer_.seesThrough(settings_));
-    const auto submit = [&] {
+    submitFrame(views);
+}
+
+void Viewer::submitFrame(const FrameViews& views) {
+    const auto submit = [&](bool with_things) {
         xr::Layers layers(stay().session);
         addEyes(layers, views);
-        stay().things.addBehindPanel(layers);
+        if (with_things) { stay().things.addBehindPanel(layers); }
         if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), stay().panel_images); }
-        stay().things.addBeforePanel(layers);
+        if (with_things) { stay().things.addBeforePanel(layers); }
         stay().session.endFrame(layers.list());
     };
-    try {
-        submit();
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
-    } catch (const Error&) {
-        if (!std::exchange(takes_depth_, false)) { throw; }
+    std::string refusal;
+    const auto isTaken = [&](bool with_things) {
+        try {
+            submit(with_things);
+            return true;
+        } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
+            throw;
+        } catch (const Error& error) { refusal = error.what(); }
+        return false;
+    };
+    if (isTaken(true)) { return; }
+    // What can be done without is left out, the cheaper first.
+    if (stay().things.areShown() && isTaken(false)) {
+        instance_.troubles().add(refusal + "; on without hands, rays and the vignette");
+        stay().things.giveUp();
+        return;
+    }
+    if (std::exchange(takes_depth_, false)) {
         log_.say("the runtime refuses depth; on without depth");
         renderer_.dropDepth(stay());
-        submit();
     }
+    submit(true);
 }
 
 void Viewer::drawWindowAlone(const std::string& why) {
@@ -269,8 +286,8 @@ void Viewer::takeScene() {
 void Viewer::openWindow() {
     try {
         window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas());
-    } catch (const Error& error) { fmt::print("no window: {}\n", error.what()); } catch (const vk::SystemError& error) {
-        fmt::print("no window: {}\n", error.what());
+    } catch (const Error& error) { log_.print(fmt::format("no window: {}", error.what())); } catch (const vk::SystemError& error) {
+        log_.print(fmt::format("no window: {}", error.what()));
     }
 }
 

@@ -50,6 +50,8 @@ private:
     // Hands, rays and what else hangs in the room in this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
     void showFrame(const FrameViews& views);
+    // Without hands and rays, or without depth, where the runtime refuses these.
+    void submitFrame(const FrameViews& views);
     // Trouble with the window ends the window alone.
     void onWindow(void (MirrorWindow::*act)());
     void addEyes(xr::Layers& layers, const FrameViews& views) const;

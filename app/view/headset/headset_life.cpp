@@ -1,10 +1,11 @@
 // The next session.
 #include "app/view/headset/headset_life.h"
 
+#include "app/interrupt.h"
 #include "engine/error.h"
 
-#include <cstdio>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 namespace binosplat {
@@ -12,19 +13,29 @@ namespace binosplat {
 namespace {
 
 // How often to look whether an unplugged headset is there again.
-constexpr std::chrono::milliseconds kBetweenSearches(200);
+constexpr std::chrono::milliseconds kBetweenSearches(200), kPause(5);
 // So often, so far apart, a session is asked for that a headset which was just plugged in again refuses.
 constexpr int kMostFailures = 10;
 constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
 }  // namespace
 
-HeadsetLife::HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
-    : instance_(instance),
-      context_(context),
-      panel_px_(panel_px),
-      stay_(std::make_unique<HeadsetStay>(instance, context, panel_px)),
-      format_(stay_->format) {}
+HeadsetLife::HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say)
+    : instance_(instance), context_(context), panel_px_(panel_px) {
+    const auto tryTo = [this](const auto& begin) {
+        try {
+            begin();
+        } catch (const xr::Lost& lost) { lose(lost.what()); }
+    };
+    tryTo([&] { stay_ = std::make_unique<HeadsetStay>(instance_, context_, panel_px_); });
+    while (!stay_) {
+        stopIfInterrupted();
+        tryTo([&] {
+            if (search(say) == Search::kLater) { std::this_thread::sleep_for(kPause); }
+        });
+    }
+    format_ = stay_->format;
+}
 
 void HeadsetLife::lose(const std::string& why) {
     if (!losses_.add(std::chrono::steady_clock::now())) {
@@ -46,7 +57,6 @@ HeadsetLife::Search HeadsetLife::search(const Say& say) {
     next_search_ = now + kBetweenSearches;
     if (!instance_.findHeadset(context_)) {
         if (!std::exchange(is_gone_, true)) { say(why_lost_ + "; the headset is gone: waiting for it"); }
-        std::fflush(stdout);
         return Search::kNone;
     }
     say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
@@ -62,7 +72,9 @@ HeadsetLife::Search HeadsetLife::search(const Say& say) {
         next_search_ = now + kBetweenFailures;
         return Search::kNone;
     }
-    if (stay_->format != format_) { throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images"); }
+    if (format_ != vk::Format::eUndefined && stay_->format != format_) {
+        throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images");
+    }
     return Search::kFound;
 }
 

@@ -15,8 +15,9 @@ class HeadsetLife {
 public:
     using Say = std::function<void(const std::string&)>;
 
-    // Begins the first one. `instance` and `context` outlive this; `panel_px` is the size of the panel's picture.
-    HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
+    // Begins the first one; where that is lost before it is there, waits for the next as ever. `instance` and `context` outlive this;
+    // `panel_px` is the size of the panel's picture. Throws Interrupted as it waits, and what search() throws.
+    HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
 
     // The present one; null while there is none.
     [[nodiscard]] HeadsetStay* stay() const { return stay_.get(); }
@@ -40,7 +41,7 @@ private:
     const Context& context_;
     glm::uvec2 panel_px_;
     std::unique_ptr<HeadsetStay> stay_;
-    vk::Format format_;
+    vk::Format format_ = vk::Format::eUndefined;
     Losses losses_;     // since a frame was shown
     int failures_ = 0;  // of sessions that were to come after it, in a row
     std::string why_lost_;

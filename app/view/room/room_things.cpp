@@ -15,7 +15,19 @@ constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandle
 
 }  // namespace
 
-RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format) : layout_(texelLayoutOf(format)) {
+RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::Format format)
+    : troubles_(session.instance().troubles()), layout_(texelLayoutOf(format)) {
+    if (!troubles_.tryFor("rays, controllers and the vignette", [&] { makeSheet(session, context, format); })) { sheet_ = {}; }
+    if (!session.instance().tracksHands()) { return; }
+    for (HandImage& hand : hands_) {
+        troubles_.tryFor("pictures of hands", [&] {
+            hand.images = xr::Swapchain(session, "a hand", kHandPicturePx, format, xr::ImageUse::kDraw);
+            hand.texels = Buffer(context, "a hand", std::uint64_t{kHandPicturePx.x} * kHandPicturePx.y * sizeof(std::uint32_t));
+        });
+    }
+}
+
+void RoomThings::makeSheet(const xr::Session& session, const Context& context, vk::Format format) {
     const TexelPicture sheet = drawSprites(layout_);
     sheet_ = xr::Swapchain(session, "what hangs in the room", sheet.size_px, format, xr::ImageUse::kDraw);
     const std::uint64_t bytes = sheet.texels.size() * sizeof(std::uint32_t);
@@ -26,14 +38,17 @@ RoomThings::RoomThings(const xr::Session& session, const Context& context, vk::F
     commands.copyToImage(upload, sheet_.acquire(), sheet.size_px, vk::ImageAspectFlagBits::eColor);
     commands.submitAndWait();
     sheet_.release();
-    if (!session.instance().tracksHands()) { return; }
-    for (HandImage& hand : hands_) {
-        hand.images = xr::Swapchain(session, "a hand", kHandPicturePx, format, xr::ImageUse::kDraw);
-        hand.texels = Buffer(context, "a hand", std::uint64_t{kHandPicturePx.x} * kHandPicturePx.y * sizeof(std::uint32_t));
-    }
+}
+
+void RoomThings::giveUp() {
+    quads_.clear();
+    vignette_.reset();
+    hands_ = {};
+    sheet_ = {};
 }
 
 void RoomThings::add(Sprite sprite, const Strip& strip) {
+    if (sheet_.handle() == XR_NULL_HANDLE) { return; }
     const SpritePlace place = placeOf(sprite);
     quads_.push_back({strip.room_from_strip, strip.size_m, &sheet_, place.from_px, place.size_px});
 }
@@ -45,7 +60,7 @@ void RoomThings::add(Sprite sprite, const std::optional<Strip>& strip) {
 void RoomThings::choose(const RoomSight& sight) {
     quads_.clear();
     vignette_.reset();
-    if (sight.vignette_m) {
+    if (sight.vignette_m && sheet_.handle() != XR_NULL_HANDLE) {
         const SpritePlace place = placeOf(Sprite::kVignette);
         vignette_ = xr::LayerQuad{{glm::dquat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, kVignetteMetres}},
                                   glm::dvec2(*sight.vignette_m),
@@ -64,12 +79,15 @@ void RoomThings::choose(const RoomSight& sight) {
 }
 
 void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
-    if (hand.joints && image.texels.bytes() > 0) {
+    const bool has_picture = hand.joints && image.texels.bytes() > 0;
+    if (has_picture && troubles_.tryFor("pictures of hands", [&] { image.now = image.images.acquire(); })) {
         const Strip place = handPicturePlace(*hand.joints, eye);
         image.picture = drawHand(*hand.joints, place, eye, layout_);
-        image.now = image.images.acquire();
         quads_.push_back({place.room_from_strip, place.size_m, &image.images, {0, 0}, kHandPicturePx});
-    } else if (hand.grip) {
+        return;
+    }
+    if (has_picture) { image = {}; }  // it could not be had
+    if (hand.grip) {
         const auto along = [&](double metres) { return transform(*hand.grip, glm::dvec3(0.0, 0.0, metres)); };
         const Strip knob = facing(along(kHandleAheadMetres), glm::dvec2(kKnobMetres), eye);
         const std::optional<Strip> handle = stripBetween(along(-kHandleBehindMetres), along(kHandleAheadMetres), kHandleWidthMetres, eye);
@@ -91,7 +109,9 @@ void RoomThings::record(Commands& commands) {
 
 void RoomThings::release() {
     for (HandImage& hand : hands_) {
-        if (std::exchange(hand.now, nullptr)) { hand.images.release(); }
+        if (!std::exchange(hand.now, nullptr) || troubles_.tryFor("pictures of hands", [&] { hand.images.release(); })) { continue; }
+        std::erase_if(quads_, [&](const xr::LayerQuad& quad) { return quad.swapchain == &hand.images; });
+        hand = {};
     }
 }
 

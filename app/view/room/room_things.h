@@ -23,7 +23,7 @@ struct RoomSight {
 // At most so many layers, of 16 that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end.
 class RoomThings {
 public:
-    // For as long as the session lasts, with images of `format`.
+    // For as long as the session lasts, with images of `format`. What the runtime does not make is not drawn: see xr::Troubles.
     RoomThings(const xr::Session& session, const Context& context, vk::Format format);
 
     // Before anything is recorded: takes the images that a frame of this needs.
@@ -32,6 +32,10 @@ public:
     void record(Commands& commands);
     // After submitAndWait: gives back what choose() took.
     void release();
+    // Whether that frame has any.
+    [[nodiscard]] bool areShown() const { return vignette_.has_value() || !quads_.empty(); }
+    // The runtime does not show them: from now on there are none.
+    void giveUp();
     // Of the frame that was chosen last: behind the panel, and before it.
     void addBehindPanel(xr::Layers& layers) const;
     void addBeforePanel(xr::Layers& layers) const;
@@ -43,12 +47,14 @@ private:
         vk::Image now;         // of this frame; null: not taken
         TexelPicture picture;  // of this frame
     };
+    void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye);
     void add(Sprite sprite, const Strip& strip);
     void add(Sprite sprite, const std::optional<Strip>& strip);
 
+    xr::Troubles& troubles_;
     TexelLayout layout_;
-    xr::Swapchain sheet_;
+    xr::Swapchain sheet_;  // none: nothing is drawn from it
     std::array<HandImage, 2> hands_;
     std::vector<xr::LayerQuad> quads_;  // before the panel
     std::optional<xr::LayerQuad> vignette_;

@@ -65,7 +65,7 @@ std::string ShownScene::take(ViewSettings& settings) {
     } catch (const Error& error) { return goOnWithout(error.what()); }
     log_.say("shows " + scene_->name);
     const std::string complaint = place(settings);
-    for (const std::string& line : scene_->notes.lines) { fmt::print("note: {}\n", line); }
+    for (const std::string& line : scene_->notes.lines) { log_.print("note: " + line); }
     return complaint;
 }
 

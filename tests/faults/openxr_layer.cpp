@@ -1,0 +1,153 @@
+// An OpenXR API layer in which calls fail as a test says: what runtimes do that the simulated one does not.
+// BINOSPLAT_XR_FAULT=CALL:RESULT[:N[:AFTER]] and more of these after commas: N calls of CALL, or all, return the number RESULT and are not
+// made, once AFTER others were. In the place of RESULT, "missing": the runtime does not have the function; "crash": it ends the program.
+#include <vulkan/vulkan.h>
+#define XR_USE_GRAPHICS_API_VULKAN
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
+
+#include <atomic>
+#include <climits>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <sstream>
+#include <string>
+
+namespace {
+
+struct Fault {
+    bool is_missing = false, is_crash = false;
+    XrResult result = XR_SUCCESS;
+    std::atomic<int> before{0}, left{INT_MAX};  // calls that do not fail yet, and those that do then
+};
+
+// By the name of the function. Only ever read after the first call.
+std::map<std::string, Fault>& faults() {
+    static std::map<std::string, Fault> all = [] {
+        std::map<std::string, Fault> found;
+        const char* const given = std::getenv("BINOSPLAT_XR_FAULT");
+        std::istringstream items(given != nullptr ? given : "");
+        for (std::string item; std::getline(items, item, ',');) {
+            std::istringstream parts(item);
+            std::string name, result, count, before;
+            std::getline(parts, name, ':');
+            std::getline(parts, result, ':');
+            Fault& fault = found[name];
+            fault.is_missing = result == "missing";
+            fault.is_crash = result == "crash";
+            fault.result = static_cast<XrResult>(std::atoi(result.c_str()));
+            if (std::getline(parts, count, ':')) { fault.left = std::atoi(count.c_str()); }
+            if (std::getline(parts, before, ':')) { fault.before = std::atoi(before.c_str()); }
+        }
+        return found;
+    }();
+    return all;
+}
+
+PFN_xrGetInstanceProcAddr g_next = nullptr;
+
+// A function that fails as long as its fault lasts, and then is the next one. `Tag` is a struct of its own for each function.
+template <typename Tag, typename Function>
+struct Faulty;
+template <typename Tag, typename... Arguments>
+struct Faulty<Tag, XrResult(XRAPI_PTR*)(Arguments...)> {
+    static XRAPI_ATTR XrResult XRAPI_CALL call(Arguments... arguments) {
+        Fault& fault = faults().at(Tag::kName);
+        if (fault.before > 0 || fault.left <= 0) {
+            --fault.before;
+            return next(arguments...);
+        }
+        if (fault.is_crash) { std::abort(); }
+        --fault.left;
+        return fault.result;
+    }
+    static inline XrResult(XRAPI_PTR* next)(Arguments...) = nullptr;
+};
+
+#define BINOSPLAT_FAULTY(item)                                                                                                         \
+    item(xrApplyHapticFeedback) item(xrCreateHandTrackerEXT) item(xrLocateHandJointsEXT) item(xrEnumerateDisplayRefreshRatesFB)        \
+        item(xrGetDisplayRefreshRateFB) item(xrRequestDisplayRefreshRateFB) item(xrEnumerateReferenceSpaces) item(xrCreateActionSpace) \
+            item(xrSuggestInteractionProfileBindings) item(xrCreateSession) item(xrCreateSwapchain) item(xrEndFrame)                   \
+                item(xrGetSystemProperties)
+
+#define BINOSPLAT_TAG(name)                         \
+    struct Tag_##name {                             \
+        static constexpr const char* kName = #name; \
+    };
+BINOSPLAT_FAULTY(BINOSPLAT_TAG)
+
+XRAPI_ATTR XrResult XRAPI_CALL getInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
+    const auto found = faults().find(name);
+    if (found != faults().end() && found->second.is_missing) {
+        *function = nullptr;
+        return XR_ERROR_FUNCTION_UNSUPPORTED;
+    }
+    const XrResult result = g_next(instance, name, function);
+    if (XR_FAILED(result) || found == faults().end()) { return result; }
+#define BINOSPLAT_WRAP(wrapped)                                          \
+    if (std::strcmp(name, #wrapped) == 0) {                              \
+        using Wrapped = Faulty<Tag_##wrapped, PFN_##wrapped>;            \
+        Wrapped::next = reinterpret_cast<PFN_##wrapped>(*function);      \
+        *function = reinterpret_cast<PFN_xrVoidFunction>(Wrapped::call); \
+    }
+    BINOSPLAT_FAULTY(BINOSPLAT_WRAP)
+    return result;
+}
+
+// What loader and layers tell each other (openxr_loader_negotiation.h, which Debian's package lacks).
+struct LoaderInfo {
+    std::int32_t type;
+    std::uint32_t version;
+    std::size_t bytes;
+    std::uint32_t least_interface, most_interface;
+    XrVersion least_api, most_api;
+};
+struct CreateInfo;
+using CreateInstance = XrResult(XRAPI_PTR*)(const XrInstanceCreateInfo*, const CreateInfo*, XrInstance*);
+struct LayerRequest {
+    std::int32_t type;
+    std::uint32_t version;
+    std::size_t bytes;
+    std::uint32_t interface_version;
+    XrVersion api_version;
+    PFN_xrGetInstanceProcAddr get_instance_proc_addr;
+    CreateInstance create_instance;
+};
+struct NextInfo {
+    std::int32_t type;
+    std::uint32_t version;
+    std::size_t bytes;
+    char name[XR_MAX_API_LAYER_NAME_SIZE];
+    PFN_xrGetInstanceProcAddr get_instance_proc_addr;
+    CreateInstance create_instance;
+    NextInfo* next;
+};
+struct CreateInfo {
+    std::int32_t type;
+    std::uint32_t version;
+    std::size_t bytes;
+    void* loader_instance;
+    char settings_file[512];
+    NextInfo* next;
+};
+
+XRAPI_ATTR XrResult XRAPI_CALL createInstance(const XrInstanceCreateInfo* info, const CreateInfo* layers, XrInstance* instance) {
+    g_next = layers->next->get_instance_proc_addr;
+    CreateInfo rest = *layers;
+    rest.next = layers->next->next;
+    return layers->next->create_instance(info, &rest, instance);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) XRAPI_ATTR XrResult XRAPI_CALL
+xrNegotiateLoaderApiLayerInterface(const LoaderInfo* loader, const char* /*name*/, LayerRequest* request) {
+    if (loader == nullptr || request == nullptr || loader->least_interface > 1) { return XR_ERROR_INITIALIZATION_FAILED; }
+    request->interface_version = 1;
+    request->api_version = XR_MAKE_VERSION(1, 0, 0);
+    request->get_instance_proc_addr = getInstanceProcAddr;
+    request->create_instance = createInstance;
+    return XR_SUCCESS;
+}
