@@ -124,6 +124,7 @@ std::string viewSettingsToml(const ViewSettings& settings) {
 
 std::string describeChange(const ViewSettings& before, const ViewSettings& after) {
     std::string text;
+    if (before == after) { return text; }  // as in nearly every frame
     const auto compare = [&](const auto& old_lines, const auto& new_lines) {
         for (std::size_t i = 0; i < old_lines.size(); ++i) {
             if (old_lines[i].second == new_lines[i].second) { continue; }

@@ -28,6 +28,8 @@ struct ViewSettings {
     double last_foveation_deg = 15.0;           // what the panel's box switches on: as far as eyes usually turn before the head does
     std::optional<Similarity> scene_from_room;  // absent: the scene's own view
 
+    bool operator==(const ViewSettings&) const = default;
+
     // Both eyes are shown the dominant one's picture.
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
 };

@@ -12,6 +12,7 @@ struct Similarity {
     glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
     glm::dvec3 position{0.0};
     double scale = 1.0;
+    bool operator==(const Similarity&) const = default;
 };
 
 glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source);
