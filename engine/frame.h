@@ -97,6 +97,8 @@ public:
     // Goes on with the kernels of a frame of the same device and options, and with its own that the other lacks: what was made for one
     // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
+    // How many it has, but those of sorting.
+    [[nodiscard]] std::size_t kernelCount() const { return passes_.kernelCount() + stereo_passes_.kernelCount(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 

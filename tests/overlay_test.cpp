@@ -81,8 +81,8 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     CHECK(isThere(0x10d0));
     CHECK_FALSE(isThere(0xe000));
     CHECK(isThere('A'));
-    CHECK_FALSE(sketch.font->add(sketch.status.message));  // once
-    CHECK_FALSE(sketch.font->add("\xff\xef\xbf\xbd plain"));
+    CHECK_FALSE(sketch.bringLetters(sketch.status.message));  // once
+    CHECK_FALSE(sketch.bringLetters("\xff\xef\xbf\xbd plain"));
     // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     write(work.path / chinese);
@@ -105,7 +105,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
             text += static_cast<char>(0x80 + ((letter >> 6) & 0x3f));
             text += static_cast<char>(0x80 + (letter & 0x3f));
         }
-        CHECK(sketch.font->add(text));
+        CHECK(sketch.bringLetters(text));
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
@@ -309,6 +309,51 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     sketch.click("Scenes");
     CHECK(sketch.draw().places.contains("new.ply"));
     unsetenv("XDG_CONFIG_HOME");
+}
+
+TEST_CASE("no folder is read while the panel is drawn: it says that it reads until a list is there, and an outdated one is not shown") {
+    const Workplace work;
+    fs::create_directory(work.path / "inner");
+    write(work.path / "inner" / "a.ply");
+    PanelSketch sketch;
+    sketch.pages.shown = Page::kScenes;
+    SceneChooser& chooser = sketch.pages.chooser;
+    chooser.showFolder(work.path.string());
+    const std::optional<SceneListWish> first = chooser.takeWish();
+    REQUIRE(first.has_value());
+    CHECK_FALSE(chooser.takeWish().has_value());
+    CHECK(chooser.isReading());
+    CHECK(chooser.list().title == work.path.string());
+    CHECK(chooser.list().entries.empty());
+    const WidgetPlaces quiet = sketch.draw().places;
+    const auto drawnVertices = [] { return ImGui::GetDrawData()->TotalVtxCount; };
+    const int without = drawnVertices();
+    sketch.status.files = std::string("reading ") + first->name();
+    CHECK(sketch.draw().places == quiet);
+    CHECK(drawnVertices() > without);
+    // Who goes on before the first list is there sees the second one alone.
+    chooser.showFolder((work.path / "inner").string());
+    const std::optional<SceneListWish> second = chooser.takeWish();
+    REQUIRE(second.has_value());
+    chooser.show(makeSceneList(*first), *first);
+    CHECK(chooser.list().entries.empty());
+    chooser.show(makeSceneList(*second), *second);
+    CHECK_FALSE(chooser.isReading());
+    CHECK(sketch.draw().places.contains("a.ply"));
+    // Looked at again, what is seen stays until then.
+    chooser.refresh("");
+    CHECK(chooser.isReading());
+    CHECK(chooser.list().entries.size() == 1);
+    // Letters, too, are read and drawn elsewhere: a second wish waits for the first.
+    CHECK(sketch.font->want("\xd7\x90"));
+    CHECK_FALSE(sketch.font->want("\xe1\x83\x90"));
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) == nullptr);
+    sketch.font->build();
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) == nullptr);
+    sketch.font->take();
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x5d0) != nullptr);
+    CHECK(sketch.bringLetters("\xe1\x83\x90"));
+    sketch.draw();
 }
 
 TEST_CASE("names of any bytes and of any length are shown, and a long message is wrapped within the panel") {

@@ -34,7 +34,8 @@ public:
 
     // One frame, with something that points and presses, or nothing.
     OverlayActions draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
-        if (font->add(namesOn(pages, status))) { takeLetters(); }
+        if (const auto wish = pages.chooser.takeWish()) { pages.chooser.show(makeSceneList(*wish), *wish); }
+        bringLetters(namesOn(pages, status));
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
         io.MousePos =
@@ -46,14 +47,24 @@ public:
         ImGui::Render();
         return actions;
     }
-    // What came of a press that is let go.
+    // As the viewer does beside its frames; false: there were no new ones.
+    bool bringLetters(const std::string& text) {
+        if (!font->want(text)) { return false; }
+        font->build();
+        font->take();
+        takeLetters();
+        return true;
+    }
+    // What came of a press that is let go, and of the frame after that.
     OverlayActions click(const std::string& name) {
         const OverlayActions before = draw();
         REQUIRE_MESSAGE(before.places.contains(name), name);
         const glm::dvec2 place = before.places.at(name);
         draw(&place);
         draw(&place, true);
-        return draw(&place);
+        OverlayActions actions = draw(&place);
+        draw();
+        return actions;
     }
 
     std::unique_ptr<PanelFont> font;

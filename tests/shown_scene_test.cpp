@@ -1,5 +1,6 @@
 // Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
 #include "app/view/scenes/shown_scene.h"
+#include "app/options/modes.h"
 #include "app/view/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <thread>
 
 TEST_SUITE_BEGIN("shown_scene");
 
@@ -189,10 +191,80 @@ TEST_CASE_FIXTURE(Shown, "loading gives up where it is told to, before the file'
     CHECK(furthest < 0.6);
 }
 
-TEST_CASE_FIXTURE(Shown, "a loader that was told to give up is done in the end, whether it was in time or not") {
-    SceneLoader loader(context(), "builtin:fence", options.run);
-    loader.cancel();
-    const std::unique_ptr<LoadedScene> taken = loader.take();
-    CHECK(loader.isDone());
-    CHECK((taken == nullptr || taken->name == "builtin:fence"));
+TEST_CASE_FIXTURE(Shown,
+                  "a loader that was told to give up is done in the end, and keeps nothing in memory, whether it was in time or not") {
+    const std::uint64_t before = context().memoryUse().current_bytes;
+    SceneLoader early(context(), "builtin:fence", options.run), late(context(), "builtin:fence", options.run);
+    early.cancel();
+    while (!late.isDone()) { std::this_thread::yield(); }
+    while (!early.isDone()) { std::this_thread::yield(); }
+    CHECK(context().memoryUse().current_bytes > before);
+    late.cancel();
+    CHECK(context().memoryUse().current_bytes == before);
+    CHECK(early.take() == nullptr);
+    CHECK(late.take() == nullptr);
+    // Nor does one that was loaded whole when another one was asked for.
+    ShownScene scenes(context(), options, log);
+    while (!scenes.isNextReady()) { std::this_thread::yield(); }
+    const std::uint64_t one = context().memoryUse().current_bytes;
+    scenes.begin((path / "gone.ply").string());
+    while (!scenes.isNextReady()) { std::this_thread::yield(); }
+    CHECK(one > before);
+    CHECK(context().memoryUse().current_bytes == before);
+}
+
+TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
+    options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
+    const glm::uvec2 size_px(64, 64);
+    ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false, {}});
+    // Chosen while the first one loads.
+    settings.stereo.mode = Mode::kShared;
+    scenes.expect(settings.stereo, size_px, false);
+    REQUIRE(scenes.take(settings).empty());
+    CHECK(scenes.drawable(settings) == settings);
+    const auto drawsWithoutCompiling = [&] {
+        Eye middle{};
+        middle.size_px = size_px;
+        middle.intrinsics = intrinsicsFromFovX(1.5, size_px);
+        FrameSettings frame = frameSettings(options.run.camera, settings.stereo);
+        frame.half_floats = true;
+        frame.keep_depth = frame.keep_both_depths = false;
+        frame.square_boxes = false;
+        const std::size_t before = scenes.get()->frame.kernelCount();
+        scenes.get()->frame.renderAhead(stereoPair(middle, 0.063), frame);
+        scenes.get()->frame.finish();
+        return scenes.get()->frame.kernelCount() == before;
+    };
+    CHECK(drawsWithoutCompiling());
+    // Chosen while it is shown: until then frames go on as they were. Numbers of sliders are there at once.
+    const ViewSettings shared = settings;
+    settings.stereo.mode = Mode::kTwoPass;
+    scenes.expect(settings.stereo, size_px, false);
+    CHECK(scenes.isMakingKernels());
+    CHECK(scenes.drawable(settings).stereo == shared.stereo);
+    const auto waitUntilReady = [&] {
+        while (scenes.isMakingKernels()) {
+            std::this_thread::yield();
+            scenes.expect(settings.stereo, size_px, false);
+        }
+    };
+    waitUntilReady();
+    CHECK(scenes.drawable(settings) == settings);
+    CHECK(drawsWithoutCompiling());
+    settings.stereo.budget = 0.9;
+    scenes.expect(settings.stereo, size_px, false);
+    CHECK_FALSE(scenes.isMakingKernels());
+    CHECK(scenes.drawable(settings) == settings);
+    // Chosen and left again.
+    const ViewSettings two_pass = settings;
+    settings.stereo.mode = Mode::kPaper;
+    scenes.expect(settings.stereo, size_px, false);
+    settings = two_pass;
+    scenes.expect(settings.stereo, size_px, false);
+    waitUntilReady();
+    CHECK(scenes.drawable(settings) == settings);
+    // Splats of another kind have other kernels.
+    scenes.begin("builtin:atelier");
+    REQUIRE(scenes.take(settings).empty());
+    CHECK(drawsWithoutCompiling());
 }

@@ -212,7 +212,7 @@ TEST_CASE("a trained scene is levelled by the up of its cameras, or else of its 
     const auto upAfter = [&](const std::string& name) {
         const Panel& panel = startPanel(work);
         const ViewRun run =
-            runView(work, name, kSmall + clickAt(panel, placeOf("Level"), 0.2) + clickAt(panel, placeOf("Save"), 0.4) + "at 0.7 exit\n",
+            runView(work, name, kSmall + clickAt(panel, placeOf("Level"), 0.2) + clickAt(panel, placeOf("Save"), 0.4) + "at 0.52 exit\n",
                     (folder / "point_cloud.ply").string() + " --load-first --mode mono --hide-hands");
         checkClean(run);
         const auto q = savedNumbers(run, "scene-orientation").get<std::array<double, 4>>();

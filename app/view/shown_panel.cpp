@@ -38,8 +38,22 @@ void ShownPanel::showTimes(const FrameResult& last, const std::string& governor,
     status_.governor = governor;
 }
 
+void ShownPanel::askFor(FileWorker& files) {
+    status_.files = files.now();
+    if (canvas_.wantsLetters(namesOn(pages_, status_))) {
+        files.read("reading fonts", [this]() -> FileWorker::Done {
+            canvas_.buildLetters();
+            return [this] { canvas_.takeLetters(); };
+        });
+    }
+    if (const std::optional<SceneListWish> wish = pages_.chooser.takeWish()) {
+        files.read(std::string("reading ") + wish->name(), [this, wish = *wish]() -> FileWorker::Done {
+            return [this, wish, list = makeSceneList(wish)] { pages_.chooser.show(list, wish); };
+        });
+    }
+}
+
 OverlayActions ShownPanel::layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds) {
-    canvas_.bringLetters(namesOn(pages_, status_));
     // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
     const CanvasPointer& hand = in_room_.pointer();
     const bool mouse_pointed = mouse_points_;

@@ -1,6 +1,7 @@
 // The panel, frame by frame: what it says, who points at it, and where it is drawn: in the headset, in the window, or in both.
 #pragma once
 
+#include "app/view/file_worker.h"
 #include "app/view/headset/headset_stay.h"
 #include "app/view/panel/canvas.h"
 #include "app/view/panel/overlay.h"
@@ -26,6 +27,8 @@ public:
     void keepFrameTime();
     // Shows what the last frame took, renewed only now and then, since nobody can read what changes with every frame.
     void showTimes(const FrameResult& last, const std::string& governor, double step_seconds);
+    // What it needs of files is read beside the frames: letters, and the list that is looked through.
+    void askFor(FileWorker& files);
     // The widgets. Where they have changed it takes an image of the panel in `hung`, the stay in whose room it hangs; null where it does
     // not hang.
     OverlayActions layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds);

@@ -75,16 +75,24 @@ std::string saveViewSettings(const std::string& scene, const ViewSettings& setti
     } catch (const Error& error) { return error.what(); }
 }
 
-std::string loadViewSettings(const std::string& scene, ViewSettings& settings) {
+SavedSettings readSavedSettings(const std::string& scene) {
+    SavedSettings saved;
     try {
-        const fs::path file = viewSettingsFile(scene);
-        const std::vector<SettingsTable> tables = readSettingsFile(file);
+        saved.file = viewSettingsFile(scene);
+        saved.tables = readSettingsFile(saved.file);
+    } catch (const Error& error) { saved.trouble = error.what(); }
+    return saved;
+}
+
+std::string takeSavedSettings(const SavedSettings& saved, ViewSettings& settings) {
+    if (!saved.trouble.empty()) { return saved.trouble; }
+    try {
         RunOptions run;
         run.stereo = settings.stereo;
-        ViewSettings loaded = readViewSettings(viewTables(tables), settings);
-        loaded.stereo = runOptions(configLayer(file, tables, {"view"}), run).stereo;
+        ViewSettings loaded = readViewSettings(viewTables(saved.tables), settings);
+        loaded.stereo = runOptions(configLayer(saved.file, saved.tables, {"view"}), run).stereo;
         settings = loaded;
-        return "loaded " + file.string();
+        return "loaded " + saved.file.string();
     } catch (const Error& error) { return error.what(); }
 }
 

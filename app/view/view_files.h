@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace binosplat {
 
@@ -20,9 +21,15 @@ std::filesystem::path viewSettingsFile(const std::string& scene);
 // Where the wearer stood when the scene's settings were saved; empty where they never were. Throws Error where the file is broken.
 std::optional<Similarity> rememberedPlacement(const std::string& scene);
 
-// Both say in a line how it went; a file that cannot be read or written is no reason to leave the headset. What is written is whole or not
-// there.
+// What was saved is read apart from being taken, which reads no file. Saving and taking say in a line how it went; a file that cannot be
+// read or written is no reason to leave the headset. What is written is whole or not there.
 std::string saveViewSettings(const std::string& scene, const ViewSettings& settings);
-std::string loadViewSettings(const std::string& scene, ViewSettings& settings);
+struct SavedSettings {
+    std::filesystem::path file;
+    std::vector<SettingsTable> tables;
+    std::string trouble;  // why there are none
+};
+SavedSettings readSavedSettings(const std::string& scene);
+std::string takeSavedSettings(const SavedSettings& saved, ViewSettings& settings);
 
 }  // namespace binosplat

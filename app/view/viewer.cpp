@@ -27,6 +27,7 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       instance_(instance),
       context_(context),
       settings_(settings),
+      drawn_(settings),
       headset_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
       renderer_(instance, context, options_.run, log_, headset_.format()),
       panel_(context, headset_.format()),
@@ -64,6 +65,7 @@ void Viewer::run() {
         throw;
     }
     sayPicture(pictures_.finish());
+    files_.finish();
     const std::string why = headset_.stay() != nullptr ? stay().session.whyEnded() : "stopped while there was no headset";
     log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
 }
@@ -135,6 +137,7 @@ void Viewer::drawFrame() {
         stay().session.endFrame({});
         return;
     }
+    files_.obey();
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
@@ -159,7 +162,7 @@ void Viewer::drawFrame() {
     const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
-        renderer_.render(stay(), *scene, settings_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        renderer_.render(stay(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
@@ -174,12 +177,17 @@ void Viewer::drawFrame() {
 
 bool Viewer::prepareScene(const FrameViews& views) {
     LoadedScene* scene = scenes_.get();
+    scenes_.expect(settings_.stereo, renderer_.sizePx(settings_), settings_.tint);
+    const ViewSettings drawable = scenes_.drawable(settings_);
+    const bool waits = drawable != settings_;
+    if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(settings_.stereo.mode))); }
+    drawn_ = drawable;
     try {
-        renderer_.govern(stay(), settings_);
-        ViewSettings wished = settings_;
+        renderer_.govern(stay(), drawn_);
+        ViewSettings wished = drawn_;
         if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
         if (scene != nullptr) { renderer_.prepare(stay(), *scene, scenes_.scene_from_room, wished, views); }
-        settings_that_fit_ = settings_;
+        settings_that_fit_ = drawn_;
         return true;
     } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
         throw;
@@ -188,8 +196,8 @@ bool Viewer::prepareScene(const FrameViews& views) {
         if (change.empty()) { throw; }
         say(fmt::format("{} does not fit: {}", change, error.what()));
     }
-    settings_ = *settings_that_fit_;
-    renderer_.govern(stay(), settings_);
+    settings_ = drawn_ = *settings_that_fit_;
+    renderer_.govern(stay(), drawn_);
     return false;
 }
 
@@ -253,6 +261,7 @@ void Viewer::drawWindowAlone(const std::string& why) {
     if (!window_ || now - last_alone_ < kWindowAlone) { return; }
     const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
     last_alone_ = now;
+    files_.obey();
     if (scenes_.isNextReady()) { takeScene(); }
     const ViewSettings before = settings_;
     obeyWindow(step_seconds);
@@ -276,11 +285,20 @@ void Viewer::takeScene() {
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
     renderer_.forgetScene();
-    try {
-        rememberScene(scenes_.name());
-    } catch (const Error& error) {
-        if (error.what() != complaint) { log_.say(error.what()); }
-    }
+    remember(complaint);
+}
+
+void Viewer::remember(const std::string& complaint) {
+    files_.write("remembering the scene", [this, scene = scenes_.name(), complaint]() -> FileWorker::Done {
+        try {
+            rememberScene(scene);
+        } catch (const Error& error) {
+            if (error.what() != complaint) {
+                return [this, why = std::string(error.what())] { log_.say(why); };
+            }
+        }
+        return {};
+    });
 }
 
 void Viewer::openWindow() {
@@ -319,7 +337,7 @@ void Viewer::renderWaiting() {
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
-        const int e = scenes_.get() != nullptr && settings_.showsOneEye() ? settings_.stereo.dominant : shown_to;
+        const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
         return stay().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
     layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
@@ -334,6 +352,10 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     if (headset_.stay() != nullptr) { status.refresh_rates = stay().refresh_rates; }
     if (status.has_scene) { status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
+    panel_.askFor(files_);
+    if (status.files.empty() && scenes_.isMakingKernels()) {
+        status.files = fmt::format("making ready: {}", nameOf(settings_.stereo.mode));
+    }
     obey(panel_.layOut(hung ? headset_.stay() : nullptr, window_input_, settings_, step_seconds));
 }
 
@@ -367,20 +389,33 @@ void Viewer::obey(const OverlayActions& actions) {
 }
 
 void Viewer::obeyFiles(const OverlayActions& actions) {
-    if (actions.save) {
-        settings_.scene_from_room = scenes_.scene_from_room;
-        say(saveViewSettings(scenes_.name(), settings_));
-        settings_.scene_from_room.reset();
-    }
-    if (actions.load) {
-        say(loadViewSettings(scenes_.name(), settings_));
-        scenes_.scene_from_room = settings_.scene_from_room.value_or(scenes_.scene_from_room);
-        settings_.scene_from_room.reset();
-        settings_.panel = true;  // it was just pressed
-    }
-    if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step); }
+    if (actions.save) { save(); }
+    if (actions.load) { load(); }
+    if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step, files_); }
     if (!actions.chosen_scene.empty()) { scenes_.begin(actions.chosen_scene); }
     picture_asked_ = picture_asked_ || actions.take_picture;
+}
+
+void Viewer::save() {
+    ViewSettings saved = settings_;
+    saved.scene_from_room = scenes_.scene_from_room;
+    files_.write("saving", [this, scene = scenes_.name(), saved]() -> FileWorker::Done {
+        return [this, outcome = saveViewSettings(scene, saved)] { say(outcome); };
+    });
+}
+
+void Viewer::load() {
+    files_.read("loading what was saved", [this, scene = scenes_.name()]() -> FileWorker::Done {
+        return [this, scene, saved = readSavedSettings(scene)] {
+            if (scene != scenes_.name()) { return; }  // another one came meanwhile
+            const ViewSettings before = settings_;
+            say(takeSavedSettings(saved, settings_));
+            scenes_.scene_from_room = settings_.scene_from_room.value_or(scenes_.scene_from_room);
+            settings_.scene_from_room.reset();
+            settings_.panel = before.panel;  // it was just pressed
+            sayChange(before);
+        };
+    });
 }
 
 void Viewer::reloadShaders() {
@@ -404,7 +439,9 @@ void Viewer::takePicture() {
         const std::filesystem::path folder = std::filesystem::current_path(error);
         check(!error, "the picture cannot be written: the working directory is gone");
         sayPicture(pictures_.finish());
-        pictures_.begin(scenes_.get()->frame, settings_.showsOneEye(), folder);
+        pictures_.begin(scenes_.get()->frame, drawn_.showsOneEye(), folder);
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        say(fmt::format("the picture cannot be read: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }
 }
 

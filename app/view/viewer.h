@@ -60,6 +60,9 @@ private:
     void obeyWindow(double step_seconds);
     void obey(const OverlayActions& actions);
     void obeyFiles(const OverlayActions& actions);
+    void save();
+    void load();
+    void remember(const std::string& complaint);
     void reloadShaders();
     // What was rendered last, as a file; and what became of that.
     void takePicture();
@@ -74,6 +77,7 @@ private:
     xr::Instance& instance_;
     const Context& context_;
     ViewSettings settings_;
+    ViewSettings drawn_;                             // of this frame: those whose kernels are there
     std::optional<ViewSettings> settings_that_fit_;  // of the last frame there was memory for
     FrameLog log_;
     HeadsetLife headset_;
@@ -89,8 +93,9 @@ private:
     PictureWriter pictures_;
     bool picture_asked_ = false;  // of the next frame
     Pose room_from_head_;         // as last known
-    bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false;
+    bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
+    FileWorker files_;   // its thread ends before what it reads for
     ShownScene scenes_;  // last: the loading thread ends first
 };
 

@@ -64,6 +64,7 @@ public:
     KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
     // The kernel of a shader and its specialization constants, one of the table; the reference stays valid until rebuild() or take().
     const Kernel& get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+    [[nodiscard]] std::size_t size() const { return kernels_.size(); }
     // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and keeps the old ones then.
     void rebuild();
     // Those that another cache of the same device has made, and of its own those that the other lacks. The rest is left to the other.

@@ -75,6 +75,7 @@ public:
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels();
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     // Goes on with the kernels of others on the same device, with as many threads per cell, whose work is over, and with its own that
     // those lack.
     void takeKernels(Passes& from);

@@ -90,6 +90,7 @@ public:
     explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels(context)) {}
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
     void takeKernels(StereoPasses& from) { kernels_.take(from.kernels_); }
 

@@ -92,6 +92,7 @@ void Canvas::startBackend() {
     info.Device = *context_.device();
     info.QueueFamily = context_.queueFamily();
     info.Queue = *context_.queue();
+    info.PipelineCache = *context_.pipelineCache();
     info.DescriptorPool = *descriptors_;
     info.MinImageCount = info.ImageCount = 2;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
@@ -104,14 +105,18 @@ void Canvas::startBackend() {
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-void Canvas::bringLetters(std::string_view text) {
-    if (!font_->add(text)) { return; }
+bool Canvas::wantsLetters(std::string_view text) { return font_->want(text); }
+
+void Canvas::buildLetters() { font_->build(); }
+
+void Canvas::takeLetters() {
     {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();  // frames under way read the letters there were
     }
     ImGui_ImplVulkan_Shutdown();
     descriptors_.reset();
+    font_->take();
     startBackend();
     draw_list_.clear();  // letters may have moved
 }

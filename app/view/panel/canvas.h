@@ -32,8 +32,11 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Before begin(): `text` can be written, in as far as a font has its letters. What is new waits for the queue.
-    void bringLetters(std::string_view text);
+    // Before begin(), as in PanelFont: whether `text` has letters that buildLetters() is to bring, which reads files, on any thread; until
+    // takeLetters() has brought them, before another begin(), they are boxes. This waits for the queue.
+    [[nodiscard]] bool wantsLetters(std::string_view text);
+    void buildLetters();
+    void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const CanvasPointer& pointer, double step_seconds);
     void end();

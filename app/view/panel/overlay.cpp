@@ -167,6 +167,7 @@ void drawSaid(const OverlayStatus& status) {
     writeWrapped(status.message.empty() ? "Trigger clicks, squeeze grabs; both squeezed hold the scene" : status.message);
     if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     if (!status.governor.empty()) { writeWrapped(status.governor); }
+    if (!status.files.empty()) { text(endOf(asShown(status.files))); }
 }
 
 void drawSettings(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
@@ -222,7 +223,7 @@ void drawChooser(PanelWidgets& widgets, SceneChooser& chooser, OverlayActions& a
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows));
     text(endOf(asShown(chooser.list().title)));
     if (!chooser.list().trouble.empty()) { writeWrapped(chooser.list().trouble); }
-    if (chooser.list().trouble.empty() && chooser.list().entries.empty()) { text("No scenes and no folders"); }
+    if (chooser.list().trouble.empty() && chooser.list().entries.empty() && !chooser.isReading()) { text("No scenes and no folders"); }
     const SceneEntry* pressed = nullptr;
     for (const SceneEntry& entry : chooser.shown()) {
         if (widgets.entry(entry.is_folder ? entry.name + "/" : entry.name, entry.trouble)) { pressed = &entry; }
@@ -268,7 +269,7 @@ void drawPageButtons(PanelWidgets& widgets, OverlayPages& pages, const OverlaySt
 }  // namespace
 
 std::string namesOn(const OverlayPages& pages, const OverlayStatus& status) {
-    std::string names = asShown(status.scene) + asShown(status.message);
+    std::string names = asShown(status.scene) + asShown(status.message) + asShown(status.files);
     if (pages.shown == OverlayPages::Page::kScenes) {
         names += asShown(pages.chooser.list().title) + asShown(pages.chooser.list().trouble);
         for (const SceneEntry& entry : pages.chooser.shown()) { names += asShown(entry.name) + asShown(entry.trouble); }

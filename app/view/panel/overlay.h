@@ -25,6 +25,7 @@ struct OverlayStatus {
     std::vector<float> frame_ms;                             // from frame to frame by the clock on the wall, oldest first
     std::string governor;                                    // what it does about the frame rate, and why
     std::string message;                                     // what came of the last button
+    std::string files;                                       // what of them is read or written beside the frames; empty: nothing
     bool can_reload_shaders = false;                         // whether there is a button for it
     bool can_pass_through = false;                           // likewise
     std::vector<double> refresh_rates;                       // that the headset can be asked for; where there are any, a row of them

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 namespace binosplat {
 
@@ -51,8 +52,7 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 }
 
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
-bool buildAtlas(std::span<const std::string> fonts, const std::set<ImWchar>& added) {
-    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const std::set<ImWchar>& added) {
     atlas.Clear();
     std::vector<ImWchar> ranges;
     for (const ImWchar letter : added) { ranges.insert(ranges.end(), {letter, letter}); }
@@ -126,7 +126,7 @@ bool looksLikeFont(std::span<const unsigned char> bytes) {
 PanelFont::PanelFont() {
     for (const fs::path& file : fontFiles()) {
         fonts_ = {readFont(file, complaint_)};
-        if (!fonts_[0].empty() && buildAtlas(fonts_, {})) {
+        if (!fonts_[0].empty() && buildAtlas(*ImGui::GetIO().Fonts, fonts_, {})) {
             complaint_.clear();
             return;
         }
@@ -138,8 +138,8 @@ PanelFont::PanelFont() {
     ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
-bool PanelFont::add(std::string_view text) {
-    if (fonts_.empty()) { return false; }
+bool PanelFont::want(std::string_view text) {
+    if (is_building_ || fonts_.empty()) { return false; }
     std::set<ImWchar> brought;
     for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
         unsigned int letter = 0;
@@ -152,6 +152,11 @@ bool PanelFont::add(std::string_view text) {
     if (brought.size() > kMostAdded || std::ranges::includes(added_, brought)) { return false; }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
     added_.merge(brought);
+    is_building_ = true;
+    return true;
+}
+
+void PanelFont::build() {
     // They are large, and only now needed.
     if (fonts_.size() == 1) {
         for (const fs::path& file : furtherFontFiles()) {
@@ -159,7 +164,17 @@ bool PanelFont::add(std::string_view text) {
             if (!bytes.empty()) { fonts_.push_back(std::move(bytes)); }
         }
     }
-    return buildAtlas(fonts_, added_) || buildAtlas(std::span(fonts_).first(1), {});
+    // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened: nothing else is shared.
+    built_.reset(IM_NEW(ImFontAtlas)());
+    if (!buildAtlas(*built_, fonts_, added_) && !buildAtlas(*built_, std::span(fonts_).first(1), {})) { built_.reset(); }
+}
+
+void PanelFont::take() {
+    is_building_ = false;
+    if (!built_) { return; }
+    // The context owns the one that it has.
+    ImGuiIO& io = ImGui::GetIO();
+    IM_DELETE(std::exchange(io.Fonts, built_.release()));
 }
 
 }  // namespace binosplat

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -25,21 +26,33 @@ std::vector<std::filesystem::path> furtherFontFiles();
 // first font.
 bool looksLikeFont(std::span<const unsigned char> bytes);
 
+struct FontAtlasDeleter {
+    void operator()(ImFontAtlas* atlas) const { IM_DELETE(atlas); }
+};
+using FontAtlas = std::unique_ptr<ImFontAtlas, FontAtlasDeleter>;
+
 // The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the beginning, others as names
-// bring them along, boxes for what no font has.
+// bring them along, boxes for what no font has. Of these want() and take() are for the thread that draws, build() for any.
 class PanelFont {
 public:
     // Before the font is made a texture. Where there is no vector font, ImGui's own small one is taken.
     PanelFont();
     // Empty, or why ImGui's own font is used: one line.
     [[nodiscard]] const std::string& complaint() const { return complaint_; }
-    // Between two frames. True: the text (UTF-8) has letters that were never asked for, and the font must be made a texture anew.
-    [[nodiscard]] bool add(std::string_view text);
+    // Between two frames. True: the text (UTF-8) has letters that were never asked for, which build() is to bring once. Until take()
+    // nothing more is wanted.
+    [[nodiscard]] bool want(std::string_view text);
+    // Makes a font of all that was wanted, reading files where there are more letters in them.
+    void build();
+    // After build(), between two frames: it is the font from now on, and must be made a texture.
+    void take();
 
 private:
     std::vector<std::string> fonts_;  // their bytes, the chosen one first, the further ones once a letter is not in it; none: ImGui's own
     std::string complaint_;
     std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
+    FontAtlas built_;
+    bool is_building_ = false;  // from want() on, until take(): then all but this is build()'s
 };
 
 }  // namespace binosplat

@@ -4,20 +4,41 @@
 #include "app/view/scenes/recent_scenes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace binosplat {
 
+SceneList makeSceneList(const SceneListWish& wish) {
+    return wish.recent ? listScenes("Recent scenes", recentScenes()) : listFolder(wish.folder);
+}
+
 void SceneChooser::showFolder(const std::string& folder) {
-    folder_ = folder;
-    recent_ = false;
-    list_ = listFolder(folder);
+    wish_.folder = folder;
+    wish_.recent = false;
+    list_ = {folder, {}, {}, {}};
     page_ = 0;
+    want();
 }
 
 void SceneChooser::showRecent() {
-    recent_ = true;
-    list_ = listScenes("Recent scenes", recentScenes());
+    wish_.recent = true;
+    list_ = {"Recent scenes", {}, {}, {}};
     page_ = 0;
+    want();
+}
+
+void SceneChooser::want() {
+    ++wish_.number;
+    is_reading_ = is_wish_new_ = true;
+}
+
+std::optional<SceneListWish> SceneChooser::takeWish() { return std::exchange(is_wish_new_, false) ? std::optional(wish_) : std::nullopt; }
+
+void SceneChooser::show(SceneList list, const SceneListWish& wish) {
+    if (wish.number != wish_.number) { return; }
+    list_ = std::move(list);
+    page_ = std::min(page_, pageCount() - 1);
+    is_reading_ = false;
 }
 
 void SceneChooser::goUp() {
@@ -25,13 +46,8 @@ void SceneChooser::goUp() {
 }
 
 void SceneChooser::refresh(const std::string& scene) {
-    const std::size_t page = page_;
-    if (recent_) {
-        showRecent();
-    } else {
-        showFolder(folder_.empty() ? folderOf(scene) : folder_);
-    }
-    page_ = std::min(page, pageCount() - 1);
+    if (!wish_.recent && wish_.folder.empty()) { return showFolder(folderOf(scene)); }
+    want();  // what is seen stays until then
 }
 
 void SceneChooser::turn(int pages) {

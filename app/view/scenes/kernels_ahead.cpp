@@ -82,13 +82,42 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
 
 }  // namespace
 
-void makeKernelsAhead(const Context& context, const GpuScene& scene, StereoFrame& frame, const CameraOptions& camera,
-                      const FramesAhead& ahead, const std::function<void()>& between) {
-    StereoFrame small(context, scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+bool FramesAhead::isLike(const FramesAhead& other) const {
+    // These change while a slider is dragged, and are numbers that kernels are told; any foveation has the same ones.
+    const auto withoutNumbers = [](StereoOptions options) {
+        options.budget = 0.0;
+        options.margin_px = 0;
+        options.foveation_deg = options.foveation_deg > 0.0 ? 1.0 : 0.0;
+        return options;
+    };
+    return size_px == other.size_px && with_depth == other.with_depth && tint == other.tint &&
+           withoutNumbers(stereo) == withoutNumbers(other.stereo);
+}
+
+std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
+                                              const FramesAhead& ahead, const std::function<void()>& between) {
+    auto small = std::make_unique<StereoFrame>(context, scene, FrameOptions{.first_capacity = {1, 1}, .threads_per_cell = 0});
     try {
-        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) { makeKernelsAt(width, small, camera, ahead, between); }
+        for (const std::uint32_t width : widthsOf(ahead.size_px.x)) { makeKernelsAt(width, *small, camera, ahead, between); }
     } catch (const Error&) {}  // said when a frame wants it
-    frame.takeKernels(small);
+    return small;
+}
+
+KernelMaker::KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead)
+    : ahead_(std::move(ahead)), thread_([this, &context, &scene, where = std::move(camera)] {
+          struct Cancelled {};
+          try {
+              made_ = makeKernelsAhead(context, scene, where, ahead_, [this] {
+                  if (cancelled_) { throw Cancelled(); }
+              });
+          } catch (const Cancelled&) { gave_up_ = true; } catch (const std::exception&) {
+          }
+          done_ = true;
+      }) {}
+
+KernelMaker::~KernelMaker() {
+    cancelled_ = true;
+    thread_.join();
 }
 
 }  // namespace binosplat

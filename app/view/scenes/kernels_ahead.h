@@ -4,8 +4,11 @@
 #include "app/options/options.h"
 #include "engine/frame.h"
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <set>
+#include <thread>
 #include <utility>
 
 namespace binosplat {
@@ -17,12 +20,41 @@ struct FramesAhead {
     bool with_depth = false, tint = false;
     // Kinds of splats and degrees of colour that kernels were made for before.
     std::set<std::pair<std::uint32_t, int>> known;
+
+    // Whether their frames need the same kernels.
+    [[nodiscard]] bool isLike(const FramesAhead& other) const;
 };
 
-// For `frame`, whose frames are of `scene`: kernels of what may come without a click, i.e. of the method that was chosen and of what the
-// governor may have in its place, with and without what a lens hides and foveation, with eyes side by side and canted ones. Takes what
-// drivers take; `between` is called now and then and may throw.
-void makeKernelsAhead(const Context& context, const GpuScene& scene, StereoFrame& frame, const CameraOptions& camera,
-                      const FramesAhead& ahead, const std::function<void()>& between);
+// A frame of `scene` that is never drawn, and has the kernels of what may come without a click, for StereoFrame::takeKernels: those of the
+// method that was chosen and of what the governor may have in its place, with and without what a lens hides and foveation, with eyes side
+// by side and canted ones. Takes what drivers take; `between` is called now and then and may throw.
+std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
+                                              const FramesAhead& ahead, const std::function<void()>& between);
+
+// The same on a thread of its own, for a scene that is shown.
+class KernelMaker {
+public:
+    // `scene` outlives this.
+    KernelMaker(const Context& context, const GpuScene& scene, CameraOptions camera, FramesAhead ahead);
+    KernelMaker(const KernelMaker&) = delete;
+    KernelMaker& operator=(const KernelMaker&) = delete;
+    // Gives up where it can, and waits for the rest.
+    ~KernelMaker();
+
+    void cancel() { cancelled_ = true; }
+    [[nodiscard]] const FramesAhead& ahead() const { return ahead_; }
+    [[nodiscard]] bool isDone() const { return done_; }
+    // Of one that is done: it was cancelled in time.
+    [[nodiscard]] bool hasGivenUp() const { return gave_up_; }
+    // Of one that is done: null where it gave up or failed, which a frame that wants the kernels will say.
+    [[nodiscard]] StereoFrame* made() { return made_.get(); }
+
+private:
+    FramesAhead ahead_;
+    std::atomic<bool> done_ = false, cancelled_ = false;
+    bool gave_up_ = false;
+    std::unique_ptr<StereoFrame> made_;
+    std::thread thread_;
+};
 
 }  // namespace binosplat

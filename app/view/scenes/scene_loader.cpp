@@ -3,6 +3,9 @@
 
 #include "app/load.h"
 #include "app/view/scenes/scene_up.h"
+#include "app/view/view_files.h"
+#include "engine/error.h"
+#include "engine/scene/procedural.h"
 
 #include <utility>
 
@@ -15,20 +18,38 @@ constexpr double kReadingShare = 0.8;
 
 struct Cancelled {};
 
+// One name for a file, however it is spelled.
+std::string placeOf(const std::string& scene) {
+    if (isBuiltin(scene)) { return scene; }
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(scene, error);
+    return error ? scene : whole.string();
+}
+
 }  // namespace
 
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
 
 SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead)
-    : scene_(std::move(scene)),
-      thread_([this, &context, run = std::move(options), frames = std::move(ahead)] { load(context, run, frames); }) {}
+    : scene_(std::move(scene)), ahead_(std::move(ahead)), thread_([this, &context, run = std::move(options)] { load(context, run); }) {}
 
 SceneLoader::~SceneLoader() {
     cancelled_ = true;
     if (thread_.joinable()) { thread_.join(); }
 }
 
-void SceneLoader::load(const Context& context, const RunOptions& options, const std::optional<FramesAhead>& ahead) {
+void SceneLoader::cancel() {
+    const std::lock_guard lock(mutex_);
+    cancelled_ = true;
+    if (done_) { loaded_.reset(); }
+}
+
+void SceneLoader::expect(const FramesAhead& ahead) {
+    const std::lock_guard lock(mutex_);
+    ahead_ = ahead;
+}
+
+void SceneLoader::load(const Context& context, const RunOptions& options) {
     try {
         LoadNotes notes;
         // Readers may report from threads of their own, which must not throw.
@@ -46,20 +67,43 @@ void SceneLoader::load(const Context& context, const RunOptions& options, const 
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         });
-        if (ahead && !ahead->known.contains(kindOf(*loaded_))) {
-            makeKernelsAhead(context, loaded_->gpu_scene, loaded_->frame, options.camera, *ahead, [this] {
-                if (cancelled_) { throw Cancelled(); }
-            });
-        }
         loaded_->name = scene_;
+        loaded_->place = placeOf(scene_);
+        try {
+            loaded_->remembered = rememberedPlacement(scene_);
+        } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
         loaded_->start = start;
         loaded_->up = up;
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
+        makeKernels(context, options);
     } catch (const Cancelled&) {
         loaded_.reset();  // nobody waits
     } catch (...) { error_ = std::current_exception(); }
+    const std::lock_guard lock(mutex_);
+    if (cancelled_ || error_) { loaded_.reset(); }  // past the last look
     done_ = true;
+}
+
+void SceneLoader::makeKernels(const Context& context, const RunOptions& options) {
+    while (!finish()) {
+        {
+            const std::lock_guard lock(mutex_);
+            made_for_ = ahead_;
+        }
+        if (made_for_->known.contains(kindOf(*loaded_))) { continue; }
+        const auto small = makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
+            if (cancelled_) { throw Cancelled(); }
+        });
+        loaded_->frame.takeKernels(*small);
+    }
+}
+
+bool SceneLoader::finish() {
+    const std::lock_guard lock(mutex_);
+    if (ahead_ && !(made_for_ && made_for_->isLike(*ahead_))) { return false; }
+    done_ = true;
+    return true;
 }
 
 std::unique_ptr<LoadedScene> SceneLoader::take() {

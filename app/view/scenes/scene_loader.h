@@ -10,6 +10,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -27,6 +28,9 @@ struct LoadedScene {
     glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
     LoadNotes notes;
     SceneFacts facts;
+    std::string place;                     // one name for a scene, however it is spelled
+    std::optional<Similarity> remembered;  // see rememberedPlacement
+    std::string remembering_trouble;       // why not, if there is one that cannot be read
 };
 
 // As FramesAhead::known has it.
@@ -42,8 +46,10 @@ public:
     // Gives up where it can, and waits for the rest.
     ~SceneLoader();
 
-    // It is to give up where it can; then it is done, with nothing to take.
-    void cancel() { cancelled_ = true; }
+    // It is to give up where it can; then, or if it was done already, it has nothing to take, and keeps nothing in memory.
+    void cancel();
+    // Other frames than those it began with will be wanted.
+    void expect(const FramesAhead& ahead);
 
     [[nodiscard]] const std::string& scene() const { return scene_; }
     // Share done, 0 to 1.
@@ -51,11 +57,18 @@ public:
     [[nodiscard]] bool isDone() const { return done_; }
     // Waits for the scene and hands it over, once. Throws what loading threw.
     [[nodiscard]] std::unique_ptr<LoadedScene> take();
+    // After that, of one with kernels: what these are for.
+    [[nodiscard]] const FramesAhead& madeFor() const { return *made_for_; }
 
 private:
-    void load(const Context& context, const RunOptions& options, const std::optional<FramesAhead>& ahead);
+    void load(const Context& context, const RunOptions& options);
+    void makeKernels(const Context& context, const RunOptions& options);
+    // The end, unless other kernels than those that were made are wanted.
+    bool finish();
 
     std::string scene_;
+    std::mutex mutex_;  // of how it ends, and of what is expected
+    std::optional<FramesAhead> ahead_, made_for_;
     std::atomic<double> progress_ = 0.0;
     std::atomic<bool> done_ = false, cancelled_ = false;
     std::unique_ptr<LoadedScene> loaded_;

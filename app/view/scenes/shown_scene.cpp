@@ -2,26 +2,12 @@
 #include "app/view/scenes/shown_scene.h"
 
 #include "app/view/scenes/view_scenes.h"
-#include "app/view/view_files.h"
 #include "engine/error.h"
-#include "engine/scene/procedural.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace binosplat {
-
-namespace {
-
-// One name for a file, however it is spelled.
-std::string sameNameOf(const std::string& scene) {
-    if (isBuiltin(scene)) { return scene; }
-    std::error_code error;
-    const std::filesystem::path whole = std::filesystem::weakly_canonical(scene, error);
-    return error ? scene : whole.string();
-}
-
-}  // namespace
 
 ShownScene::ShownScene(const Context& context, const ViewOptions& options, const FrameLog& log, std::optional<FramesAhead> ahead)
     : context_(context), options_(options), log_(log), ahead_(std::move(ahead)) {
@@ -31,7 +17,8 @@ ShownScene::ShownScene(const Context& context, const ViewOptions& options, const
 std::optional<double> ShownScene::loading() const { return loader_ ? std::optional(loader_->progress()) : std::nullopt; }
 
 bool ShownScene::isLoading() const {
-    return loader_ || std::ranges::any_of(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
+    return loader_ || maker_ ||
+           std::ranges::any_of(given_up_, [](const std::unique_ptr<SceneLoader>& loader) { return !loader->isDone(); });
 }
 
 void ShownScene::begin(const std::string& scene) {
@@ -41,11 +28,65 @@ void ShownScene::begin(const std::string& scene) {
         loader_->cancel();
         given_up_.push_back(std::move(loader_));
     }
+    ++asked_count_;
     asked_ = scene;
     loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run, ahead_);
 }
 
-void ShownScene::beginBeside(int step) { begin(sceneBeside(asked_, step)); }
+void ShownScene::beginBeside(int step, FileWorker& files) {
+    steps_asked_ += step;
+    if (!is_looking_) { lookBeside(files); }
+}
+
+void ShownScene::lookBeside(FileWorker& files) {
+    is_looking_ = true;
+    files.read("looking beside " + asked_,
+               [this, &files, scene = asked_, step = std::exchange(steps_asked_, 0), count = asked_count_]() -> FileWorker::Done {
+                   return [this, &files, count, found = sceneBeside(scene, step)] {
+                       is_looking_ = false;
+                       // Whoever asked for another one since wants that.
+                       if (count == asked_count_) { begin(found); }
+                       if (steps_asked_ != 0) { lookBeside(files); }
+                   };
+               });
+}
+
+void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool tint) {
+    if (!ahead_) { return; }
+    FramesAhead wanted{stereo, size_px, ahead_->with_depth, tint, {}};
+    if (!ahead_->isLike(wanted)) {
+        ahead_ = std::move(wanted);
+        if (loader_) { loader_->expect(*ahead_); }
+    }
+    if (!scene_ || options_.load_first) { return; }
+    if (maker_ && maker_->isDone()) {
+        if (StereoFrame* const made = maker_->made()) { scene_->frame.takeKernels(*made); }
+        if (!maker_->hasGivenUp()) { haveReady(maker_->ahead()); }
+        maker_.reset();
+    }
+    if (maker_) {
+        if (!maker_->ahead().isLike(*ahead_) || loader_) { maker_->cancel(); }
+    } else if (!loader_ && !ready_->isLike(*ahead_)) {
+        maker_ = std::make_unique<KernelMaker>(context_, scene_->gpu_scene, options_.run.camera, *ahead_);
+    }
+}
+
+void ShownScene::haveReady(const FramesAhead& ahead) {
+    ready_ = ahead;
+    if (ahead_->isLike(ahead)) { ahead_->known.insert(kindOf(*scene_)); }
+}
+
+ViewSettings ShownScene::drawable(ViewSettings settings) const {
+    if (!scene_ || !ready_ || options_.load_first) { return settings; }
+    FramesAhead wanted = *ready_;  // pictures of another size have it at once
+    wanted.stereo = settings.stereo;
+    wanted.tint = settings.tint;
+    if (!wanted.isLike(*ready_)) {
+        settings.stereo = ready_->stereo;
+        settings.tint = ready_->tint;
+    }
+    return settings;
+}
 
 std::string ShownScene::take(ViewSettings& settings) {
     const std::unique_ptr<SceneLoader> loader = std::move(loader_);
@@ -55,11 +96,12 @@ std::string ShownScene::take(ViewSettings& settings) {
             const std::lock_guard lock(context_.queueMutex());
             context_.queue().waitIdle();
         }
+        maker_.reset();
         // Drivers need many times a frame's time to make them.
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
-        if (ahead_) { ahead_->known.insert(kindOf(*taken)); }
-        if (scene_) { left_[sameNameOf(scene_->name)] = scene_from_room; }
+        if (scene_) { left_[scene_->place] = scene_from_room; }
         scene_ = std::move(taken);
+        if (ahead_) { haveReady(loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         return goOnWithout(error.what());
     } catch (const Error& error) { return goOnWithout(error.what()); }
@@ -77,7 +119,7 @@ std::string ShownScene::goOnWithout(const std::string& why) {
 }
 
 std::string ShownScene::place(ViewSettings& settings) {
-    if (const auto left = left_.find(sameNameOf(scene_->name)); left != left_.end()) {
+    if (const auto left = left_.find(scene_->place); left != left_.end()) {
         scene_from_room = left->second;
         return {};
     }
@@ -86,13 +128,11 @@ std::string ShownScene::place(ViewSettings& settings) {
     scene_from_room = settings.scene_from_room.value_or(scene_->start);
     settings.scene_from_room.reset();
     if (is_asked_for) { return {}; }
-    try {
-        const std::optional<Similarity> remembered = rememberedPlacement(scene_->name);
-        if (!remembered) { return {}; }
-        scene_from_room = *remembered;
+    if (scene_->remembered) {
+        scene_from_room = *scene_->remembered;
         log_.say("the wearer stands where this scene was saved");
-    } catch (const Error& error) { return error.what(); }
-    return {};
+    }
+    return scene_->remembering_trouble;
 }
 
 }  // namespace binosplat
