@@ -1,6 +1,9 @@
 // Facts about one scene after another: what is dropped or chosen replaces what is shown, or a line says why not; remembered places too.
 #include "app/view/scenes/shown_scene.h"
 #include "app/options/modes.h"
+#include "app/view/panel/canvas.h"
+#include "app/view/panel/overlay.h"
+#include "app/view/panel/panel_style.h"
 #include "app/view/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"
@@ -16,7 +19,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <set>
 #include <thread>
 
 TEST_SUITE_BEGIN("shown_scene");
@@ -211,6 +216,60 @@ TEST_CASE_FIXTURE(Shown,
     while (!scenes.isNextReady()) { std::this_thread::yield(); }
     CHECK(one > before);
     CHECK(context().memoryUse().current_bytes == before);
+}
+
+TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no sRGB images, as light") {
+    const auto drawn = [&](vk::Format format) {
+        using Usage = vk::ImageUsageFlagBits;
+        Canvas canvas(context(), kPanelPx, format);
+        ViewSettings settings;
+        OverlayPages pages;
+        OverlayStatus status;
+        status.has_scene = true;
+        canvas.begin({}, 0.01);
+        static_cast<void>(drawOverlay(kPanelPx, settings, pages, status));
+        canvas.end();
+        const vk::raii::Image image(
+            context().device(),
+            vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {kPanelPx.x, kPanelPx.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
+                                vk::ImageTiling::eOptimal, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
+        const auto needs = image.getMemoryRequirements();
+        const vk::raii::DeviceMemory memory(context().device(),
+                                            vk::MemoryAllocateInfo(needs.size, context().memoryType(needs.memoryTypeBits, {}, {})));
+        image.bindMemory(*memory, 0);
+        const Buffer bytes = allocate<std::uint32_t>("panel", std::size_t{kPanelPx.x} * kPanelPx.y);
+        run([&](Commands& commands) {
+            canvas.record(commands);
+            canvas.copyTo(commands, *image);
+            const vk::ImageMemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eTransferRead,
+                                                 vk::ImageLayout::eColorAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal,
+                                                 VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, *image,
+                                                 {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
+            commands.buffer().pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eTransfer, {}, {}, {},
+                                              barrier);
+            commands.buffer().copyImageToBuffer(
+                *image, vk::ImageLayout::eTransferSrcOptimal, bytes.handle(),
+                vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {kPanelPx.x, kPanelPx.y, 1}));
+        });
+        return readBack<std::uint32_t>(bytes, std::size_t{kPanelPx.x} * kPanelPx.y);
+    };
+    using Format = vk::Format;
+    for (const auto& [encoded, linear] :
+         {std::pair(Format::eR8G8B8A8Srgb, Format::eR8G8B8A8Unorm), std::pair(Format::eB8G8R8A8Srgb, Format::eB8G8R8A8Unorm)}) {
+        const std::vector<std::uint32_t> seen = drawn(encoded), light = drawn(linear);
+        std::set<std::uint32_t> colours;
+        double farthest = 0.0;
+        for (std::size_t i = 0; i < seen.size(); ++i) {
+            colours.insert(seen[i]);
+            for (const int shift : {0, 8, 16}) {
+                const double value = (seen[i] >> shift & 255) / 255.0;
+                const double expected = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+                farthest = std::max(farthest, std::abs((light[i] >> shift & 255) - 255.0 * expected));
+            }
+        }
+        CHECK(colours.size() > 20);
+        CHECK(farthest < 1.0);
+    }
 }
 
 TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {

@@ -72,7 +72,7 @@ void ShownPanel::record(Commands& commands, HeadsetStay* stay, MirrorWindow* win
     commands.beginPass("panel");
     canvas_.record(commands);
     if (image_) {
-        commands.copyImage(canvas_.image(), image_, kPanelPx);
+        canvas_.copyTo(commands, image_);
         commands.makeMips(image_, kPanelPx, stay->panel_images.levels());
     }
     if (window != nullptr) { window->record(commands); }

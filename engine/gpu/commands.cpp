@@ -132,6 +132,21 @@ void Commands::copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px) {
     changeLayout(to, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
 }
 
+void Commands::decodeImage(vk::Image from, vk::Image encoded, vk::Image to, glm::uvec2 size_px) {
+    using Layout = vk::ImageLayout;
+    const auto aspect = vk::ImageAspectFlagBits::eColor;
+    const vk::ImageSubresourceLayers layers(aspect, 0, 0, 1);
+    changeLayout(encoded, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
+    command_buffer_.copyImage(from, Layout::eTransferSrcOptimal, encoded, Layout::eTransferDstOptimal,
+                              vk::ImageCopy(layers, {}, layers, {}, {size_px.x, size_px.y, 1}));
+    changeLayout(encoded, aspect, Layout::eTransferDstOptimal, Layout::eTransferSrcOptimal);
+    changeLayout(to, aspect, Layout::eUndefined, Layout::eTransferDstOptimal);
+    const std::array whole{vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(size_px.x), static_cast<int>(size_px.y), 1)};
+    command_buffer_.blitImage(encoded, Layout::eTransferSrcOptimal, to, Layout::eTransferDstOptimal,
+                              vk::ImageBlit(layers, whole, layers, whole), vk::Filter::eNearest);
+    changeLayout(to, aspect, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal);
+}
+
 void Commands::makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels) {
     using Layout = vk::ImageLayout;
     const auto aspect = vk::ImageAspectFlagBits::eColor;

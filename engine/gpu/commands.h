@@ -57,6 +57,8 @@ public:
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
     // From an image that a copy may read (eTransferSrcOptimal).
     void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
+    // Likewise, as light: what `from` holds is sRGB. On the way it lies in `encoded`, an image of the sRGB format with its bytes.
+    void decodeImage(vk::Image from, vk::Image encoded, vk::Image to, glm::uvec2 size_px);
     // Smaller copies of what is in level 0 into the others of `levels`, each of the one before. All are attachments before and after.
     void makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels);
     // Whether the device can do that with images of this format.

@@ -3,6 +3,7 @@
 
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_style.h"
+#include "app/view/room/sprites.h"
 #include "engine/error.h"
 
 #include <imgui.h>
@@ -26,9 +27,13 @@ Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : 
     if (!(families[context.queueFamily()].queueFlags & vk::QueueFlagBits::eGraphics)) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: the overlay needs a queue that draws", context.deviceName()));
     }
-    const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
-    const vk::Format raw = blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
+    const TexelLayout layout = texelLayoutOf(format);
+    const vk::Format raw = layout.blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
     makeImage(raw);
+    if (layout.linear) {
+        const vk::Format encoded = layout.blue_first ? vk::Format::eB8G8R8A8Srgb : vk::Format::eR8G8B8A8Srgb;
+        encoded_ = makePicture(encoded, vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
+    }
     makeRenderPass(raw);
     startImGui();
 }
@@ -40,19 +45,23 @@ Canvas::~Canvas() {
 
 const std::string& Canvas::fontComplaint() const { return font_->complaint(); }
 
-void Canvas::makeImage(vk::Format format) {
-    using Usage = vk::ImageUsageFlagBits;
+Canvas::Picture Canvas::makePicture(vk::Format format, vk::ImageUsageFlags usage) const {
     const vk::raii::Device& device = context_.device();
-    image_ = vk::raii::Image(
-        device, vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px_.x, size_px_.y, 1}, 1, 1, vk::SampleCountFlagBits::e1,
-                                    vk::ImageTiling::eOptimal, Usage::eColorAttachment | Usage::eTransferSrc));
-    const auto needs = image_.getMemoryRequirements();
+    Picture made;
+    made.image = vk::raii::Image(device, vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px_.x, size_px_.y, 1}, 1, 1,
+                                                             vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, usage));
+    const auto needs = made.image.getMemoryRequirements();
     const std::uint32_t type = context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
-    memory_ = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
-    image_.bindMemory(*memory_, 0);
-    view_ = vk::raii::ImageView(
-        device, vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
-    context_.name(image_, "canvas");
+    made.memory = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
+    made.image.bindMemory(*made.memory, 0);
+    context_.name(made.image, "canvas");
+    return made;
+}
+
+void Canvas::makeImage(vk::Format format) {
+    picture_ = makePicture(format, vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
+    view_ = vk::raii::ImageView(context_.device(), vk::ImageViewCreateInfo({}, image(), vk::ImageViewType::e2D, format, {},
+                                                                           {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
 }
 
 void Canvas::makeRenderPass(vk::Format format) {
@@ -167,6 +176,14 @@ Canvas::DrawList Canvas::drawList() {
         }
     }
     return bytes;
+}
+
+void Canvas::copyTo(Commands& commands, vk::Image target) const {
+    if (*encoded_.image) {
+        commands.decodeImage(image(), *encoded_.image, target, size_px_);
+    } else {
+        commands.copyImage(image(), target, size_px_);
+    }
 }
 
 void Canvas::record(Commands& commands) {

@@ -1,5 +1,5 @@
-// Dear ImGui on a picture of our own, from where it is copied to a headset's panel or a window. Values are display-encoded, and the
-// copies are raw: an sRGB image shows them as they are.
+// Dear ImGui on a picture of our own, from where it is copied to a headset's panel or a window. Values are display-encoded: an sRGB image,
+// and a window, show them as they are.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -44,6 +44,8 @@ public:
     void giveUp();
     // Draws, unless the image shows it already; then the canvas may be copied from.
     void record(Commands& commands);
+    // After record(): the picture in an image of the format that it was made for; as light, where that format is not sRGB.
+    void copyTo(Commands& commands, vk::Image image) const;
 
     // Of what the image shows once record() has run: another number for another picture, never 0.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
@@ -51,9 +53,14 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // Why the small built-in font is used; empty: it is not.
     [[nodiscard]] const std::string& fontComplaint() const;
-    [[nodiscard]] vk::Image image() const { return *image_; }
+    [[nodiscard]] vk::Image image() const { return *picture_.image; }
 
 private:
+    struct Picture {
+        vk::raii::DeviceMemory memory{nullptr};
+        vk::raii::Image image{nullptr};
+    };
+    [[nodiscard]] Picture makePicture(vk::Format format, vk::ImageUsageFlags usage) const;
     void makeImage(vk::Format format);
     void makeRenderPass(vk::Format format);
     void startImGui();
@@ -70,8 +77,8 @@ private:
     std::uint64_t revision_ = 0;
     bool is_new_ = true, is_recorded_ = false;  // of the last end()
     std::unique_ptr<PanelFont> font_;           // once there is an ImGui context
-    vk::raii::DeviceMemory memory_{nullptr};
-    vk::raii::Image image_{nullptr};
+    Picture picture_;
+    Picture encoded_;  // see Commands::decodeImage; none where the copies are raw
     vk::raii::ImageView view_{nullptr};
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};
