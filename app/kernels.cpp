@@ -25,7 +25,7 @@ KernelTable allKernels(const Context& context) {
     return table;
 }
 
-std::string lineOf(const KernelVariant& variant, const Json& statistics) {
+std::string lineOfKernel(const KernelVariant& variant, const Json& statistics) {
     std::string text = variant.shader;
     for (const auto& [name, value] : variant.constants) { text += fmt::format(" {}={}", name, value); }
     text += "\n";
@@ -51,7 +51,7 @@ void runKernels(const KernelsOptions& options) {
         for (const auto& [name, value] : has_statistics ? kernel.statistics(context) : KernelStatistics{}) {
             std::visit([&, &key = name](const auto& number) { statistics[key] = number; }, value);
         }
-        text += lineOf(variant, statistics);
+        text += lineOfKernel(variant, statistics);
         kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
         progress->show(static_cast<double>(kernels.size()) / static_cast<double>(variants.size()));
     }

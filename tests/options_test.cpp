@@ -6,6 +6,8 @@
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"
 #include "app/options/option_documents.h"
+#include "app/options/option_table.h"
+#include "app/view/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 #include "tests/run_program.h"
@@ -13,6 +15,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 TEST_SUITE_BEGIN("options");
 
@@ -91,6 +96,39 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     CHECK(file.metres_per_unit == none.metres_per_unit);
     CHECK(none.camera.near == 0.2);
     CHECK(none.stereo.mode == Mode::kPredicted);
+}
+
+TEST_CASE("defaultConfigIsWhatTheTableOfOptionsSays") {
+    std::ifstream file(kConfigs / "default.toml", std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    CHECK_MESSAGE(text == documentOf("config"), "run `binosplat document config > configs/default.toml`");
+    // Every key of a config is there, those without a default as comments; whoever takes out the mark has a key that is taken.
+    const Workplace work;
+    std::size_t keys = 0;
+    std::istringstream lines(text);
+    std::string table, placement;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with('[')) { table = line.substr(0, line.find(']') + 1); }
+        const bool is_comment = line.starts_with("# ");
+        if (table.empty() || line.starts_with('[') || line.empty()) { continue; }
+        ++keys;
+        CAPTURE(line);
+        line = line.substr(is_comment ? 2 : 0);
+        if (line.starts_with("scene-") || line.starts_with("units-")) {
+            placement += line + "\n";
+            continue;
+        }
+        writeText(work.path / "one.toml", table + "\n" + line + "\n");
+        const auto options = parse<ViewOptions>({"view", "a", "--config", (work.path / "one.toml").string()});
+        CHECK_NOTHROW(readViewSettings(options.tables, {}));
+        CHECK(options.tables.empty() == (table != "[view]"));
+        if (line.starts_with("mode ") || !options.tables.empty()) { CHECK(is_comment == line.starts_with("mode ")); }
+    }
+    CHECK(keys == runRows().size() + viewSettingsRows().size() + 3);
+    writeText(work.path / "all.toml", "[view]\n" + placement);
+    const auto placed = parse<ViewOptions>({"view", "a", "--config", (work.path / "all.toml").string()});
+    CHECK(readViewSettings(placed.tables, {}).scene_from_room.has_value());
+    CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
 }
 
 TEST_CASE("commandLineWinsOverConfig") {

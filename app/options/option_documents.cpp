@@ -1,6 +1,7 @@
 // The list of commands and options for readers and shells.
 #include "app/options/option_documents.h"
 
+#include "app/options/default_config.h"
 #include "app/options/document_text.h"
 #include "app/options/shell_completions.h"
 #include "app/version.h"
@@ -116,11 +117,12 @@ std::string man() {
 
 std::string documentOf(const std::string& kind) {
     if (kind == "markdown") { return markdown(); }
+    if (kind == "config") { return defaultConfig(); }
     if (kind == "man") { return man(); }
     if (kind == "bash") { return completionsOfBash(); }
     if (kind == "zsh") { return completionsOfZsh(); }
     if (kind == "fish") { return completionsOfFish(); }
-    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, man, bash, zsh or fish", kind));
+    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man, bash, zsh or fish", kind));
 }
 
 }  // namespace binosplat

@@ -55,6 +55,7 @@ struct OptionText {
     const char* help;
     const char* standard = "";  // what it is if nobody says so, where the field cannot tell
     bool required = false;
+    bool by_command = false;  // what it is if nobody says so is another thing for another command
 };
 
 template <typename Owner>

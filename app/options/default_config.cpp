@@ -1,0 +1,87 @@
+// Options and settings of the viewer as lines of TOML.
+#include "app/options/default_config.h"
+
+#include "app/options/option_table.h"
+#include "app/view/view_settings_table.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t kHelpFrom = 36;  // columns
+
+// Values of keys that have none if nobody says so.
+constexpr std::array<std::pair<std::string_view, const char*>, 13> kExamples{{
+    {"eye", "[0.0, -1.5, -3.0]"},
+    {"look", "[0.0, -1.0, 0.0]"},
+    {"up", "[0.0, -1.0, 0.0]"},
+    {"fov-x", "60.0"},
+    {"size", "\"1024x1024\""},
+    {"cameras", "\"cameras.json\""},
+    {"headset", "\"quest2\""},
+    {"ipd", "0.063"},
+    {"gaze", "[0.0, 0.0, 1.0]"},
+    {"lod", "0"},
+    {"sh-degree", "3"},
+    {"memory-limit", "4096"},
+    {"device", "\"0\""},
+}};
+
+std::string tomlOf(const OptionValue& value) {
+    if (const auto* vector = std::get_if<glm::dvec3>(&value)) { return fmt::format("[{}, {}, {}]", vector->x, vector->y, vector->z); }
+    return std::holds_alternative<std::string>(value) ? fmt::format("\"{}\"", textOf(value)) : textOf(value);
+}
+
+std::string writeLine(const std::string& setting, const std::string& help) {
+    return fmt::format("{:<{}}{}# {}\n", setting, kHelpFrom, setting.size() < kHelpFrom ? "" : " ", help);
+}
+
+template <typename Owner>
+std::string writeRow(const OptionRow<Owner>& row) {
+    const OptionValue standard = row.field.value(Owner{});
+    const bool has_none = std::holds_alternative<std::monostate>(standard);
+    std::string value = tomlOf(standard), help = row.text.help;
+    if (has_none) {
+        const auto* const found = std::ranges::find(kExamples, row.text.key, &std::pair<std::string_view, const char*>::first);
+        value = found == kExamples.end() ? fmt::format("\"{}\"", row.text.value) : found->second;
+    }
+    if (!row.field.range.empty()) { help += fmt::format(" ({})", row.field.range); }
+    if (row.text.by_command) {
+        help += "; absent: the command's own";
+    } else if (*row.text.standard != '\0') {
+        help += fmt::format("; {}: {}", has_none ? "absent" : value, row.text.standard);
+    }
+    return writeLine(fmt::format("{}{} = {}", has_none || row.text.by_command ? "# " : "", row.text.key, value), help);
+}
+
+}  // namespace
+
+std::string defaultConfig() {
+    std::string text =
+        "# Every key of a config and its default. `binosplat render SCENE --out DIR --config configs/default.toml` is the same as no "
+        "config;\n# the command line wins over a config. Keys are the options' names; '_' may stand for '-'. A key may also stand at the "
+        "top, outside\n# of its table. Commented keys have no default of their own, or one for each command. Files are relative to this "
+        "one. Made from the\n# program's own table (`binosplat document config`).\n";
+    const char* table = "";
+    for (const OptionRow<RunOptions>& row : runRows()) {
+        if (std::string_view(table) != row.text.table) {
+            table = row.text.table;
+            text += fmt::format("\n[{}]\n", table);
+        }
+        text += writeRow(row);
+    }
+    text += "\n" + writeLine("[view]", "of `view` alone; its panel saves and loads these");
+    for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { text += writeRow(row); }
+    text += writeLine("# scene-position = [0.0, 0.0, 0.0]", "where the wearer's room begins in the scene, with the next two or not at all");
+    text += writeLine("# scene-orientation = [1.0, 0.0, 0.0, 0.0]", "how it is turned: w, x, y, z of a quaternion");
+    text += writeLine("# units-per-metre = 1.0",
+                      "scene units in a metre of the room; absent: [camera] and metres-per-unit say where and how large");
+    return text;
+}
+
+}  // namespace binosplat
