@@ -125,6 +125,14 @@ TEST_CASE("a real compressed PLY gives the values another decoder gave" * needsS
     CHECK(notes.median_flatness < 1.0);
 }
 
+TEST_CASE("a comment asks for antialiasing here, too") {
+    const Folder folder;
+    const std::string plain = compressed(2, 0, 0, 0, 0);
+    CHECK_FALSE(loadScene(folder.write("plain.ply", plain)).antialiased);
+    const std::string said = replaced(plain, "comment made for a test", "comment SplatRenderMode: mip");
+    CHECK(loadScene(folder.write("said.ply", said)).antialiased);
+}
+
 TEST_CASE("headers and counts that do not fit are named") {
     const Folder folder;
     const std::string good = compressed(300, 0u, kMiddle, 0u, kAllOnes, true, std::vector<int>(9, 1));

@@ -176,6 +176,7 @@ TEST_CASE("splats with NaN, infinity, overflow or no rotation are skipped and co
     for (const Encoding encoding : kEncodings) {
         for (const char* name : {"x", "z", "f_dc_1", "f_rest_8", "opacity", "scale_1", "rot_3"}) {
             for (const double bad : {nan, infinity, -infinity}) {
+                if (name == std::string_view("opacity") && bad == infinity) { continue; }  // is opacity 1
                 PlyText ply = makePly(9);
                 ply.encoding = encoding;
                 ply[name].values[1] = bad;
@@ -200,6 +201,112 @@ TEST_CASE("splats with NaN, infinity, overflow or no rotation are skipped and co
     CHECK(notes.skipped_not_finite == 1);
     CHECK(notes.skipped_zero_rotation == 1);
     CHECK(notes.lines.size() == 2);
+}
+
+TEST_CASE("a logit of infinity is opacity 1") {
+    const Folder folder;
+    for (const Encoding encoding : kEncodings) {
+        for (const bool three_scales : {false, true}) {
+            PlyText ply = makePly(9, three_scales);
+            ply.encoding = encoding;
+            ply["opacity"].values[1] = std::numeric_limits<double>::infinity();
+            LoadNotes notes;
+            const Scene scene = loadScene(folder.write("opaque.ply", ply.bytes()), 0, &notes);
+            REQUIRE(scene.size() == 3);
+            CHECK(scene.opacities[1] == 1.0f);
+            CHECK(notes.lines.empty());
+            writePly(scene, folder.file("again.ply"));
+            CHECK(loadScene(folder.file("again.ply")).opacities[1] == 1.0f);
+        }
+    }
+}
+
+TEST_CASE("the shortest of three axes may have no extent, any other may not") {
+    const Folder folder;
+    const double none = -std::numeric_limits<double>::infinity();
+    for (const Encoding encoding : kEncodings) {
+        for (int axis = 0; axis < 3; ++axis) {
+            CAPTURE(axis);
+            PlyText ply = makePly(0, true);
+            ply.encoding = encoding;
+            ply[fmt::format("scale_{}", axis)].values[0] = none;
+            LoadNotes notes;
+            const Scene disc = loadScene(folder.write("disc.ply", ply.bytes()), 0, &notes);
+            REQUIRE(disc.size() == 3);
+            CHECK(disc.thicknesses[0] == 0.0f);
+            const double kept = axis == 0 ? -3.0 : axis == 1 ? -5.0 : 0.0;  // the one that follows in cyclic order
+            CHECK(disc.scales[0].x == doctest::Approx(std::exp(kept)));
+            CHECK(notes.lines.empty());
+            writePly(disc, folder.file("again.ply"));
+            CHECK(loadScene(folder.file("again.ply")).thicknesses[0] == 0.0f);
+
+            ply[fmt::format("scale_{}", (axis + 1) % 3)].values[0] = none;  // a needle without width
+            CHECK(loadScene(folder.write("needle.ply", ply.bytes()), 0, &notes).size() == 2);
+            CHECK(notes.skipped_not_finite == 1);
+        }
+        PlyText flat = makePly();
+        flat.encoding = encoding;
+        flat["scale_1"].values[0] = none;
+        LoadNotes notes;
+        CHECK(loadScene(folder.write("flat.ply", flat.bytes()), 0, &notes).size() == 2);
+        CHECK(notes.skipped_not_finite == 1);
+    }
+}
+
+TEST_CASE("a comment asks for antialiasing, the last one counts, and writing keeps it") {
+    const Folder folder;
+    const auto loadWith = [&](const std::string& comments, bool three_scales = true) {
+        return loadScene(folder.write("said.ply", replaced(makePly(0, three_scales).bytes(), "comment made for a test\n", comments)));
+    };
+    CHECK_FALSE(loadWith("comment made for a test\n").antialiased);
+    for (const char* comment : {"comment SplatRenderMode: mip\n", "comment  splatrendermode:  MIP \r\n", "comment antialiased 1\n",
+                                "comment postshot.anti_aliasing=1\n", "comment SplatRenderMode: default\ncomment antialiased 1\n"}) {
+        CAPTURE(comment);
+        const Scene scene = loadWith(comment);
+        CHECK(scene.antialiased);
+        writePly(scene, folder.file("again.ply"));
+        CHECK(loadScene(folder.file("again.ply")).antialiased);
+    }
+    for (const char* comment :
+         {"comment SplatRenderMode: default\n", "comment SplatRenderMode:\n", "comment SplatRenderMode: mip or not\n",
+          "comment antialiased 0\n", "comment antialiased 1\ncomment SplatRenderMode: default\n", "obj_info SplatRenderMode: mip\n"}) {
+        CAPTURE(comment);
+        const Scene scene = loadWith(comment);
+        CHECK_FALSE(scene.antialiased);
+        writePly(scene, folder.file("again.ply"));
+        CHECK_FALSE(loadScene(folder.file("again.ply")).antialiased);
+    }
+    CHECK_FALSE(loadWith("comment SplatRenderMode: mip\n", false).antialiased);  // discs are not dimmed
+}
+
+TEST_CASE("a PLY that looks as if its activations had been applied is loaded as usual, with one line that says so") {
+    const Folder folder;
+    for (const bool three_scales : {false, true}) {
+        PlyText ply = makePly(0, three_scales);
+        ply["opacity"].values = {0.0, 1.0, 0.5};
+        ply["scale_0"].values = {0.01, 0.5, 2.0};
+        ply["scale_1"].values = {0.02, 0.5, 1e-6};
+        if (three_scales) { ply["scale_2"].values = {0.001, 0.1, 3.0}; }
+        for (Column& column : ply.columns) { column.values.resize(700, column.values[0]); }
+        const auto linesOf = [&] {
+            LoadNotes notes;
+            CHECK(loadScene(folder.write("applied.ply", ply.bytes()), 0, &notes).size() == 700);
+            return std::ranges::count_if(notes.lines, [](const std::string& line) { return contains(line, "activations applied"); });
+        };
+        CHECK(linesOf() == 1);
+        CHECK(loadScene(folder.file("applied.ply")).opacities[1] == doctest::Approx(1.0 / (1.0 + std::exp(-1.0))));
+        for (const auto& [name, usual] : {std::pair("opacity", 1.01), std::pair("opacity", -0.01), std::pair("scale_1", 0.0)}) {
+            PlyText kept = ply;
+            ply[name].values[650] = usual;  // one splat in the last block
+            CHECK(linesOf() == 0);
+            ply = kept;
+        }
+    }
+    LoadNotes notes;
+    PlyText empty = makePly();
+    for (Column& column : empty.columns) { column.values.clear(); }
+    (void)loadScene(folder.write("empty.ply", empty.bytes()), 0, &notes);
+    CHECK(notes.lines.empty());
 }
 
 TEST_CASE("tiny and huge quaternions are normalised") {

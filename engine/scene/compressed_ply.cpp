@@ -198,7 +198,9 @@ Scene readCompressedPly(InputFile& file, LoadNotes& notes, const Progress& progr
         builder.append(block);
     }
     if (progress) { progress(1.0); }
-    return builder.finish(notes);
+    Scene scene = builder.finish(notes);
+    scene.antialiased = header.antialiased;
+    return scene;
 }
 
 }  // namespace binosplat

@@ -36,6 +36,19 @@ const ply::Element& findVertexElement(const InputFile& file, const ply::Header& 
     return *found;
 }
 
+// Such files lie beside every training's output, under names like input.ply, points3D.ply and fused.ply.
+void refusePointCloud(const InputFile& file, const ply::Header& header, const ply::Element& vertex) {
+    const auto has = [&](std::string_view name) {
+        return std::ranges::find(vertex.properties, name, &ply::Property::name) != vertex.properties.end();
+    };
+    const bool any_splat = has("f_dc_0") || has("opacity") || has("scale_0") || has("rot_0");
+    if (any_splat || !has("x") || !has("y") || !has("z")) { return; }
+    const bool faces = std::ranges::any_of(header.elements, [](const ply::Element& e) { return e.name == "face" && e.count > 0; });
+    fail("{}: a {} ({} {}{}{}), not a splat scene, expected the one that a training leaves in point_cloud/iteration_N/point_cloud.ply",
+         file.name(), faces ? "mesh" : "point cloud", vertex.count, faces ? "vertices" : "points",
+         has("red") || has("r") || has("diffuse_red") ? ", with colours" : "", has("nx") ? ", with normals" : "");
+}
+
 Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     std::map<std::string, std::size_t> index_of;
     std::size_t rest_count = 0;
@@ -70,6 +83,16 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     return layout;
 }
 
+// Whether all scales so far are positive and all opacities within 0 to 1: no training leaves such logarithms and logits.
+bool looksActivated(const StoredBlock& block, bool three_scales) {
+    const auto all = [&](int attribute, auto&& isSo) {
+        return std::all_of(block.column(attribute), block.column(attribute) + block.rows, isSo);
+    };
+    const auto is_positive = [](float value) { return value > 0.0f; };
+    return all(kStoredOpacity, [](float value) { return value >= 0.0f && value <= 1.0f; }) && all(kStoredScale0, is_positive) &&
+           all(kStoredScale1, is_positive) && (!three_scales || all(kStoredScale2, is_positive));
+}
+
 }  // namespace
 
 bool isPly(InputFile& file) {
@@ -80,6 +103,7 @@ bool isPly(InputFile& file) {
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
     const ply::Header header = ply::readHeader(file);
     const ply::Element& vertex = findVertexElement(file, header);
+    refusePointCloud(file, header, vertex);
     const Layout layout = planColumns(file, vertex);
     for (const ply::Element* element = header.elements.data(); element != &vertex; ++element) {
         ply::skipElement(file, header.encoding, *element);
@@ -97,13 +121,23 @@ Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress) {
         builder.activate(block.stored, block.active);
     });
     std::uint64_t done = 0, count = 0;
+    bool activated = vertex.count > 0;
     while (const ReadAhead::Block* block = blocks.next()) {
+        activated = activated && looksActivated(block->stored, layout.three_scales);
         builder.append(block->stored, block->active);
         done += block->stored.rows;
         if (progress && ++count % kBlocksPerReport == 0) { progress(static_cast<double>(done) / static_cast<double>(vertex.count)); }
     }
     if (progress) { progress(1.0); }
-    return builder.finish(notes);
+    Scene scene = builder.finish(notes);
+    scene.antialiased = header.antialiased && layout.three_scales;
+    if (activated) {
+        notes.lines.push_back(fmt::format(
+            "{}: all scales are positive and all opacities lie within 0 to 1: it looks as if it was written with the activations "
+            "applied; it was read as trainings write it, as logarithms and logits",
+            file.name()));
+    }
+    return scene;
 }
 
 }  // namespace binosplat

@@ -12,10 +12,12 @@ namespace binosplat {
 bool isPly(InputFile& file);
 
 // Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24 or 45, channel-major), opacity (logit), scale_0 scale_1
-// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is passed over.
+// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is passed over,
+// but for a comment that asks for antialiasing. Throws Error that says so for a point cloud or a mesh.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
-// Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w.
+// Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w; of
+// an antialiased scene with the comment that says so.
 // Opacities 0 and 1 and scale 0 are stored as large finite numbers that read back exactly. The file appears whole or not at all.
 void writePly(const Scene& scene, const std::string& path, const Progress& progress = {});
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -96,6 +97,19 @@ Property parseProperty(const Line& line) {
     return property;
 }
 
+bool equalsIgnoringCase(std::string_view a, std::string_view b) {
+    const auto lower = [](char letter) { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; };
+    return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+// `words` of a comment line. Says nothing of what it does not know.
+void readComment(std::span<const std::string_view> words, Header& header) {
+    if (words.size() == 2 && words[1].starts_with("postshot.anti_aliasing=")) { header.antialiased = words[1].ends_with("=1"); }
+    if (words.size() != 3) { return; }
+    if (equalsIgnoringCase(words[1], "SplatRenderMode:")) { header.antialiased = equalsIgnoringCase(words[2], "mip"); }
+    if (equalsIgnoringCase(words[1], "antialiased")) { header.antialiased = words[2] == "1"; }
+}
+
 }  // namespace
 
 std::size_t typeBytes(Type type) {
@@ -128,6 +142,7 @@ Header readHeader(InputFile& file) {
             magic_seen = true;
             continue;
         }
+        if (!line.words.empty() && line.words[0] == "comment") { readComment(line.words, header); }
         if (line.words.empty() || line.words[0] == "comment" || line.words[0] == "obj_info") { continue; }
         const std::string_view keyword = line.words[0];
         if (keyword == "end_header") { break; }

@@ -34,6 +34,8 @@ struct Header {
     Encoding encoding = Encoding::kLittleEndian;
     std::vector<Element> elements;
     int line_count = 0;
+    bool antialiased = false;  // as a comment says: "SplatRenderMode: mip" (Brush, gsplat), "antialiased 1" or "postshot.anti_aliasing=1"
+                               // (Postshot); the last one counts
 };
 
 // Reads up to and including the end_header line. Throws Error with the line at fault.

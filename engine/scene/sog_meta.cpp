@@ -83,6 +83,7 @@ SogMeta parseSogMeta(std::span<const std::byte> text, const std::string& place) 
 
     SogMeta meta;
     meta.antialiased = root.has("antialias") && root.at("antialias").flag();
+    if (root.has("model")) { meta.antialiased = root.at("model").text() == "antialiased"; }  // newer writers
     const JsonNode means = root.at("means"), mins = means.at("mins"), maxs = means.at("maxs");
     mins.requireArray(3);
     maxs.requireArray(3);

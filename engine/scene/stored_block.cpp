@@ -3,19 +3,30 @@
 
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace binosplat {
 
 namespace {
 
-// Which rows hold only finite numbers: v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN.
+// Any finite number whose exponential float32 does not hold.
+constexpr float kFarLogarithm = 1000.0f;
+
+// Which rows hold only numbers that mean something: v * 0 is 0 for a finite v and NaN otherwise, and a sum keeps a NaN. Two infinities mean
+// something, and are bounded before they count: a logit of +infinity is opacity 1; the logarithm of a length of 0, -infinity, is a third
+// axis without extent. Where it is not the shortest axis alone, it is found later.
 std::array<bool, StoredBlock::kRows> findFiniteRows(const StoredBlock& block, bool three_scales) {
     std::array<float, StoredBlock::kRows> zeros{};
     for (int attribute = 0; attribute < kStoredRest0; ++attribute) {
         if (attribute == kStoredScale2 && !three_scales) { continue; }
+        const bool is_scale = attribute >= kStoredScale0 && attribute <= kStoredScale2;
+        const float least = three_scales && is_scale ? -kFarLogarithm : -std::numeric_limits<float>::infinity(),
+                    most = attribute == kStoredOpacity ? kFarLogarithm : std::numeric_limits<float>::infinity();
         const float* column = block.column(attribute);
-        for (std::size_t row = 0; row < block.rows; ++row) { zeros[row] += column[row] * 0.0f; }
+        // The value comes first, so that a NaN stays one.
+        for (std::size_t row = 0; row < block.rows; ++row) { zeros[row] += std::min(std::max(column[row], least), most) * 0.0f; }
     }
     std::array<bool, StoredBlock::kRows> finite{};
     for (std::size_t row = 0; row < block.rows; ++row) {
@@ -96,13 +107,15 @@ void activate(const StoredBlock& block, int sh_degree, bool three_scales, Active
         const bool turned =
             finite[row] && normaliseRotation(value(kStoredRot0), value(kStoredRot1), value(kStoredRot2), value(kStoredRot3), rotation);
         float thickness = 0.0f;
+        bool usable = finite[row];
         if (turned && three_scales) {
             const Turned axes = turnShortestLast(rotation, {value(kStoredScale0), value(kStoredScale1), value(kStoredScale2)});
             rotation = axes.rotation;
             scale = {std::exp(axes.log_scale_u), std::exp(axes.log_scale_v)};
             thickness = std::exp(axes.log_scale_w);
+            usable = std::isfinite(axes.log_scale_u + axes.log_scale_v);
         }
-        if (!finite[row] || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 is an infinite float32 scale
+        if (!usable || !std::isfinite(scale.x + scale.y)) {  // a logarithm over 88.7 is an infinite float32 scale
             ++active.skipped_not_finite;
             continue;
         }
