@@ -174,4 +174,12 @@ TEST_CASE("truncatedAndForeignFilesAreErrors") {
         CHECK_THROWS_WITH_AS(readPicture(path), (path.string() + ": ends after 3 of " + bytes + " bytes of pixels").c_str(), Error);
     }
     CHECK_THROWS_AS(readPicture(folder.path / "none.exr"), Error);
+    for (const char* name : {"p.png", "p.jpg", "p.pfm", "p.ppm"}) {
+        std::ofstream(folder.path / name) << "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+        CHECK_THROWS_WITH_AS(
+            readPicture(folder.path / name),
+            ((folder.path / name).string() + ": is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)")
+                .c_str(),
+            Error);
+    }
 }

@@ -20,6 +20,35 @@ TEST_CASE("errors of the source itself say what it is") {
     CHECK(loadScene(folder.write("named_otherwise.txt", makePly().bytes())).size() == 3);
 }
 
+TEST_CASE("a point cloud or a mesh is named as what it is, with the place where a training leaves its splats") {
+    const Folder folder;
+    for (const Encoding encoding : kEncodings) {
+        PlyText ply;
+        ply.encoding = encoding;
+        for (const char* name : {"x", "y", "z"}) { ply.columns.push_back({name, "float", {1.0, 2.0}}); }
+        const auto errorOf = [&] { return loadError(folder.write("points3D.ply", ply.bytes())); };
+        CHECK(contains(errorOf(), "points3D.ply: a point cloud (2 points), not a splat scene"));
+        for (const char* name : {"nx", "ny", "nz"}) { ply.columns.push_back({name, "float", {0.0, 1.0}}); }
+        for (const char* name : {"red", "green", "blue"}) { ply.columns.push_back({name, "uchar", {0.0, 255.0}}); }
+        CHECK(contains(errorOf(), "a point cloud (2 points, with colours, with normals)"));
+        CHECK(contains(errorOf(), "point_cloud/iteration_N/point_cloud.ply"));
+        ply.header_after = "element face 1\nproperty list uchar int vertex_indices\n";
+        CHECK(contains(errorOf(), "a mesh (2 vertices, with colours, with normals)"));
+        ply.columns.push_back({"opacity", "float", {0.0, 1.0}});  // a splat scene that lacks the rest
+        CHECK(contains(errorOf(), "no property f_dc_0"));
+    }
+}
+
+TEST_CASE("a Git LFS pointer in place of a scene is named as what it is") {
+    const Folder folder;
+    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, 'a') + "\nsize 12345\n";
+    for (const char* name : {"scene.ply", "scene.splat", "scene.spz", "scene.sog", "meta.json", "lod-meta.json"}) {
+        CHECK(contains(loadError(folder.write(name, pointer)), std::string(name) + ": is a Git LFS pointer"));
+    }
+    CHECK(contains(loadError(folder.write("short", pointer.substr(0, 30))), "not a scene file"));
+    CHECK(contains(loadError(folder.write("long", pointer + std::string(2000, 'x'))), "not a scene file"));
+}
+
 TEST_CASE("errors in a header name the file, the line and what was expected") {
     const Folder folder;
     const std::string good = makePly(9).bytes();

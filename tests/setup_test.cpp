@@ -1,8 +1,10 @@
 // Facts about cameras, headsets, settings and output files.
 #include "engine/error.h"
 #include "engine/setup/camera_file.h"
+#include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
 #include "engine/setup/output_files.h"
+#include "engine/setup/settings.h"
 #include "engine/setup/values.h"
 #include "tests/run_program.h"
 
@@ -78,6 +80,21 @@ TEST_CASE("cameraFileIsWorldFromCameraWithRowsAsWritten") {
     CHECK(eye.intrinsics.cy == 240.0);
     CHECK(cameras[1].eye.intrinsics.cx == 300.0);
     CHECK(cameras[1].eye.intrinsics.cy == 200.0);
+}
+
+TEST_CASE("aGitLfsPointerIsNamedAsWhatItIs") {
+    const Workplace work;
+    const fs::path file = writeFile(work.path / "pointer", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+    const auto refuses = [](auto&& read) {
+        try {
+            read();
+        } catch (const Error& error) { return std::string(error.what()).find(": is a Git LFS pointer") != std::string::npos; }
+        return false;
+    };
+    CHECK(refuses([&] { (void)readSettingsFile(file); }));
+    CHECK(refuses([&] { (void)readCameraFile(file); }));
+    CHECK(refuses([&] { (void)readHeadset(file); }));
+    CHECK(refuses([&] { (void)readHeadMotion(file, MotionAxes::kOpenXr); }));
 }
 
 TEST_CASE("resizingAnEyeKeepsWhatItSees") {

@@ -178,6 +178,9 @@ TEST_CASE("filesThatCannotBeReadAreSaidWithTheLineThatNamesThem") {
     folder.refuses("head-motion long.csv", "cannot be read (longer than 16 MiB)");
     folder.write("long.toml", std::string((std::size_t{4} << 20) + 1, '#'));
     folder.refuses("headset long.toml", "cannot be read (longer than 4 MiB)");
+    folder.write("pointer.toml", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n");
+    folder.refuses("headset pointer.toml", "pointer.toml: cannot be read (a Git LFS pointer, ");
+    CHECK_THROWS_AS((void)Script::load(folder.path / "pointer.toml"), ScriptError);
     CHECK_THROWS_WITH_AS((void)Script::load(folder.path / "none.script"),
                          (folder.path.string() + "/none.script: cannot be read (No such file or directory), must be a script").c_str(),
                          ScriptError);

@@ -106,6 +106,27 @@ TEST_CASE("splats that use what is not there are skipped and counted") {
     CHECK(notes.skipped_zero_rotation == 1);
 }
 
+TEST_CASE("a key asks for antialiasing, by the name of old writers or of new ones") {
+    const Folder folder;
+    const auto antialiased = [&](const std::string& key) {
+        SogText files = makeSog();
+        files["meta.json"] = replaced(files["meta.json"], "{", "{" + key);
+        return loadScene(writeSogFolder(folder, "said", files)).antialiased;
+    };
+    CHECK_FALSE(antialiased(""));
+    CHECK(antialiased("\"antialias\":true,"));
+    CHECK_FALSE(antialiased("\"antialias\":false,"));
+    CHECK(antialiased("\"model\":\"antialiased\","));
+    CHECK_FALSE(antialiased("\"model\":\"2dgs\","));
+}
+
+TEST_CASE("a Git LFS pointer in place of a picture is named as what it is") {
+    const Folder folder;
+    SogText files = makeSog();
+    files["q.webp"] = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+    CHECK(contains(loadError(writeSogFolder(folder, "pointer", files)), "q.webp: is a Git LFS pointer"));
+}
+
 TEST_CASE("a null in front of a codebook continues its row") {
     const Folder folder;
     SogText files = makeSog();

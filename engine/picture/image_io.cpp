@@ -2,6 +2,7 @@
 #include "engine/picture/image_io.h"
 
 #include "engine/error.h"
+#include "engine/git_lfs.h"
 #include "engine/picture/netpbm.h"
 #include "engine/platform.h"
 
@@ -17,6 +18,8 @@
 #endif
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace binosplat {
 
@@ -127,7 +130,10 @@ std::vector<fs::path> writePicture(const fs::path& stem, PictureKind kind, const
 
 Image readPicture(const fs::path& path) {
     std::string reason;
-    check(openRegularFile(path, reason) != nullptr, "{}: cannot be read ({}), must be an image file", path.string(), reason);
+    const File file = openRegularFile(path, reason);
+    check(file != nullptr, "{}: cannot be read ({}), must be an image file", path.string(), reason);
+    std::array<char, kLfsPointerStart.size()> start{};
+    requireNoLfsPointer({start.data(), readAt(file.get(), 0, std::as_writable_bytes(std::span(start))).value_or(0)}, path.string());
     if (path.extension() == ".pfm") { return readPfm(path); }
     if (path.extension() == ".ppm" || path.extension() == ".pgm") { return readPnm(path); }
 #ifdef BINOSPLAT_OPENIMAGEIO

@@ -3,8 +3,10 @@
 #include "engine/scene/input_file.h"
 
 #include "engine/error.h"
+#include "engine/git_lfs.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -29,6 +31,10 @@ InputFile::InputFile(const std::string& path) : name_(path) {
     check(file_ != nullptr, "{}: cannot be opened: {}", path, reason);
     opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+    if (sizeBytes() < kLongestLfsPointer) {
+        std::array<char, kLfsPointerStart.size()> start{};
+        requireNoLfsPointer({start.data(), readAt(0, std::as_writable_bytes(std::span(start)))}, name_);
+    }
     // One more than a small file has: its last line is not too long only because it fills the buffer.
     buffer_.resize(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
 }

@@ -14,7 +14,7 @@ namespace binosplat {
 
 class InputFile {
 public:
-    // Throws Error if `path` is missing, a directory, not a regular file or not readable.
+    // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
     explicit InputFile(const std::string& path);
 
     [[nodiscard]] const std::string& name() const { return name_; }

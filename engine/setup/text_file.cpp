@@ -2,6 +2,7 @@
 #include "engine/setup/text_file.h"
 
 #include "engine/error.h"
+#include "engine/git_lfs.h"
 #include "engine/platform.h"
 
 #include <cerrno>
@@ -24,6 +25,7 @@ std::string readTextFile(const std::filesystem::path& path, const std::string& e
         text.resize(end + got);
         check(text.size() <= most_bytes, "{}: cannot be read (longer than {} MiB), must be {}", path.string(), most_bytes >> 20, expected);
     } while (std::exchange(end, text.size()) < text.size());
+    requireNoLfsPointer(text, path.string());
     return text;
 }
 

@@ -29,6 +29,7 @@ std::string readText(const fs::path& path, const std::string& place, const char*
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > most_bytes) { refuse(fmt::format("longer than {} MiB", most_bytes >> 20)); }
+    if (text.starts_with("version https://git-lfs.github.com/spec/")) { refuse("a Git LFS pointer, to be fetched with `git lfs pull`"); }
     return text;
 }
 

@@ -1,0 +1,21 @@
+// Git LFS leaves a text of three lines in place of a large file that was not fetched.
+#pragma once
+
+#include "engine/error.h"
+
+#include <string>
+#include <string_view>
+
+namespace binosplat {
+
+// A pointer is shorter than this (by its specification) and begins so.
+inline constexpr std::size_t kLongestLfsPointer = 1024;
+inline constexpr std::string_view kLfsPointerStart = "version https://git-lfs.github.com/spec/";
+
+// Throws Error if `start`, the beginning of `file`, is that of a pointer.
+inline void requireNoLfsPointer(std::string_view start, const std::string& file) {
+    check(!start.starts_with(kLfsPointerStart),
+          "{}: is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)", file);
+}
+
+}  // namespace binosplat
