@@ -150,6 +150,36 @@ TEST_CASE("commandLineWinsOverConfig") {
     CHECK(both.stereo.ipd_m == 0.0);
 }
 
+TEST_CASE("aTrainingsOutputBringsTheCamerasThatViewAsksFor") {
+    const Workplace work;
+    const fs::path garden = work.path / "garden", cameras = garden / "cameras.json";
+    fs::create_directories(garden / "point_cloud/iteration_7000");
+    writeText(garden / "point_cloud/iteration_7000/point_cloud.ply", "ply\n");
+    const auto with = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"render", garden.string(), "--out", "out"});
+        return parse<RenderOptions>(words).run.camera;
+    };
+    CHECK(errorOf([&] { with({"--view", "1"}); }).find("--view is given without --cameras") == 0);
+    writeText(cameras, "[]");
+    CHECK(with({"--view", "1"}).cameras_file == cameras.string());
+    CHECK(with({"--view", "1"}).view == 1);
+    CHECK(with({}).cameras_file.empty());
+    CHECK(with({"--view", "1", "--cameras", "other.json"}).cameras_file == "other.json");
+    CHECK(errorOf([&] { with({"--view", "1", "--eye", "0,0,0"}); }) == "--view and --eye contradict each other, must be one of them");
+    writeText(work.path / "a.toml", "headset = \"quest2\"\n");
+    CHECK(with({"--view", "1", "--config", (work.path / "a.toml").string()}).headset.empty());
+    writeText(work.path / "b.toml", "cameras = \"b.json\"\n");
+    CHECK(with({"--view", "1", "--config", (work.path / "b.toml").string()}).cameras_file == (work.path / "b.json").string());
+
+    const auto bench = parse<BenchOptions>({"bench", garden.string(), "--out", "out", "--view", "1"});
+    CHECK(bench.run.camera.cameras_file == cameras.string());
+    CHECK(bench.asked.cameras_file == cameras.string());
+    CHECK(errorOf([&] { (void)parse<BenchOptions>({"bench", garden.string(), "builtin:fence", "--out", "out", "--view", "1"}); }) != "");
+    // A SOG scene is no training's output, whatever lies beside it.
+    writeText(garden / "meta.json", "{}");
+    CHECK(errorOf([&] { with({"--view", "1"}); }) != "");
+}
+
 TEST_CASE("eyesLookAtTheirLensesOrWhereTheyAreSaidTo") {
     Scene scene;
     CameraFiles files;

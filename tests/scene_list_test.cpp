@@ -64,12 +64,15 @@ TEST_CASE("a folder is listed with its folders and scenes, and without what is h
     }
     for (const char* name : {"zoo", "Attic", ".git", "statue", "folder.ply"}) { fs::create_directory(work.path / name); }
     write(work.path / "statue" / "meta.json");
+    fs::create_directories(work.path / "trained/point_cloud/iteration_7");
+    write(work.path / "trained/point_cloud/iteration_7/point_cloud.ply");
+    fs::create_directories(work.path / "untrained/point_cloud/iteration_7");
     const SceneList list = listFolder(work.path.string());
     CHECK(list.trouble.empty());
     CHECK(list.title == work.path.string());
     CHECK(list.above == work.base.string());
-    CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "zoo/", "a.spz", "room2.PLY", "room10.ply", "statue",
-                                                    "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
+    CHECK(namesOf(list) == std::vector<std::string>{"Attic/", "folder.ply/", "untrained/", "zoo/", "a.spz", "room2.PLY", "room10.ply",
+                                                    "statue", "trained", "\xd0\x91\xd1\x8e\xd1\x81\xd1\x82.splat"});
     for (const SceneEntry& entry : list.entries) { CHECK(entry.trouble.empty()); }
     CHECK(entryOf(list, "zoo").place == (work.path / "zoo").string());
     // The viewer's next scene goes the same way.

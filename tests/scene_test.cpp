@@ -147,6 +147,49 @@ TEST_CASE("colours are limited to the bands that are asked for") {
     CHECK(scene.sh == std::vector<float>{0.0f, 1.0f, 2.0f, 27.0f, 28.0f, 29.0f});
 }
 
+TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene, judged in this order, or none of them") {
+    namespace fs = std::filesystem;
+    const Folder folder;
+    const fs::path root = folder.file("garden");
+    const auto place = [&](const std::string& name, const std::string& bytes) {
+        fs::create_directories((root / name).parent_path());
+        return folder.write("garden/" + name, bytes);
+    };
+    const auto withSplats = [](int splats) {
+        PlyText ply = makePly();
+        for (Column& column : ply.columns) { column.values.resize(static_cast<std::size_t>(splats), column.values[0]); }
+        return ply.bytes();
+    };
+    fs::create_directories(root / "point_cloud/iteration_best");
+    const std::string four = loadError(root.string());
+    for (const char* kind : {"is a directory", "lod-meta.json", "meta.json (SOG)", "point_cloud/iteration_N", "numbered files"}) {
+        CHECK(contains(four, kind));
+    }
+    place("frame_9.txt", "no scene"), place("frame_10.txt", "no scene"), place("alone_1.ply", withSplats(1));
+    CHECK(loadError(root.string()) == four);
+    place("step_10.ply", withSplats(1)), place("step_9.ply", withSplats(1)), place("step_100.ply", withSplats(1));
+    CHECK(contains(loadError(root.string()),
+                   "garden: a moving scene, 3 numbered files from step_9.ply to step_100.ply: these cannot be shown yet"));
+
+    place("point_cloud/iteration_7000/point_cloud.ply", withSplats(7));
+    CHECK(loadScene(root.string()).size() == 7);
+    place("point_cloud/iteration_30000/point_cloud.ply", withSplats(30));
+    place("point_cloud/iteration_9000/point_cloud.ply", withSplats(9));
+    place("point_cloud/iteration_40000/other.ply", withSplats(4));  // stopped before it was written
+    place("point_cloud/iteration_best/point_cloud.ply", withSplats(5));
+    LoadNotes notes;
+    CHECK(loadScene(root.string() + "/", 0, &notes).size() == 30);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "iteration_30000"));
+    CHECK(contains(loadError(root.string() + "/point_cloud"), "is a directory"));
+
+    place("meta.json", "{}");
+    CHECK(contains(loadError(root.string()), "meta.json"));
+    CHECK_FALSE(contains(loadError(root.string()), "lod-meta.json"));
+    place("lod-meta.json", "{}");
+    CHECK(contains(loadError(root.string()), "lod-meta.json"));
+}
+
 TEST_CASE("the shared scenes load whole" * needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }

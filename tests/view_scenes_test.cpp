@@ -209,23 +209,25 @@ TEST_CASE("a trained scene is levelled by the up of its cameras, or else of its 
     scene.sh.assign(scene.size() * 3, 0.5f);
     scene.sh_degree = 0;
     writePly(scene, (folder / "point_cloud.ply").string());
-    const auto upAfter = [&](const std::string& name) {
+    const auto upAfter = [&](const std::string& name, const fs::path& source) {
         const Panel& panel = startPanel(work);
         const ViewRun run =
-            runView(work, name, kSmall + clickAt(panel, placeOf("Level"), 0.2) + clickAt(panel, placeOf("Save"), 0.4) + "at 0.52 exit\n",
-                    (folder / "point_cloud.ply").string() + " --load-first --mode mono --hide-hands");
+            runView(work, name, kSmall + clickAt(panel, placeOf("Level"), 0.2) + clickAt(panel, placeOf("Save"), 0.4) + "at 0.7 exit\n",
+                    source.string() + " --load-first --mode mono --hide-hands");
         checkClean(run);
         const auto q = savedNumbers(run, "scene-orientation").get<std::array<double, 4>>();
         return glm::dquat(q[0], q[1], q[2], q[3]) * glm::dvec3(0.0, -1.0, 0.0);
     };
+    const fs::path file = folder / "point_cloud.ply";
     // Its files' y is down as in all scenes with cameras.
     const glm::dvec3 up = tilt * builtinView("builtin:atelier")->up;
-    CHECK(glm::dot(upAfter("floor"), up) > std::cos(glm::radians(2.0)));
+    CHECK(glm::dot(upAfter("floor", file), up) > std::cos(glm::radians(2.0)));
     // These cameras were held otherwise, and they know better.
     std::ofstream(work.path / "trained" / "cameras.json")
         << R"([{"id": 0, "img_name": "a", "width": 64, "height": 64, "position": [0, 0, 0], "rotation": [[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
-    CHECK(glm::length(upAfter("cameras") - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
+    CHECK(glm::length(upAfter("cameras", file) - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
+    CHECK(glm::length(upAfter("output", work.path / "trained") - glm::dvec3(-0.6, -0.8, 0.0)) < 1e-5);
     // One that cannot be read is as none.
     std::ofstream(work.path / "trained" / "cameras.json") << "[{";
-    CHECK(glm::dot(upAfter("broken"), up) > std::cos(glm::radians(2.0)));
+    CHECK(glm::dot(upAfter("broken", file), up) > std::cos(glm::radians(2.0)));
 }

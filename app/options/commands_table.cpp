@@ -5,7 +5,9 @@
 #include "app/options/option_layers.h"
 #include "engine/error.h"
 #include "engine/picture/flip.h"
+#include "engine/scene/scene_folder.h"
 
+#include <optional>
 #include <set>
 
 namespace binosplat {
@@ -29,8 +31,18 @@ std::string wordOf(const Settings& line, const char* name) {
     return found == line.end() ? "" : found->second.text();
 }
 
-// The command line over the config. Tables of the config that `foreign` names are left alone, and go to `rest`.
-RunOptions readRun(const Settings& line, const std::set<std::string>& foreign, std::vector<SettingsTable>* rest = nullptr) {
+// A training's output brings its own cameras: they count where --view asks for one of them and nobody names others.
+void addOwnCameras(Settings& line, const Settings& config) {
+    const auto view = line.find("view"), scene = line.find("SCENE");
+    if (view == line.end() || scene == line.end() || line.contains("cameras") || config.contains("cameras")) { return; }
+    if (scene->second.items.size() != 1) { return; }
+    const std::optional<TrainingOutput> training = findTrainingOutput(scene->second.items.front());
+    if (training && !training->cameras.empty()) { line.emplace("cameras", Setting{"--view", {training->cameras}}); }
+}
+
+// The command line, to which cameras may be added, over the config. Tables of the config that `foreign` names are left alone, and go to
+// `rest`.
+RunOptions readRun(Settings& line, const std::set<std::string>& foreign, std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
     Settings config_settings;
     if (!config.empty()) {
@@ -40,12 +52,14 @@ RunOptions readRun(const Settings& line, const std::set<std::string>& foreign, s
             if (rest != nullptr && foreign.contains(table.name)) { rest->push_back(table); }
         }
     }
+    addOwnCameras(line, config_settings);
     RunOptions options = runOptions(mergeLayers(line, config_settings));
     options.config = config;
     return options;
 }
 
-Options makeRender(const Settings& line) {
+Options makeRender(const Settings& given) {
+    Settings line = given;
     RenderOptions render;
     render.scene = wordOf(line, "SCENE");
     render.run = readRun(line, {"view"});
@@ -75,17 +89,19 @@ void requireBenchKind(const BenchOptions& bench) {
     refuse(bench.every != 1 && bench.motion_file.empty() && bench.photos_folder.empty(), "--every is given without --motion or --photos");
 }
 
-Options makeBench(const Settings& line) {
+Options makeBench(const Settings& given) {
+    Settings line = given;
     BenchOptions bench;
     if (const auto scenes = line.find("SCENE"); scenes != line.end()) { bench.scenes = scenes->second.items; }
-    bench.asked = runOptions(line).camera;
     bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, &bench.tables);
+    bench.asked = runOptions(line).camera;
     readRows(benchRows(), line, bench);
     requireBenchKind(bench);
     return bench;
 }
 
-Options makeView(const Settings& line) {
+Options makeView(const Settings& given) {
+    Settings line = given;
     ViewOptions view;
     view.scene = wordOf(line, "SCENE");
     view.simulate = line.contains("simulate");

@@ -60,7 +60,10 @@ Settings mergeLayers(const Settings& command_line, const Settings& config) {
         if (has(command_line, b)) { merged.erase(std::string(a)); }
     }
     for (const auto& [key, setting] : command_line) { merged.insert_or_assign(key, setting); }
-    if (!has(merged, "cameras") && has(command_line, "view")) { throw Error(ExitCode::kUsage, "--view is given without --cameras"); }
+    if (!has(merged, "cameras") && has(command_line, "view")) {
+        throw Error(ExitCode::kUsage,
+                    "--view is given without --cameras, and SCENE has none of its own (a training's output with its cameras.json)");
+    }
     return merged;
 }
 

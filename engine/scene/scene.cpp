@@ -6,11 +6,13 @@
 #include "engine/scene/input_file.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/scene_folder.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/splat_file.h"
 #include "engine/scene/spz.h"
 #include "engine/scene/streamed_sog.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -86,13 +88,44 @@ void requireNoLevel(const std::string& source, const char* kind, const LevelChoi
           choice.level.value_or(0), kind);
 }
 
-Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
-    for (const SceneFormat& format : kSceneFormats) {
-        if (!format.matches(source)) { continue; }
-        if (!format.has_levels) { requireNoLevel(source.path, format.name, source.level); }
-        return readWhole(format, source, notes, progress);
+const SceneFormat* findFormat(Source& source) {
+    const auto* found = std::ranges::find_if(kSceneFormats, [&](const SceneFormat& format) { return format.matches(source); });
+    return found == kSceneFormats.end() ? nullptr : found;
+}
+
+// Of a folder that is neither SOG nor a training's output.
+[[noreturn]] void refuseFolder(const Source& folder) {
+    std::error_code error;
+    static_cast<void>(std::filesystem::directory_iterator(folder.path, error));
+    check(!error, "{}: cannot be read: {}", folder.path, error.message());
+    const std::vector<std::string> numbered = findNumberedFiles(folder.path);
+    if (!numbered.empty()) {
+        Source first{numbered.front(), std::make_unique<InputFile>(numbered.front()), folder.level},
+            last{numbered.back(), std::make_unique<InputFile>(numbered.back()), folder.level};
+        const SceneFormat* format = findFormat(first);
+        check(format == nullptr || format != findFormat(last),
+              "{}: a moving scene, {} numbered files from {} to {}: these cannot be shown yet, expected one of its files", folder.path,
+              numbered.size(), std::filesystem::path(first.path).filename().string(), std::filesystem::path(last.path).filename().string());
     }
-    check(source.file != nullptr, "{}: is a directory, expected a scene file: {}", source.path, listFormats());
+    fail(
+        "{}: is a directory, expected one with lod-meta.json (streamed SOG), meta.json (SOG), "
+        "point_cloud/iteration_N/point_cloud.ply (a training's output) or numbered files of one format (a moving scene)",
+        folder.path);
+}
+
+Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
+    if (const SceneFormat* format = findFormat(source)) {
+        if (!format->has_levels) { requireNoLevel(source.path, format->name, source.level); }
+        return readWhole(*format, source, notes, progress);
+    }
+    if (source.file == nullptr) {
+        const std::optional<TrainingOutput> training = findTrainingOutput(source.path);
+        if (!training) { refuseFolder(source); }
+        Source newest{training->scene, std::make_unique<InputFile>(training->scene), source.level};
+        Scene scene = loadFrom(newest, notes, progress);
+        notes.lines.push_back(fmt::format("{}: a training's output, of which {} was loaded", source.path, training->scene));
+        return scene;
+    }
     check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
     fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
 }

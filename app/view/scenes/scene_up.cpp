@@ -2,6 +2,7 @@
 #include "app/view/scenes/scene_up.h"
 
 #include "engine/error.h"
+#include "engine/scene/scene_folder.h"
 #include "engine/setup/camera_file.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@ constexpr double kMostMedians = 4.0;
 std::filesystem::path cameraFileOf(const std::filesystem::path& source) {
     std::filesystem::path whole = std::filesystem::absolute(source).lexically_normal();
     if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
+    if (findTrainingOutput(whole)) { return whole / "cameras.json"; }
     const std::filesystem::path folder = whole.parent_path();
     const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
     return (is_trained ? folder.parent_path().parent_path() : folder) / "cameras.json";

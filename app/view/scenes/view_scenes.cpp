@@ -3,6 +3,7 @@
 
 #include "app/view/scenes/natural_order.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/scene_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +21,9 @@ namespace fs = std::filesystem;
 bool looksLikeScene(const fs::path& path) {
     static constexpr std::array<std::string_view, 4> kExtensions{".ply", ".splat", ".spz", ".sog"};
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) { return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored); }
+    if (fs::is_directory(path, ignored)) {
+        return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path);
+    }
     std::string extension = path.extension().string();
     for (char& letter : extension) {
         if (letter >= 'A' && letter <= 'Z') { letter = static_cast<char>(letter - 'A' + 'a'); }

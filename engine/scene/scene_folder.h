@@ -1,0 +1,24 @@
+// What a folder holds that is no format of its own: the output of a training, or the numbered files of a moving scene.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// As 3DGS and 2DGS trainings leave it: point_cloud/iteration_N/point_cloud.ply, and cameras.json beside point_cloud.
+struct TrainingOutput {
+    std::string scene;    // of the highest N that has one
+    std::string cameras;  // empty: there are none
+};
+
+// None if the folder is no such output, or is judged to be something else before that: a SOG scene, streamed or not.
+std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& folder);
+
+// Files whose names differ in one number alone, in the order of that number; the largest such group of the folder. Empty: there are no
+// two.
+std::vector<std::string> findNumberedFiles(const std::filesystem::path& folder);
+
+}  // namespace binosplat
