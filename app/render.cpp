@@ -1,4 +1,5 @@
 // `binosplat render`: one frame, or those along a path, their pictures and the report.
+#include "app/blind_camera.h"
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/load.h"
@@ -13,8 +14,10 @@
 #include "engine/picture/roi_picture.h"
 #include "engine/setup/output_files.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace binosplat {
 
@@ -58,6 +61,17 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
     return options;
 }
 
+void warn(const std::string& line) { fmt::print(stderr, "binosplat: {}\n", line); }
+
+void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> positions) {
+    const auto is_blind = [](const PathFrame& frame) { return seesNothing(frame.frame); };
+    const auto first = std::ranges::find_if(report.frames, is_blind);
+    if (first == report.frames.end()) { return; }
+    warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
+                     std::ranges::count_if(report.frames, is_blind), report.frames.size(),
+                     describeNearest(first->cameras.middle.world_from_camera, positions)));
+}
+
 }  // namespace
 
 void runRender(const RenderOptions& options) {
@@ -77,6 +91,7 @@ void runRender(const RenderOptions& options) {
         return GpuScene(context, scene, [&](double share) { line.show(share); });
     }();
     const RenderOptions used = asUsed(options, scene, notes);
+    const std::vector<glm::vec3> positions = std::move(scene.positions);  // for a camera that sees none of them
     scene = {};
 
     StereoFrame frame(context, gpu_scene);
@@ -92,7 +107,9 @@ void runRender(const RenderOptions& options) {
     stopIfInterrupted();
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
-        report(PathReport{context.deviceName(), used, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)});
+        const PathReport said{context.deviceName(), used, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)};
+        report(said);
+        warnOfBlindFrames(said, positions);
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
@@ -100,6 +117,9 @@ void runRender(const RenderOptions& options) {
         writePictures(files, frame, settings);
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
+        if (seesNothing(result)) {
+            warn(fmt::format("{}: {}", options.scene, describeNearest(cameras.middle.world_from_camera, positions)));
+        }
     }
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
 }

@@ -229,6 +229,72 @@ TEST_CASE("aSceneCanBeWrittenAndDescribed") {
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
 }
 
+TEST_CASE("whatTwoHintsSayOfAFileIsSaidOnceInItsNotes") {
+    const Workplace work;
+    std::string ply = "ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 1\n";
+    for (const char* name :
+         {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"}) {
+        ply += std::string("property float ") + name + "\n";
+    }
+    write(work.path / "a.ply", ply + "end_header\n0 0 3 0 0 0 0.9 0.01 0.02 0.03 1 0 0 0\n");
+    for (const std::string command : {"info a.ply", "render a.ply --size 8x8 --out out", "convert a.ply b.ply"}) {
+        const Outcome outcome = work.run(command);
+        CHECK(outcome.exit_code == 0);
+        const std::size_t first = outcome.output.find("activations applied");
+        CHECK(first != std::string::npos);
+        CHECK(outcome.output.find("activations applied", first + 1) == std::string::npos);
+    }
+    // The flag goes from file to file, and into the options as used.
+    REQUIRE(work.run("convert b.ply c.spz").exit_code == 0);
+    REQUIRE(work.run("convert c.spz d.ply").exit_code == 0);
+    for (const std::string file : {"a.ply", "b.ply", "c.spz", "d.ply"}) {
+        CAPTURE(file);
+        CHECK(work.run("info " + file).output.find("3D Gaussians, antialiased") != std::string::npos);
+        CHECK(work.run("info " + file + " --flatten").output.find("antialiased") == std::string::npos);
+    }
+    CHECK(nlohmann::json::parse(std::ifstream(work.path / "out/report.json"))["options"]["antialiased"] == true);
+}
+
+TEST_CASE("aTrainingsOutputIsRenderedFromItsOwnCameras") {
+    const Workplace work;
+    fs::create_directories(work.path / "garden/point_cloud/iteration_30000");
+    REQUIRE(work.run("scene one-splat --out garden/point_cloud/iteration_30000/point_cloud.ply").exit_code == 0);
+    write(work.path / "garden/cameras.json", R"([
+        {"width": 8, "height": 8, "fx": 8, "fy": 8, "position": [0, 0, 0], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},
+        {"width": 16, "height": 8, "fx": 8, "fy": 8, "position": [0, 0, 1], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}])");
+    const Outcome outcome = work.run("render garden --view 1 --out out");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.errors.empty());
+    CHECK(outcome.output.find("note: garden: a training's output") != std::string::npos);
+    const nlohmann::json report = nlohmann::json::parse(std::ifstream(work.path / "out/report.json"));
+    CHECK(report["options"]["size"] == "16x8");
+    CHECK(report["options"]["view"] == 1);
+    CHECK(report["options"]["cameras"] == "garden/cameras.json");
+}
+
+TEST_CASE("aCameraThatSeesNoSplatIsSaidToInOneLine") {
+    const Workplace work;
+    const auto refusesNothing = [&](const std::string& arguments, const std::string& part) {
+        const Outcome outcome = work.run("render " + arguments + " --size 16x8 --out out");
+        INFO(outcome.errors);
+        CHECK(outcome.exit_code == 0);
+        CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == (part.empty() ? 0 : 1));
+        CHECK(outcome.errors.find(part) != std::string::npos);
+        CHECK(fs::exists(work.path / "out/report.json"));
+        fs::remove_all(work.path / "out");
+    };
+    // The splat is at 0,0,2.
+    for (const std::string mode : {"mono", "two-pass", "shared", "reproject", "paper", "predicted"}) {
+        refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,-1 --mode " + mode,
+                       "binosplat: builtin:one-splat: no splat is seen from 0,0,0: the nearest is 2 scene units away, 180 degrees");
+        refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,1 --mode " + mode, "");
+    }
+    write(work.path / "poses.csv", "0,0,0,0,0,0,0,1\n1,0,0,-9,0,0,0,1\n2,0,0,-10,0,0,0,1\n");
+    refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,1 --path poses.csv",
+                   "builtin:one-splat: frame 1, the first of 2 of 3: no splat is seen from 0,0,9: the nearest is 7 scene units away");
+}
+
 TEST_CASE("renderWritesItsFilesAndNothingElse") {
     const Workplace work;
     const std::string float_extension = extensionOf(PictureKind::kFloat), display_extension = extensionOf(PictureKind::kDisplay);

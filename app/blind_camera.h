@@ -1,0 +1,20 @@
+// What to say of a camera that sees no splat.
+#pragma once
+
+#include "engine/frame.h"
+#include "engine/geometry.h"
+
+#include <glm/glm.hpp>
+
+#include <span>
+#include <string>
+
+namespace binosplat {
+
+// Whether no splat reached a tile of any eye.
+bool seesNothing(const FrameResult& frame);
+
+// How far the nearest of the scene's splats are from the camera, and where: "no splat is seen; the nearest is ...".
+std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions);
+
+}  // namespace binosplat
