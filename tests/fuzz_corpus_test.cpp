@@ -1,5 +1,6 @@
 // The inputs that fuzzing kept, replayed; and where its first ones come from.
 #include "tests/fuzz/targets.h"
+#include "tests/gltf_files.h"
 #include "tests/hostile_scenes.h"
 #ifdef BINOSPLAT_OPENIMAGEIO
 #include "tests/streamed_scenes.h"
@@ -36,6 +37,12 @@ std::multimap<std::string, std::string> makeSeeds() {
     SpzText container = makeSpz(3);
     container.version = 4;
     seeds.emplace("scene", makeSpzContainer(container));
+#ifdef BINOSPLAT_GLTF
+    GltfText gltf = makeGltf(9);
+    gltf.nodes = R"([{"children":[1]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3],"translation":[1,2,3]}])";
+    seeds.emplace("gltf", gltf.glb());
+    seeds.emplace("gltf", makeGltf(0).embedded());
+#endif
 #ifdef BINOSPLAT_OPENIMAGEIO
     for (const int version : {1, 2}) {
         SogText files = makeSog(version, version == 1);

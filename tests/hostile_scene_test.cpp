@@ -1,4 +1,5 @@
 // Broken scene files of every format but SOG: each loads into a whole scene or is refused in one line.
+#include "tests/gltf_files.h"
 #include "tests/hostile.h"
 #include "tests/hostile_scenes.h"
 
@@ -112,3 +113,38 @@ TEST_CASE("broken SPZ files") {
         spliceBytes(plain, 1000, within);
     }
 }
+
+#ifdef BINOSPLAT_GLTF
+TEST_CASE("broken glTF files") {
+    GltfText gltf = makeGltf(9);
+    gltf.nodes = R"([{"children":[1,2]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3]},{"mesh":0,"translation":[1,2,3]}])";
+    gltf.other_primitives = R"(,{"mode":4,"attributes":{"POSITION":0}})";
+    {
+        const std::string good = gltf.glb();
+        SceneAttempts attempts("GLB");
+        truncate(good, attempts.attempt());
+        flipBits(good, 2000, attempts.attempt());
+        spliceBytes(good, 2000, attempts.attempt());
+    }
+    const std::string json = gltf.json("");
+    {
+        // Broken JSON within a GLB that is whole.
+        SceneAttempts attempts("JSON of a GLB");
+        const Attempt attempt = attempts.attempt();
+        const Attempt within = [&](const std::string& what, const std::string& bytes) {
+            attempt(what, GltfText::makeGlb(bytes, gltf.binary()));
+        };
+        flipBits(json, 1000, within);
+        spliceBytes(json, 1000, within);
+        replaceNumbers(json, json.size(), within);
+    }
+    const std::string embedded = gltf.embedded();
+    SceneAttempts attempts("glTF");
+    truncate(embedded, attempts.attempt());
+    flipBits(embedded, 1000, attempts.attempt());
+    spliceBytes(embedded, 1000, attempts.attempt());
+    attempts.attempt()("deep", std::string(R"({"asset":)") + std::string(100'000, '['));
+    attempts.attempt()("deep extras",
+                       replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)"));
+}
+#endif

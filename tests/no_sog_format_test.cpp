@@ -19,3 +19,12 @@ TEST_CASE("a SOG scene names the build that reads it") {
         CHECK(message.find('\n') == std::string::npos);
     }
 }
+
+#ifndef BINOSPLAT_GLTF
+TEST_CASE("a glTF scene names the build that reads it") {
+    const Folder folder;
+    const std::string message = loadError(folder.write("a.gltf", R"({"asset":{"version":"2.0"}})"));
+    CHECK(contains(message, "a.gltf: a glTF scene, which this build cannot read"));
+    CHECK(contains(message, "BINOSPLAT_GLTF=ON"));
+}
+#endif

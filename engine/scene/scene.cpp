@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/compressed_ply.h"
+#include "engine/scene/gltf.h"
 #include "engine/scene/input_file.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
@@ -37,7 +38,7 @@ struct SceneFormat {
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
     bool has_levels = false;
 };
-constexpr std::array<SceneFormat, 8> kSceneFormats{{
+constexpr std::array<SceneFormat, 9> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
@@ -56,6 +57,8 @@ constexpr std::array<SceneFormat, 8> kSceneFormats{{
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFolder(source.path, notes, progress); }},
     {"SOG (.sog)", [](Source& source) { return source.file && isSogFile(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSogFile(*source.file, notes, progress); }},
+    {"glTF with KHR_gaussian_splatting (.gltf, .glb)", [](Source& source) { return source.file && isGltf(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readGltf(*source.file, notes, progress); }},
     {"SPZ", [](Source& source) { return source.file && isSpz(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSpz(*source.file, notes, progress); }},
     {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },  // a guess, so it comes last
@@ -76,6 +79,8 @@ Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, con
     try {
         Scene scene = format.read(source, notes, progress);
         requireUnchanged();
+        check(!scene.is_linear, "{}: its colorSpace is lin_rec709_display, blended as linear light, which cannot be shown yet; expected {}",
+              source.path, "srgb_rec709_display");
         return scene;
     } catch (const Error&) {
         requireUnchanged();

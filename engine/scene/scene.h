@@ -29,6 +29,10 @@ struct Scene {
     int sh_degree = 0;                 // 0 to 3: the highest band with a non-zero coefficient; higher bands are not kept
     bool antialiased = false;          // 3D Gaussians: trained with opacities that the low-pass dims (Yu et al. 2024, section 5.2)
 
+    bool by_distance = false;  // asks to be blended by distance, not by depth
+    bool y_up = false;         // up is +y, and the front is seen from +z, as in glTF; otherwise, as in trainings, -y and from -z
+    bool is_linear = false;    // colours of linear light, to be encoded after blending
+
     [[nodiscard]] std::size_t size() const { return positions.size(); }
     [[nodiscard]] bool isGaussian3d() const { return !thicknesses.empty(); }
 };

@@ -118,6 +118,9 @@ constexpr auto kTargets = std::to_array<Target>({
     {"scene", readScene},
     {"ply", readPly},
     {"spz", readSpz},
+#ifdef BINOSPLAT_GLTF
+    {"gltf", readScene},
+#endif
     {"sog_meta", readSogMeta},
     {"lod_meta", readLodMeta},
 #ifdef BINOSPLAT_OPENIMAGEIO

@@ -2,6 +2,7 @@
 #include "app/view/scenes/scene_up.h"
 
 #include "engine/error.h"
+#include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/setup/camera_file.h"
 

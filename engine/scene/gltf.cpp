@@ -1,0 +1,200 @@
+// From the columns of a glTF to stored attributes, as each node places them.
+#include "engine/scene/gltf.h"
+
+#include "engine/error.h"
+#include "engine/scene/gltf_document.h"
+#include "engine/scene/placed_splat.h"
+#include "engine/scene/quantized.h"
+#include "engine/scene/scene_builder.h"
+#include "engine/scene/sh_turn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace binosplat {
+
+namespace {
+
+// Instances aside, a splat takes 44 bytes and more; a small file with more splats than that is there to fill the memory.
+constexpr std::uint64_t kMostSplatsPerByte = 256;
+
+// Scales are lengths. Until 2026 the extension's drafts had logarithms, some of which are negative in any scene, as no length is.
+bool holdsLogarithms(const GltfDocument& document) {
+    std::vector<float> scales;
+    for (const GltfSplats& part : document.parts) {
+        for (std::uint64_t first = 0; first < part.count(); first += StoredBlock::kRows) {
+            part.scale.read(first, static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first)), scales);
+            if (std::ranges::any_of(scales, [](float scale) { return scale < 0.0f; })) { return true; }
+        }
+    }
+    return false;
+}
+
+// Fills blocks with a part's splats in world axes.
+class PartReader {
+public:
+    PartReader(const GltfSplats& part, bool logarithms, int sh_degree)
+        : part_(part),
+          logarithms_(logarithms),
+          sh_degree_(sh_degree),
+          linear_(part.world_from_node),
+          is_rigid_(linear_ == glm::dmat3(1.0)),
+          is_similarity_(isSimilarity(linear_)),
+          turn_(nearestRotation(linear_)),
+          harmonics_(turn_) {
+        // A mirrored ellipsoid is the one that is turned by the opposite matrix: its axes have no sign.
+        const double sign = glm::determinant(turn_) < 0.0 ? -1.0 : 1.0;
+        turned_ = glm::quat_cast(sign * turn_);
+        scale_ = std::cbrt(std::abs(glm::determinant(linear_)));
+    }
+
+    void read(std::uint64_t first, StoredBlock& block) {
+        readPlaces(first, block);
+        readShapes(first, block);
+        readColours(first, block);
+    }
+
+private:
+    void readPlaces(std::uint64_t first, StoredBlock& block) {
+        part_.position.read(first, block.rows, values_);
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            const glm::dvec4 in_node(values_[3 * row], values_[3 * row + 1], values_[3 * row + 2], 1.0);
+            const glm::dvec4 position = part_.world_from_node * in_node;
+            for (int axis = 0; axis < 3; ++axis) { block.put(kStoredX + axis, row, static_cast<float>(position[axis])); }
+        }
+        part_.opacity.read(first, block.rows, values_);
+        for (std::size_t row = 0; row < block.rows; ++row) { block.put(kStoredOpacity, row, storedOpacity(values_[row])); }
+    }
+
+    void readShapes(std::uint64_t first, StoredBlock& block) {
+        part_.rotation.read(first, block.rows, values_);
+        part_.scale.read(first, block.rows, scales_);
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            glm::dquat rotation{};
+            rotation.x = values_[4 * row], rotation.y = values_[4 * row + 1], rotation.z = values_[4 * row + 2],
+            rotation.w = values_[4 * row + 3];
+            std::array<float, 3> logs{};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                logs[axis] = logarithms_ ? scales_[3 * row + axis] : storedScale(scales_[3 * row + axis]);
+            }
+            if (is_similarity_ && !is_rigid_) {
+                rotation = turned_ * rotation;
+                for (float& log : logs) { log += static_cast<float>(std::log(scale_)); }
+            } else if (!is_similarity_ && glm::length(rotation) > 0.0) {
+                const Ellipsoid placed = place(linear_, {glm::normalize(rotation), glm::exp(glm::dvec3(logs[0], logs[1], logs[2]))});
+                rotation = placed.rotation;
+                for (int axis = 0; axis < 3; ++axis) {
+                    logs[static_cast<std::size_t>(axis)] = storedScale(static_cast<float>(placed.scales[axis]));
+                }
+            }
+            for (int axis = 0; axis < 3; ++axis) { block.put(kStoredScale0 + axis, row, logs[static_cast<std::size_t>(axis)]); }
+            block.put(kStoredRot0, row, static_cast<float>(rotation.w));
+            block.put(kStoredRot1, row, static_cast<float>(rotation.x));
+            block.put(kStoredRot2, row, static_cast<float>(rotation.y));
+            block.put(kStoredRot3, row, static_cast<float>(rotation.z));
+        }
+    }
+
+    void readColours(std::uint64_t first, StoredBlock& block) {
+        const std::size_t per_channel = static_cast<std::size_t>(shCoefficientCount(sh_degree_)) - 1;
+        for (std::size_t row = 0; row < block.rows; ++row) { std::fill_n(block.rest(row), 3 * per_channel, 0.0f); }
+        if (part_.colour) {
+            part_.colour->read(first, block.rows, values_);
+            const auto width = static_cast<std::size_t>(part_.colour->components());
+            for (std::size_t row = 0; row < block.rows; ++row) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    // Without the half that a displayed colour has more: so the extension has it.
+                    block.put(kStoredDc0 + channel, row, values_[width * row + static_cast<std::size_t>(channel)] / kShConstant);
+                }
+            }
+            return;
+        }
+        for (std::size_t k = 0; k < part_.sh.size(); ++k) {
+            part_.sh[k].read(first, block.rows, values_);
+            for (std::size_t row = 0; row < block.rows; ++row) {
+                for (std::size_t channel = 0; channel < 3; ++channel) {
+                    const float value = values_[3 * row + channel];
+                    if (k == 0) {
+                        block.column(kStoredDc0 + static_cast<int>(channel))[row] = value;
+                    } else {
+                        block.rest(row)[channel * per_channel + k - 1] = value;
+                    }
+                }
+            }
+        }
+        if (is_rigid_ || part_.sh.size() <= 1) { return; }
+        const int degree = part_.sh.size() > 9 ? 3 : part_.sh.size() > 4 ? 2 : 1;
+        for (std::size_t row = 0; row < block.rows; ++row) {
+            for (std::size_t channel = 0; channel < 3; ++channel) { harmonics_.apply(block.rest(row) + channel * per_channel, degree); }
+        }
+    }
+
+    const GltfSplats& part_;
+    bool logarithms_;
+    int sh_degree_;
+    glm::dmat3 linear_;
+    bool is_rigid_, is_similarity_;  // rigid: moved alone
+    glm::dmat3 turn_;
+    glm::dquat turned_{};
+    double scale_ = 1.0;
+    ShTurn harmonics_;
+    std::vector<float> values_, scales_;
+};
+
+}  // namespace
+
+bool isGltf(InputFile& file) {
+    const std::string_view start = file.peek(std::size_t{1} << 16);
+    if (start.starts_with("glTF")) { return true; }
+    const std::size_t first = start.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || start[first] != '{') { return false; }
+    // Any of them may come first, and be longer than this.
+    constexpr std::string_view kKeys[] = {"\"asset\"", "\"accessors\"", "\"bufferViews\"", "\"extensionsUsed\"", "\"meshes\""};
+    return std::ranges::any_of(kKeys, [&](std::string_view key) { return start.find(key) != std::string_view::npos; });
+}
+
+Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
+    if (progress) { progress(0.0); }
+    const GltfDocument document = openGltf(file);
+    std::uint64_t total = 0;
+    for (const GltfSplats& part : document.parts) {
+        total += part.count();
+        check(total <= kMostSplatsPerByte * document.bytes, "{}: places {} splats and more, expected at most {} for each of its {} bytes",
+              file.name(), total, kMostSplatsPerByte, document.bytes);
+    }
+    const bool logarithms = holdsLogarithms(document);
+    bool sheared = false;
+    SceneBuilder builder(file.name(), total, document.sh_degree, true);
+    StoredBlock block;
+    std::uint64_t done = 0, blocks = 0;
+    for (const GltfSplats& part : document.parts) {
+        PartReader reader(part, logarithms, document.sh_degree);
+        sheared = sheared || !isSimilarity(glm::dmat3(part.world_from_node));
+        for (std::uint64_t first = 0; first < part.count(); first += block.rows) {
+            if (progress && blocks++ % 128 == 0) { progress(static_cast<double>(done) / static_cast<double>(total)); }
+            block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, part.count() - first));
+            reader.read(first, block);
+            builder.append(block);
+            done += block.rows;
+        }
+    }
+    for (const GltfBuffer& buffer : document.buffers) { buffer.requireUnchanged(); }
+    if (progress) { progress(1.0); }
+    Scene scene = builder.finish(notes);
+    scene.y_up = true;
+    scene.by_distance = document.by_distance;
+    scene.is_linear = document.is_linear;
+    notes.lines.insert(notes.lines.end(), document.notes.begin(), document.notes.end());
+    if (logarithms) {
+        notes.lines.push_back(fmt::format(
+            "{}: some scales are negative: all were read as logarithms, as early drafts of KHR_gaussian_splatting have them", file.name()));
+    }
+    if (sheared) {
+        notes.lines.push_back(
+            fmt::format("{}: a node stretches its splats unevenly; the harmonics of their colours are turned, not stretched", file.name()));
+    }
+    return scene;
+}
+
+}  // namespace binosplat

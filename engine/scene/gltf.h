@@ -1,0 +1,16 @@
+// glTF 2.0 scenes with KHR_gaussian_splatting: a .gltf with its buffers inside or beside it, or a .glb.
+#pragma once
+
+#include "engine/scene/input_file.h"
+#include "engine/scene/scene.h"
+
+namespace binosplat {
+
+// Whether the file is a GLB, by its first bytes, or JSON with the keys of glTF.
+bool isGltf(InputFile& file);
+
+// All splats that the default scene's nodes place, in that scene's axes; the harmonics are turned along. What has no splats is left out,
+// with a note. Throws Error in a build without tinygltf.
+Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress);
+
+}  // namespace binosplat

@@ -1,0 +1,71 @@
+// Files by InputFile; URIs after RFC 3986, as far as glTF uses them.
+#include "engine/scene/gltf_buffers.h"
+
+#include "engine/error.h"
+#include "engine/scene/gltf_parser.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+// %20 and the like; none if a % has no two digits behind it.
+std::optional<std::string> decodePercents(const std::string& uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] != '%') {
+            text += uri[i];
+            continue;
+        }
+        unsigned letter = 0;
+        if (i + 2 >= uri.size() || std::from_chars(uri.data() + i + 1, uri.data() + i + 3, letter, 16).ptr != uri.data() + i + 3) {
+            return std::nullopt;
+        }
+        text += static_cast<char>(letter);
+        i += 2;
+    }
+    return text;
+}
+
+}  // namespace
+
+GltfBuffer::GltfBuffer(std::unique_ptr<InputFile> file) : own_(std::move(file)), file_(own_.get()), size_bytes_(own_->sizeBytes()) {}
+GltfBuffer::GltfBuffer(std::vector<std::byte> bytes) : bytes_(std::move(bytes)), size_bytes_(bytes_.size()) {}
+
+void GltfBuffer::read(std::uint64_t offset, std::span<std::byte> target) const {
+    if (file_ == nullptr) {
+        std::memcpy(target.data(), bytes_.data() + offset, target.size());
+        return;
+    }
+    check(file_->readAt(offset_ + offset, target) == target.size(), "{}: ends at byte {}, {} more were expected", file_->name(),
+          offset_ + offset, target.size());
+}
+
+void GltfBuffer::requireUnchanged() const {
+    if (own_) { own_->requireUnchanged(); }
+}
+
+GltfBuffer openGltfUri(const InputFile& file, const std::string& uri, const std::string& place) {
+    if (uri.starts_with("data:")) {
+        std::optional<std::vector<std::byte>> bytes = decodeDataUri(uri);
+        check(bytes.has_value(), "{}: uri begins with '{}', expected data:application/octet-stream;base64, and base64", place,
+              uri.substr(0, 40));
+        return GltfBuffer(std::move(*bytes));
+    }
+    namespace fs = std::filesystem;
+    const std::optional<std::string> name = decodePercents(uri);
+    const fs::path path = name ? fs::path(*name) : fs::path();
+    const bool within = name && !name->empty() && path.is_relative() &&
+                        name->find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
+                        std::find(path.begin(), path.end(), "..") == path.end();
+    check(within, "{}: uri is '{}', expected a path within the folder of the file", place, uri.substr(0, 200));
+    return GltfBuffer(std::make_unique<InputFile>((fs::path(file.name()).parent_path() / path).string()));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,23 @@
+// Splats under a transform that need not be rigid: a Gaussian stays one, since its covariance goes along.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace binosplat {
+
+struct Ellipsoid {
+    glm::dquat rotation;  // its columns are the axes
+    glm::dvec3 scales;    // of the axes, not negative
+};
+
+// Whether a matrix is a rotation, with or without a mirror, times one scale for all directions.
+bool isSimilarity(const glm::dmat3& matrix);
+
+// The rotation, with or without a mirror, that is nearest to an invertible matrix: the orthogonal part of its polar decomposition.
+glm::dmat3 nearestRotation(const glm::dmat3& matrix);
+
+// What an ellipsoid with a unit rotation becomes under `matrix`.
+Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid);
+
+}  // namespace binosplat
