@@ -58,6 +58,7 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
     if (!notes.level_splats.empty()) { load.lod = notes.level; }
     load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
     load.antialiased = scene.antialiased;
+    if (!options.run.stereo.order) { options.run.stereo.order = scene.by_distance ? Order::kDistance : Order::kDepth; }
     return options;
 }
 
@@ -95,7 +96,7 @@ void runRender(const RenderOptions& options) {
     scene = {};
 
     StereoFrame frame(context, gpu_scene);
-    FrameSettings settings = frameSettings(options.run.camera, stereo);
+    FrameSettings settings = frameSettings(options.run.camera, stereo, gpu_scene.usualOrder());
     settings.gazes = gazesOf(cameras, stereo);
     const auto report = [&](const auto& said) {
         writeText(files.staging() / "report.json", reportJson(said));

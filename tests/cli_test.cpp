@@ -1,5 +1,6 @@
 // Facts about the program as its user meets it: exit codes, one line for each error, and nothing left behind.
 #include "engine/picture/image_io.h"
+#include "tests/gltf_files.h"
 #include "tests/lpips_weights.h"
 #include "tests/run_program.h"
 
@@ -28,7 +29,7 @@ void checkRefused(const Outcome& outcome, int exit_code, const std::string& part
     CHECK(outcome.errors.find(part) != std::string::npos);
 }
 
-void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
 const std::string kNoDriver = "VK_DRIVER_FILES=/nonexistent/none.json VK_ICD_FILENAMES=/nonexistent/none.json";
 
@@ -272,6 +273,26 @@ TEST_CASE("aTrainingsOutputIsRenderedFromItsOwnCameras") {
     CHECK(report["options"]["view"] == 1);
     CHECK(report["options"]["cameras"] == "garden/cameras.json");
 }
+
+#ifdef BINOSPLAT_GLTF
+TEST_CASE("aGltfSaysInWhichOrderItsSplatsAreBlendedUnlessTheUserDoes") {
+    const Workplace work;
+    for (const std::string method : {"cameraDistance", "zDepth"}) {
+        GltfText gltf = makeGltf(9);
+        gltf.extension = R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":")" + method + "\"}";
+        write(work.path / "a.glb", gltf.glb());
+        const auto usedOrder = [&](const std::string& option) {
+            const Outcome outcome = work.run("render a.glb --size 16x8 --out out " + option);
+            INFO(outcome.errors);
+            CHECK(outcome.exit_code == 0);
+            return nlohmann::json::parse(std::ifstream(work.path / "out/report.json"))["options"]["order"].get<std::string>();
+        };
+        CHECK(usedOrder("") == (method == "zDepth" ? "depth" : "distance"));
+        CHECK(usedOrder("--order depth") == "depth");
+        CHECK(usedOrder("--order distance") == "distance");
+    }
+}
+#endif
 
 TEST_CASE("aCameraThatSeesNoSplatIsSaidToInOneLine") {
     const Workplace work;

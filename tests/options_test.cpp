@@ -213,11 +213,13 @@ TEST_CASE("eyesLookAtTheirLensesOrWhereTheyAreSaidTo") {
 TEST_CASE("splatsGoByDepthOrByDistance") {
     const Workplace work;
     writeText(work.path / "a.toml", "[stereo]\norder = \"distance\"\n");
-    CHECK(render({}).stereo.order == Order::kDepth);
+    CHECK_FALSE(render({}).stereo.order);  // as the scene asks
     CHECK(frameSettings({}, render({}).stereo).order == Order::kDepth);
+    CHECK(frameSettings({}, render({}).stereo, Order::kDistance).order == Order::kDistance);
     const RunOptions by_distance = render({"--config", (work.path / "a.toml").string()});
     CHECK(by_distance.stereo.order == Order::kDistance);
     CHECK(frameSettings({}, by_distance.stereo).order == Order::kDistance);
+    CHECK(frameSettings({}, render({"--order", "depth"}).stereo, Order::kDistance).order == Order::kDepth);
     CHECK(render({"--config", (work.path / "a.toml").string(), "--order", "depth"}).stereo.order == Order::kDepth);
     CHECK(parse<ViewOptions>({"view", "a", "--order", "distance"}).run.stereo.order == Order::kDistance);
     CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--orders"}).orders);
@@ -276,6 +278,18 @@ TEST_CASE("aLevelFitsIfItsSplatsDo") {
     CHECK(!choice.fits(65536, 1));
     CHECK(!levelChoice({}, 3).fits(65536, 0));  // of 52 bytes
     CHECK(!choice.fits(std::uint64_t{1} << 60, 3));
+}
+
+TEST_CASE("aSceneWhoseYIsUpIsSeenUprightAndFromItsFront") {
+    Scene scene = makeBox();
+    const View trained = viewOfScene(scene, 60.0);
+    scene.y_up = true;
+    const View upright = viewOfScene(scene, 60.0);
+    CHECK(trained.up == glm::dvec3(0.0, -1.0, 0.0));
+    CHECK(upright.up == glm::dvec3(0.0, 1.0, 0.0));
+    CHECK(upright.look == trained.look);
+    CHECK(upright.eye.z - upright.look.z == doctest::Approx(trained.look.z - trained.eye.z));
+    CHECK(upright.eye.z > upright.look.z);
 }
 
 TEST_CASE("vectorsMayBeginWithAMinus") {
@@ -462,7 +476,7 @@ TEST_CASE("methodsSweepTheirSettings") {
     CHECK(plan.methods[4].stereo.budget == 0.5);
     CHECK(plan.methods[4].stereo.gap_px == 3);
     CHECK(plan.methods[4].stereo.order == Order::kDistance);
-    CHECK(plan.methods[0].stereo.order == Order::kDepth);
+    CHECK_FALSE(plan.methods[0].stereo.order);
     CHECK(plan.methods[4].stereo.margin_px == 16);
     CHECK(!plan.ssim);
     const std::vector<DrawnViews> drawn = viewsOf(plan, "/some/where/a.ply", options.run);

@@ -71,7 +71,7 @@ public:
 
     void play(const Cameras& cameras, double time_s, std::vector<MotionFrame>& result) {
         const int affiliated = 1 - shared_.stereo.dominant;
-        std::map<Order, Image> full_by_order;
+        std::map<std::optional<Order>, Image> full_by_order;
         for (MethodHistory& sequence : sequences_) {
             shared_.stereo.order = sequence.method.stereo.order;
             Image& full = full_by_order[shared_.stereo.order];
@@ -99,7 +99,7 @@ private:
     MethodFrames frames_;
     std::string name_;
     std::vector<MethodHistory> sequences_;
-    std::map<Order, Image> full_before_;
+    std::map<std::optional<Order>, Image> full_before_;
 };
 
 // One view of a scene at every pose.

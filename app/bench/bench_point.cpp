@@ -117,7 +117,7 @@ StereoFrame& MethodFrames::frameFor(const StereoOptions& stereo) {
 MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo,
                                             bool compared) {
     stopIfInterrupted();
-    FrameSettings settings = frameSettings(camera, stereo);
+    FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = settings.square_boxes = compared;
     settings.half_floats = !compared;  // as a viewer has it
@@ -137,7 +137,7 @@ std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOption
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
     MethodFrames frames(context, point.gpu_scene);
-    std::map<Order, Image> full_by_order;
+    std::map<std::optional<Order>, Image> full_by_order;
     for (const BenchMethod& method : plan.methods) {
         Image& full = full_by_order[method.stereo.order];
         if (full.values.empty()) { full = renderFull(method.stereo, point, frames); }

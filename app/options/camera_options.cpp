@@ -40,14 +40,15 @@ View viewOfScene(const Scene& scene, double fov_x_deg) {
     if (isBuiltin(scene.name)) {
         if (const std::optional<View> view = builtinView(scene.name)) { return *view; }
     }
-    View view{{0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, fov_x_deg};
+    const double up_y = scene.y_up ? 1.0 : -1.0;  // the front is on the same side of z
+    View view{{0.0, 0.0, up_y}, {0.0, 0.0, 0.0}, {0.0, up_y, 0.0}, fov_x_deg};
     if (scene.size() == 0) { return view; }
     glm::dvec3 low, high;
     for (int axis = 0; axis < 3; ++axis) { std::tie(low[axis], high[axis]) = commonRange(scene, axis); }
     // A sphere about the common box fills the picture's width; a point-like scene is seen from one unit away.
     const double radius = std::max(0.5 * glm::length(high - low), 1e-3);
     view.look = 0.5 * (low + high);
-    view.eye = view.look - glm::dvec3(0.0, 0.0, radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0))));
+    view.eye = view.look + glm::dvec3(0.0, 0.0, up_y * radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0))));
     return view;
 }
 

@@ -28,13 +28,13 @@ Mode readMode(const Setting& setting) {
     return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
 }
 
-FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo) {
+FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual) {
     FrameSettings settings;
     settings.mode = stereo.mode;
     settings.dominant = stereo.dominant;
     settings.near = camera.near;
     settings.background = camera.background;
-    settings.order = stereo.order;
+    settings.order = stereo.order.value_or(usual);
     settings.per_eye = stereo.per_eye;
     settings.stereo.depth_choice = depthChoice(stereo.depth);
     settings.stereo.forward = stereo.resampling == Resampling::kForward;

@@ -12,6 +12,6 @@ namespace binosplat {
 Mode readMode(const Setting& setting);
 
 // The settings of a frame as the options say.
-FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo);
+FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual = Order::kDepth);
 
 }  // namespace binosplat

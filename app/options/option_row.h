@@ -214,7 +214,7 @@ auto mode() {
     return oneOf<Members...>({kModeNames.begin(), kModeNames.end()}, readMode);
 }
 
-// Of an enum, or of a bool, by the names of its values from 0 on.
+// Of an enum, which may be absent, or of a bool, by the names of its values from 0 on.
 template <auto... Members>
 auto named(std::vector<std::string_view> names) {
     using At = Path<Members...>;
@@ -222,9 +222,21 @@ auto named(std::vector<std::string_view> names) {
     using Field = std::remove_cvref_t<decltype(At::in(std::declval<Owner&>()))>;
     OptionField<Owner> made;
     made.read = [names](const Setting& s, Owner& owner) {
-        At::in(owner) = static_cast<Field>(std::ranges::find(names, readChoice(s, names)) - names.begin());
+        const auto index = std::ranges::find(names, readChoice(s, names)) - names.begin();
+        if constexpr (requires { typename Field::value_type; }) {
+            At::in(owner) = static_cast<typename Field::value_type>(index);
+        } else {
+            At::in(owner) = static_cast<Field>(index);
+        }
     };
-    made.value = [names](const Owner& owner) -> OptionValue { return std::string(names[static_cast<std::size_t>(At::in(owner))]); };
+    made.value = [names](const Owner& owner) -> OptionValue {
+        if constexpr (requires { typename Field::value_type; }) {
+            if (!At::in(owner)) { return {}; }
+            return std::string(names[static_cast<std::size_t>(*At::in(owner))]);
+        } else {
+            return std::string(names[static_cast<std::size_t>(At::in(owner))]);
+        }
+    };
     made.range = fmt::format("{}", fmt::join(names, ", "));
     made.choices = std::move(names);
     return made;

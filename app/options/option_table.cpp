@@ -89,7 +89,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::count<kStereo, &StereoOptions::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
          field::named<kStereo, &StereoOptions::depth>({"sum", "mean", "inverse"})},
-        {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes"},
+        {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes",
+          "what the scene says, or depth"},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
           "reproject and paper modes: moved pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in the "

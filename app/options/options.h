@@ -45,7 +45,7 @@ struct StereoOptions {
     double budget = 0.2;
     std::uint32_t move_cost = kDefaultMoveCost;
     PixelDepth depth = PixelDepth::kInverse;
-    Order order = Order::kDepth;
+    std::optional<Order> order;  // absent: as the scene asks, by depth mostly
     Resampling resampling = Resampling::kCubic;
     bool per_eye = false;
     std::uint32_t gap_px = 2;

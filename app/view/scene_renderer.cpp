@@ -75,11 +75,12 @@ void SceneRenderer::dropDepth(HeadsetStay& stay) {
     stay.images->dropDepth();
 }
 
-FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views) {
+FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views,
+                                             Order usual_order) {
     StereoOptions stereo = settings.stereo;
     stereo.mode = governor_.settings().mode;
     stereo.budget = governor_.settings().budget;
-    FrameSettings frame = frameSettings(options_.camera, stereo);
+    FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
     // Of the wearer, however large the scene is.
     frame.near = options_.camera.near * scale;
     frame.units_per_metre = scale;
@@ -101,7 +102,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
 
 void SceneRenderer::prepare(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                             const FrameViews& views) {
-    frame_ = settingsOfFrame(stay, settings, scene_from_room.scale, views);
+    frame_ = settingsOfFrame(stay, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
     eyes_.clear();
     for (const int e : {kLeft, kRight}) {
         if (settings.showsOneEye() && e != frame_.dominant) { continue; }

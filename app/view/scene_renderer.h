@@ -58,7 +58,8 @@ public:
 
 private:
     void makeImages(HeadsetStay& stay, glm::uvec2 size_px);
-    [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views);
+    [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views,
+                                                Order usual_order);
     void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
     void sayHidden(bool one_eye);
     void sayShort();

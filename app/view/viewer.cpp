@@ -350,6 +350,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
     if (headset_.stay() != nullptr) { status.refresh_rates = stay().refresh_rates; }
+    if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
     if (status.has_scene) { status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
     panel_.askFor(files_);

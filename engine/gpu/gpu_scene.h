@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/buffer.h"
+#include "engine/mode.h"
 #include "engine/scene/scene.h"
 #include "shaders/shared/types.h"
 
@@ -22,6 +23,8 @@ public:
     [[nodiscard]] std::uint32_t splatKind() const { return splat_kind_; }
     // Likewise for passes that dimming does not matter to: kDiscs or kGaussians.
     [[nodiscard]] std::uint32_t splatShape() const { return splat_kind_ == gpu::kDiscs ? gpu::kDiscs : gpu::kGaussians; }
+    // As the scene asks for it.
+    [[nodiscard]] Order usualOrder() const { return usual_order_; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
@@ -32,6 +35,7 @@ private:
     std::uint32_t splat_count_ = 0;
     int sh_degree_ = 0;
     std::uint32_t splat_kind_ = gpu::kDiscs;
+    Order usual_order_ = Order::kDepth;
     std::uint32_t chunk_bits_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;

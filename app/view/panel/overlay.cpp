@@ -60,7 +60,7 @@ SliderRange sliderOf(const OptionRow<Owner>& row) {
     return {*row.field.least, row.field.slider_most.value_or(*row.field.most)};
 }
 
-void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
+void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order) {
     RunOptions options;
     options.stereo = settings.stereo;
     StereoOptions& stereo = options.stereo;
@@ -70,7 +70,7 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings) {
     choose(widgets, "Method", methods, names, options, 3);
     choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x * 2.0f / 3.0f);  // the row's last third is free
-    bool by_distance = stereo.order == Order::kDistance;
+    bool by_distance = stereo.order.value_or(usual_order) == Order::kDistance;
     if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
     choose(widgets, "Depth of a pixel", *findRunRow("depth"), options, 3);
     widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
@@ -171,7 +171,7 @@ void drawSaid(const OverlayStatus& status) {
 }
 
 void drawSettings(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
-    drawMethod(widgets, settings);
+    drawMethod(widgets, settings, status.usual_order);
     drawResolution(widgets, settings);
     drawQuality(widgets, settings);
     widgets.checkbox("Two hands may tilt the scene", &settings.tilt);

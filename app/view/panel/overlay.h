@@ -20,6 +20,7 @@ struct OverlayStatus {
     std::string scene;
     std::string state;                                       // why the headset shows nothing; empty: it does
     bool has_scene = false;                                  // there is something to see
+    Order usual_order = Order::kDepth;                       // the scene's, where nobody chose one
     std::optional<double> loading;                           // share done, while a scene is on its way
     const FrameResult* frame = nullptr;                      // the last one; null before the first
     std::vector<float> frame_ms;                             // from frame to frame by the clock on the wall, oldest first
