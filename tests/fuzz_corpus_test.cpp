@@ -2,6 +2,7 @@
 #include "tests/fuzz/targets.h"
 #include "tests/gltf_files.h"
 #include "tests/hostile_scenes.h"
+#include "tests/ksplat_files.h"
 #ifdef BINOSPLAT_OPENIMAGEIO
 #include "tests/streamed_scenes.h"
 #endif
@@ -30,6 +31,12 @@ std::multimap<std::string, std::string> makeSeeds() {
     }
     seeds.emplace("ply", makeCompressedPly().substr(4));
     seeds.emplace("scene", makeSplatFile());
+    for (const int level : {0, 1, 2}) {
+        KsplatText text;
+        text.level = level;
+        text.degrees = {2, 1};
+        seeds.emplace("ksplat", text.bytes());
+    }
     for (const std::uint32_t version : {2u, 3u}) {
         seeds.emplace("spz", makeSpz(version).bytes().substr(4));
         seeds.emplace("scene", gzip(makeSpz(version).bytes()));

@@ -2,6 +2,7 @@
 #include "tests/gltf_files.h"
 #include "tests/hostile.h"
 #include "tests/hostile_scenes.h"
+#include "tests/ksplat_files.h"
 
 TEST_SUITE_BEGIN("hostile_scene");
 
@@ -86,6 +87,33 @@ TEST_CASE("broken .splat files") {
     truncate(good, attempts.attempt());
     flipBits(good, 1000, attempts.attempt());
     spliceBytes(good, 1000, attempts.attempt());
+}
+
+TEST_CASE("broken .ksplat files") {
+    for (const int level : {0, 1, 2}) {
+        KsplatText text;
+        text.level = level;
+        text.degrees = {1, 2};
+        const std::string good = text.bytes();
+        // Most of the headers is empty: what is not is attacked.
+        const std::size_t first = 4096 + 1024, sections = 4096;
+        SceneAttempts attempts(fmt::format(".ksplat {}", level));
+        const Attempt attempt = attempts.attempt();
+        const auto around = [&](std::size_t begin, std::size_t end) {
+            return Attempt([&, begin, end](const std::string& what, const std::string& bytes) {
+                attempt(fmt::format("{} to {}, {}", begin, end, what), good.substr(0, begin) + bytes + good.substr(end));
+            });
+        };
+        for (const auto& [begin, end] :
+             {std::pair(std::size_t{0}, std::size_t{44}), std::pair(sections, sections + 44), std::pair(first, first + 44)}) {
+            flipBits(good.substr(begin, end - begin), 1000, around(begin, end));
+            spliceBytes(good.substr(begin, end - begin), 500, around(begin, end));
+        }
+        flipBits(good.substr(first + 1024), 200, around(first + 1024, good.size()));
+        for (std::size_t length = 0; length < good.size(); length += 7 * kStep) {
+            attempt(fmt::format("the first {} bytes", length), good.substr(0, length));
+        }
+    }
 }
 
 TEST_CASE("broken SPZ containers") {

@@ -5,6 +5,7 @@
 #include "engine/scene/compressed_ply.h"
 #include "engine/scene/gltf.h"
 #include "engine/scene/input_file.h"
+#include "engine/scene/ksplat.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
@@ -38,7 +39,7 @@ struct SceneFormat {
     Scene (*read)(Source& source, LoadNotes& notes, const Progress& progress);
     bool has_levels = false;
 };
-constexpr std::array<SceneFormat, 9> kSceneFormats{{
+constexpr std::array<SceneFormat, 10> kSceneFormats{{
     {"PlayCanvas compressed PLY", [](Source& source) { return source.file && isCompressedPly(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readCompressedPly(*source.file, notes, progress); }},
     {"PLY (2DGS or 3DGS)", [](Source& source) { return source.file && isPly(*source.file); },
@@ -61,6 +62,8 @@ constexpr std::array<SceneFormat, 9> kSceneFormats{{
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readGltf(*source.file, notes, progress); }},
     {"SPZ", [](Source& source) { return source.file && isSpz(*source.file); },
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSpz(*source.file, notes, progress); }},
+    {".ksplat", [](Source& source) { return source.file && isKsplat(*source.file); },
+     [](Source& source, LoadNotes& notes, const Progress& progress) { return readKsplat(*source.file, notes, progress); }},
     {".splat", [](Source& source) { return source.file && isSplatFile(*source.file); },  // a guess, so it comes last
      [](Source& source, LoadNotes& notes, const Progress& progress) { return readSplatFile(*source.file, notes, progress); }},
 }};

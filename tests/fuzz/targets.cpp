@@ -118,6 +118,7 @@ constexpr auto kTargets = std::to_array<Target>({
     {"scene", readScene},
     {"ply", readPly},
     {"spz", readSpz},
+    {"ksplat", readScene},
 #ifdef BINOSPLAT_GLTF
     {"gltf", readScene},
 #endif

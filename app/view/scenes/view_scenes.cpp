@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 }  // namespace
 
 bool looksLikeScene(const fs::path& path) {
-    static constexpr std::array<std::string_view, 6> kExtensions{".ply", ".splat", ".spz", ".sog", ".gltf", ".glb"};
+    static constexpr std::array<std::string_view, 7> kExtensions{".ply", ".splat", ".ksplat", ".spz", ".sog", ".gltf", ".glb"};
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
         return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path);
