@@ -13,16 +13,12 @@ layout(constant_id = 5) const bool kSeeThrough = false;  // its alpha goes along
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
+#include "lib/srgb.glsl"
 
 layout(push_constant, scalar) uniform Push { PresentPass pass; };
 
 // NaN becomes 0, as everything that is not above 0.
 vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), greaterThan(colour, vec3(0))); }
-
-// Light of a display-encoded value (IEC 61966-2-1).
-vec3 decode(vec3 encoded) { return mix(pow((encoded + 0.055) / 1.055, vec3(2.4)), encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))); }
-
-vec3 encode(vec3 light) { return mix(1.055 * pow(light, vec3(1 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308))); }
 
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {

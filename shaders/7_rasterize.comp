@@ -26,6 +26,7 @@ layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going t
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/picture.glsl"
+#include "lib/srgb.glsl"
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
 
@@ -241,7 +242,8 @@ void main() {
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
-            putColour(pass.colours, pass.half_colours, at, vec4(colour[p] + left * pass.background, 1 - left));
+            const vec3 blended = colour[p] + left * pass.background;
+            putColour(pass.colours, pass.half_colours, at, vec4(pass.is_light != 0 ? encode(blended) : blended, 1 - left));
             if (kDepth) { pass.depths.at[at] = depth[p]; }
             if (kMoments) { pass.moments.at[at] = moments[p]; }
             if (kMoving && (!kEvenRows || (pixel.y & 1) == 0)) {

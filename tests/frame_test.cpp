@@ -1,6 +1,7 @@
 // Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
 #include "engine/frame.h"
 #include "engine/picture/metrics.h"
+#include "engine/srgb.h"
 #include "tests/frame_runs.h"
 #include "tests/near_thresholds.h"
 #include "tests/shared_data.h"
@@ -127,6 +128,43 @@ TEST_CASE_FIXTURE(Gpu, "a cloud about the eye is rendered as the twin renders it
 TEST_CASE_FIXTURE(Gpu, "a cloud of 3D Gaussians is rendered as the twin renders it, dimmed or not") {
     for (const bool antialiased : {false, true}) {
         checkAgainstTwin(*this, test::viewGaussians({320, 240}, antialiased), makeSettings({0.1, 0.2, 0.3}), 78.0);  // measured: 81.7
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of the background, and then encoded") {
+    ViewedScene view = test::viewGaussians({320, 240}, false);
+    const glm::dvec3 background(0.1, 0.4, 0.8);
+    reference::Picture blended = renderTwin(view, makeSettings(lightOf(background)));
+    const Image as_stored = test::toImage(blended);
+    for (glm::dvec4& pixel : blended.rgba) { pixel = glm::dvec4(encodedOf(glm::dvec3(pixel)), pixel.a); }
+    view.scene.is_linear = true;
+    const FrameSettings settings = makeSettings(background);
+    const Image picture = renderMono(context(), view.scene, view.eye, settings).picture;
+    const double to_sum_db = compare(picture, test::toImage(blended), 4).psnrDb(),
+                 to_twin_db = compare(picture, test::toImage(renderTwin(view, settings)), 4).psnrDb();
+    MESSAGE(to_sum_db << " dB, to the twin " << to_twin_db);
+    CHECK(to_sum_db >= 75.0);
+    CHECK(to_twin_db >= 75.0);
+    CHECK(compare(picture, as_stored, 4).psnrDb() < 30.0);  // so that it matters
+    // Nothing but background is the background, and both eyes are encoded, moved or not.
+    const Scene nothing = [&] {
+        Scene empty;
+        empty.is_linear = true;
+        return empty;
+    }();
+    const Image bare = renderMono(context(), nothing, view.eye, settings).picture;
+    for (int channel = 0; channel < 3; ++channel) {
+        CHECK(bare.values[static_cast<std::size_t>(channel)] == doctest::Approx(background[channel]).epsilon(1e-5));
+    }
+    const std::array<Eye, 2> eyes = stereoPair(view.eye, 0.02);
+    FrameSettings stereo = settings;
+    stereo.mode = Mode::kTwoPass;
+    const Image full = test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight];
+    for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
+        stereo.mode = mode;
+        const double db = compare(test::renderPair(context(), view.scene, eyes, stereo).pictures[kRight], full, 3).psnrDb();
+        MESSAGE(nameOf(mode) << ": " << db << " dB");
+        CHECK(db > (mode == Mode::kShared ? 80.0 : 25.0));
     }
 }
 

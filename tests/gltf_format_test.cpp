@@ -1,6 +1,7 @@
 // glTF with KHR_gaussian_splatting: values, nodes, buffers, what is left out and what is refused.
-#include "engine/scene/gltf.h"
+#include "engine/scene/ply.h"
 #include "engine/scene/sh_basis.h"
+#include "engine/scene/spz.h"
 #include "tests/gltf_files.h"
 #include "tests/shared_data.h"
 
@@ -48,11 +49,6 @@ void checkAlike(const Scene& a, const Scene& b) {
         CHECK(largest(covarianceOf(a, i) - covarianceOf(b, i)) < 1e-6 * largest(covarianceOf(b, i)));
         CHECK(a.opacities[i] == doctest::Approx(b.opacities[i]).epsilon(1e-6));
     }
-}
-
-Scene readAlone(const std::string& path, LoadNotes& notes) {
-    InputFile file(path);
-    return readGltf(file, notes, {});
 }
 
 std::string quoted(const glm::dmat4& matrix) {
@@ -185,6 +181,15 @@ TEST_CASE("what the extension's keys say is kept, and what they say that is not 
         return loadScene(folder.write("keys.glb", gltf.glb()), 0, &notes);
     };
     LoadNotes notes;
+    const Scene light = loadWith(R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})", notes);
+    CHECK(light.is_linear);
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "linear light"));
+    for (const bool as_ply : {true, false}) {
+        CHECK_THROWS_WITH_AS(as_ply ? writePly(light, folder.file("out.ply")) : writeSpz(light, folder.file("out.spz")),
+                             doctest::Contains("cannot hold colours of linear light"), Error);
+    }
+    CHECK(folder.fileCount() == 1);
     CHECK(loadWith(R"({"kernel":"ellipse","colorSpace":"srgb_rec709_display","sortingMethod":"cameraDistance","projection":"perspective"})",
                    notes)
               .by_distance);
@@ -220,7 +225,7 @@ TEST_CASE("the fifteen cases of the conformance matrix give the values that they
         ++cases;
         document["scenes"][0]["nodes"] = {node};
         LoadNotes notes;
-        const Scene scene = readAlone(folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))), notes);
+        const Scene scene = loadScene(folder.write("one.glb", GltfText::makeGlb(document.dump(), glb.substr(28 + text_bytes))), 0, &notes);
         REQUIRE(scene.size() == 1);
         CHECK(scene.is_linear == (name != "scale_f32"));
         CHECK(scene.positions[0] == glm::vec3(1.0f, 2.0f, 3.0f));
@@ -291,8 +296,6 @@ TEST_CASE("a glTF that does not fit is named with its place") {
     CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"scale":[1,1,0]}])"; }), "has no inverse"));
     CHECK(contains(errorWith([](GltfText& g) { g.nodes = R"([{"mesh":0,"matrix":[1,2]}])"; }), "matrix has 2 numbers, expected 16"));
     CHECK(contains(errorWith([](GltfText& g) { g.nodes = "[{}]"; }), "a glTF without splats"));
-    CHECK(contains(errorWith([](GltfText& g) { g.extension = R"({"kernel":"ellipse","colorSpace":"lin_rec709_display"})"; }),
-                   "colorSpace is lin_rec709_display"));
     CHECK(contains(errorWith([](GltfText& g) { g.other_keys = R"(,"extensionsRequired":["EXT_meshopt_compression"])"; }),
                    "requires the extension EXT_meshopt_compression"));
 

@@ -85,7 +85,7 @@ std::vector<Layout> hostLayouts() {
                FIELD(counters), FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(background), FIELD(size_px)),
         LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(half_colours), FIELD(depths),
                FIELD(moments), FIELD(moving), FIELD(arrivals), FIELD(full_tiles), FIELD(counters), FIELD(background), FIELD(eye),
-               FIELD(row_words)),
+               FIELD(row_words), FIELD(is_light)),
         LAYOUT(WeighPass, FIELD(stereo), FIELD(ranges), FIELD(moving), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors),
                FIELD(tile_depths), FIELD(tile_mask), FIELD(price_bins), FIELD(shown_mask), FIELD(visible), FIELD(masked_tiles),
                FIELD(counters)),

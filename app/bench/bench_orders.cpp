@@ -91,6 +91,7 @@ public:
     OrderPoint(const Scene& scene, const RunOptions& run, const Cameras& cameras) : scene_(scene), run_(run), cameras_(cameras) {
         settings_.near = run.camera.near;
         settings_.background = run.camera.background;
+        settings_.is_light = scene_.is_linear;
     }
 
     std::vector<OrderResult> measure(const std::string& name) const {

@@ -94,6 +94,7 @@ std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d) {
 
 GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : sh_degree_(scene.sh_degree) {
     const bool gaussian_3d = scene.isGaussian3d();
+    is_light_ = scene.is_linear;
     if (scene.by_distance) { usual_order_ = Order::kDistance; }
     if (gaussian_3d) { splat_kind_ = scene.antialiased ? gpu::kAntialiasedGaussians : gpu::kGaussians; }
     check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);

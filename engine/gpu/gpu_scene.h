@@ -25,6 +25,8 @@ public:
     [[nodiscard]] std::uint32_t splatShape() const { return splat_kind_ == gpu::kDiscs ? gpu::kDiscs : gpu::kGaussians; }
     // As the scene asks for it.
     [[nodiscard]] Order usualOrder() const { return usual_order_; }
+    // Whether its colours are light, to be encoded once they are blended.
+    [[nodiscard]] bool isLight() const { return is_light_; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
@@ -36,6 +38,7 @@ private:
     int sh_degree_ = 0;
     std::uint32_t splat_kind_ = gpu::kDiscs;
     Order usual_order_ = Order::kDepth;
+    bool is_light_ = false;
     std::uint32_t chunk_bits_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;

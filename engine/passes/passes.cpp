@@ -1,6 +1,8 @@
 // Recording the passes, in frame order.
 #include "engine/passes/passes.h"
 
+#include "engine/srgb.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -259,6 +261,7 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
 
 void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
     const EyeTarget& target = part.target;
+    const bool is_light = part.scene.isLight();
     const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
                                        .splats = part.buffers.visible.splats(),
                                        .ranks = sorted.values,
@@ -271,9 +274,10 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .arrivals = target.arrivals,
                                        .full_tiles = part.tiles.full,
                                        .counters = part.counters(),
-                                       .background = target.background,
+                                       .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
                                        .eye = part.eye(),
-                                       .row_words = target.row_words};
+                                       .row_words = target.row_words,
+                                       .is_light = is_light};
     const Kernel& kernel = rasterizeKernel(part.scene, target.kept, part.lists_tiles);
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,

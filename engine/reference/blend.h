@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/reference/splat.h"
+#include "engine/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -68,7 +69,9 @@ struct Tile {
             for (int x = begin_px.x; x < end_px.x; ++x) {
                 const PixelState& pixel = at(x, y);
                 const std::size_t place = static_cast<std::size_t>(y) * picture.size_px.x + static_cast<std::size_t>(x);
-                picture.rgba[place] = glm::dvec4(pixel.colour + pixel.transmittance * settings.background, pixel.weight);
+                const glm::dvec3 background = settings.is_light ? lightOf(settings.background) : settings.background,
+                                 blended = pixel.colour + pixel.transmittance * background;
+                picture.rgba[place] = glm::dvec4(settings.is_light ? encodedOf(blended) : blended, pixel.weight);
                 picture.depth[place] = pixel.depth;
                 if (settings.inverse_depth_moments) {
                     picture.inverse_depth[place] = pixel.inverse_depth;

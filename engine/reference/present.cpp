@@ -1,21 +1,19 @@
 // 10: pictures in bytes.
 #include "engine/reference/present.h"
 
+#include "engine/srgb.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace binosplat::reference {
 namespace {
 
-double lightOf(double encoded) { return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4); }
-
 std::uint32_t byteOf(double value, bool linear) {
     if (!(value > 0.0)) { return 0; }  // NaN, too
     const double shown = std::min(value, 1.0);
     return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
 }
-
-double encodedOf(double light) { return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055; }
 
 // Of a value that was blended, encoded, with this share: the light of the colour itself, multiplied by the share.
 std::uint32_t seenThrough(double value, double share, bool linear) {

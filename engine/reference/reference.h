@@ -15,8 +15,9 @@
 namespace binosplat::reference {
 
 struct Settings {
-    double near = 0.2;  // positive; hits closer than this are skipped, scene units along the camera's z
-    glm::dvec3 background{0.0};
+    double near = 0.2;           // positive; hits closer than this are skipped, scene units along the camera's z
+    glm::dvec3 background{0.0};  // display-encoded
+    bool is_light = false;       // colours are light, to be encoded once they are blended: as the scene says, where one is given
     // Front to back is by the distance of centres from here (the middle between the eyes); nothing: by their camera z.
     std::optional<glm::dvec3> order_from = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2

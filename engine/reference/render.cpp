@@ -20,7 +20,9 @@ auto timePass(const Settings& settings, Pass pass, const Work& work) {
 
 }  // namespace
 
-Picture render(const Scene& scene, const Eye& eye, const Settings& settings) {
+Picture render(const Scene& scene, const Eye& eye, const Settings& asked) {
+    Settings settings = asked;
+    settings.is_light = scene.is_linear;
     const auto visible = timePass(settings, kCull, [&] { return cull(scene, {&eye, 1}, settings); });
     const auto compacted = timePass(settings, kCompact, [&] { return compact(scene, visible, eye, settings); });
     const auto order = timePass(settings, kSortDepth, [&] { return sortDepth(compacted, settings); });

@@ -49,6 +49,7 @@ void patch(StereoPictures& pictures, const Scene& scene, const Visible& visible,
 
 StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const StereoSettings& stereo, Settings settings) {
     settings.inverse_depth_moments = true;
+    settings.is_light = scene.is_linear;
     const glm::uvec2 size_px = eyes.source.size_px, tiles = tileGrid(size_px);
     const auto visible = cull(scene, std::array{eyes.source, eyes.target}, settings);
     const auto order = sortDepth(compact(scene, visible, eyes.source, settings), settings);

@@ -186,6 +186,10 @@ Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress) {
     scene.by_distance = document.by_distance;
     scene.is_linear = document.is_linear;
     notes.lines.insert(notes.lines.end(), document.notes.begin(), document.notes.end());
+    if (scene.is_linear) {
+        notes.lines.push_back(
+            fmt::format("{}: colours of linear light (lin_rec709_display), encoded for the display once they are blended", file.name()));
+    }
     if (logarithms) {
         notes.lines.push_back(fmt::format(
             "{}: some scales are negative: all were read as logarithms, as early drafts of KHR_gaussian_splatting have them", file.name()));

@@ -1,4 +1,5 @@
 // Writing of PLY: inverse activations into blocks.
+#include "engine/error.h"
 #include "engine/scene/part_file.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/quantized.h"
@@ -46,6 +47,7 @@ float* putRow(const Scene& scene, std::size_t splat, float* row) {
 }  // namespace
 
 void writePly(const Scene& scene, const std::string& path, const Progress& progress) {
+    check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
     PartFile file(path);
     const std::string header = makeHeader(scene);
     file.write(header.data(), header.size());

@@ -82,8 +82,6 @@ Scene readWhole(const SceneFormat& format, Source& source, LoadNotes& notes, con
     try {
         Scene scene = format.read(source, notes, progress);
         requireUnchanged();
-        check(!scene.is_linear, "{}: its colorSpace is lin_rec709_display, blended as linear light, which cannot be shown yet; expected {}",
-              source.path, "srgb_rec709_display");
         return scene;
     } catch (const Error&) {
         requireUnchanged();

@@ -83,6 +83,7 @@ std::byte* putSh(const float* sh, int coefficients, std::byte* at) {
 }  // namespace
 
 void writeSpz(const Scene& scene, const std::string& path, const Progress& progress) {
+    check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
     check(scene.size() <= 0xffffffffu, "{}: cannot hold {} splats, SPZ counts in 32 bits", path, scene.size());
     const int fractional_bits = chooseFractionalBits(scene, path);
     PartFile file(path);

@@ -104,6 +104,7 @@ struct RasterizePass {
     vec3 background;
     uint eye;
     uint row_words;  // of `moving` and `arrivals`
+    uint is_light;   // 1: colours and background are light, to be encoded once they are blended
 };
 
 // 8a_weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
