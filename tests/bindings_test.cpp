@@ -34,7 +34,7 @@ TEST_CASE("every input and output that is bound is one of its controller") {
         CAPTURE(bindings.path);
         const simulated::Profile* const profile = simulated::findHandProfile(bindings.path);
         REQUIRE(profile != nullptr);
-        CHECK((bindings.extension == nullptr) == (profile->since == simulated::Since::k1_0));
+        CHECK((bindings.extension == nullptr) == (profile->since == simulated::kVersion1_0));
         if (bindings.extension != nullptr) { CHECK(profile->extension == bindings.extension); }
         for (const std::size_t side : {0, 1}) {
             for (const char* what : {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,

@@ -2,9 +2,7 @@
 #include "tests/simulated_direct.h"
 #include "xr/simulated/api/profiles.h"
 
-#include <array>
 #include <cmath>
-#include <set>
 
 TEST_SUITE_BEGIN("simulated_profiles");
 
@@ -20,29 +18,42 @@ struct Bound {
     XrAction action = XR_NULL_HANDLE;
 };
 
-XrActionType typeOf(std::string_view component) {
-    for (const char* boolean : {"/click", "/touch", "/proximity", "/proximity_fb", "/proximity_meta", "/ready_ext"}) {
-        if (component.ends_with(boolean)) return XR_ACTION_TYPE_BOOLEAN_INPUT;
+XrActionType typeOf(simulated::ComponentKind kind) {
+    switch (kind) {
+        case simulated::ComponentKind::kBoolean:
+            return XR_ACTION_TYPE_BOOLEAN_INPUT;
+        case simulated::ComponentKind::kFloat:
+            return XR_ACTION_TYPE_FLOAT_INPUT;
+        case simulated::ComponentKind::kPose:
+            return XR_ACTION_TYPE_POSE_INPUT;
+        default:
+            return XR_ACTION_TYPE_VIBRATION_OUTPUT;
     }
-    if (component.ends_with("/pose")) return XR_ACTION_TYPE_POSE_INPUT;
-    return component.starts_with("/output/") ? XR_ACTION_TYPE_VIBRATION_OUTPUT : XR_ACTION_TYPE_FLOAT_INPUT;
+}
+
+// Of 1.1, with the extension that the profile may need; without one for older names of the palm and the finger tips.
+simulated::Enabled enabledFor(const Profile& profile) {
+    simulated::Enabled enabled{true, {XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME}};
+    if (!enabled.meets(profile.depends)) enabled.extensions.insert(std::string(profile.depends));
+    return enabled;
 }
 
 std::vector<Bound> bindingsOf(const Profile& profile, std::string_view user_path) {
     std::vector<Bound> bindings;
-    std::set<std::string> vectors;
-    const auto add = [&](std::span<const std::string_view> components) {
-        for (const std::string_view component : components) {
-            bindings.push_back({std::string(user_path).append(component), typeOf(component)});
-            if (component.ends_with("/x")) vectors.insert(std::string(user_path).append(component.substr(0, component.size() - 2)));
-        }
-    };
-    add(profile.components);
-    if (user_path == "/user/hand/left") add(profile.left_components);
-    if (user_path == "/user/hand/right") add(profile.right_components);
-    if (user_path.starts_with("/user/hand/")) add(std::array<std::string_view, 1>{"/input/grip_surface/pose"});
-    for (const std::string& vector : vectors) bindings.push_back({vector, XR_ACTION_TYPE_VECTOR2F_INPUT});
+    const simulated::Enabled enabled = enabledFor(profile);
+    for (const simulated::Component& component : profile.components) {
+        if (simulated::findComponent(profile, user_path, component.path, enabled) != &component) continue;
+        const std::string path = std::string(user_path).append(component.path);
+        bindings.push_back({path, typeOf(component.kind)});
+        if (path.ends_with("/x")) bindings.push_back({path.substr(0, path.size() - 2), XR_ACTION_TYPE_VECTOR2F_INPUT});
+    }
     return bindings;
+}
+
+std::vector<const char*> namesOf(const simulated::Enabled& enabled) {
+    std::vector<const char*> names;
+    for (const std::string& name : enabled.extensions) names.push_back(name.c_str());
+    return names;
 }
 
 struct Played : HeadlessSession {
@@ -51,7 +62,7 @@ struct Played : HeadlessSession {
     std::vector<Bound> bindings;
 
     Played(const Profile& profile, std::string_view user)
-        : HeadlessSession(k1_1, extensionsOf(profile)),
+        : HeadlessSession(k1_1, namesOf(enabledFor(profile))),
           profile_path(path(std::string(profile.path).c_str())),
           user_path(path(std::string(user).c_str())),
           bindings(bindingsOf(profile, user)) {
@@ -70,11 +81,6 @@ struct Played : HeadlessSession {
         begin();
     }
 
-    static std::vector<const char*> extensionsOf(const Profile& profile) {
-        std::vector<const char*> extensions{XR_EXT_CONFORMANCE_AUTOMATION_EXTENSION_NAME};
-        if (!profile.extension.empty()) extensions.push_back(profile.extension.data());
-        return extensions;
-    }
     XrAction makeAction(XrActionType type, std::size_t number) const {
         XrActionCreateInfo info{XR_TYPE_ACTION_CREATE_INFO};
         std::strcpy(info.actionName, ("action_" + std::to_string(number)).c_str());
@@ -230,4 +236,18 @@ TEST_CASE("every pose of every profile is where it is put") {
             }
         }
     }
+}
+
+TEST_CASE("what a path depends on is read as the registry writes it: + is and, a comma is or") {
+    const simulated::Enabled older{false, {"A", "B"}}, newer{true, {}};
+    CHECK(older.meets(""));
+    CHECK(older.meets("A"));
+    CHECK_FALSE(older.meets("C"));
+    CHECK(older.meets("A+B"));
+    CHECK_FALSE(older.meets("A+C"));
+    CHECK(older.meets("C,B"));
+    CHECK(older.meets("C+A,B"));
+    CHECK(older.meets("B,C+A"));
+    CHECK_FALSE(older.meets("A+C,XR_VERSION_1_1"));
+    CHECK(newer.meets("A+C,XR_VERSION_1_1"));
 }

@@ -214,7 +214,7 @@ TEST_CASE("spaces are located all at once, as one by one") {
     CHECK(locateSpaces(made.session, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
 }
 
-TEST_CASE("controllers of 1.1 may be bound in 1.1, and in 1.0 with their extension") {
+TEST_CASE("controllers and paths of 1.1 may be bound in 1.1, and in 1.0 with their extension") {
     struct Case {
         const char *profile, *extension, *binding;
         XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
@@ -224,14 +224,15 @@ TEST_CASE("controllers of 1.1 may be bound in 1.1, and in 1.0 with their extensi
         {"/interaction_profiles/samsung/odyssey_controller", "XR_EXT_samsung_odyssey_controller", "/user/hand/left/input/trackpad/click"},
         {"/interaction_profiles/htc/vive_cosmos_controller", "XR_HTC_vive_cosmos_controller_interaction",
          "/user/hand/left/input/shoulder/click"},
-        {"/interaction_profiles/htc/vive_cosmos_controller", "XR_HTC_vive_cosmos_controller_interaction",
-         "/user/hand/right/input/thumbrest/touch"},
         {"/interaction_profiles/htc/vive_focus3_controller", "XR_HTC_vive_focus3_controller_interaction",
          "/user/hand/right/input/squeeze/touch"},
         {"/interaction_profiles/ml/ml2_controller", "XR_ML_ml2_controller_interaction", "/user/hand/right/input/home/click"},
         {"/interaction_profiles/bytedance/pico_neo3_controller", "XR_BD_controller_interaction", "/user/hand/right/input/menu/click"},
         {"/interaction_profiles/bytedance/pico4_controller", "XR_BD_controller_interaction", "/user/hand/left/input/menu/click"},
         {"/interaction_profiles/bytedance/pico_g3_controller", "XR_BD_controller_interaction", "/user/hand/left/input/thumbstick/click"},
+        {"/interaction_profiles/bytedance/pico_g3_controller", "XR_BD_controller_interaction", "/user/hand/right/input/thumbstick/x"},
+        {"/interaction_profiles/oculus/touch_controller", nullptr, "/user/hand/left/input/trigger/proximity"},
+        {"/interaction_profiles/oculus/touch_controller", nullptr, "/user/hand/right/input/thumb_resting_surfaces/proximity"},
         {"/interaction_profiles/meta/touch_pro_controller", nullptr, "/user/hand/left/input/stylus/force"},
         {"/interaction_profiles/meta/touch_pro_controller", nullptr, "/user/hand/left/output/haptic_thumb",
          XR_ACTION_TYPE_VIBRATION_OUTPUT},
@@ -251,6 +252,8 @@ TEST_CASE("controllers of 1.1 may be bound in 1.1, and in 1.0 with their extensi
     CHECK(made.suggest("/interaction_profiles/bytedance/pico4_controller", "/user/hand/right/input/menu/click") ==
           XR_ERROR_PATH_UNSUPPORTED);
     CHECK(made.suggest("/interaction_profiles/meta/touch_controller_quest_1_rift_s", "/user/hand/left/input/thumbrest/touch") ==
+          XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(made.suggest("/interaction_profiles/htc/vive_cosmos_controller", "/user/hand/left/input/thumbrest/touch") ==
           XR_ERROR_PATH_UNSUPPORTED);
 }
 

@@ -134,8 +134,7 @@ XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrIntera
             const Action& action = getAction(owner, info.suggestedBindings[i].action);
             require(!action.set().is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "an action set is attached already");
             const XrPath path = info.suggestedBindings[i].binding;
-            require(allowsBinding(*profile, owner.paths.textOf(path), owner.vocabulary()), XR_ERROR_PATH_UNSUPPORTED,
-                    "the profile has no such path");
+            require(allowsBinding(*profile, owner.paths.textOf(path), owner), XR_ERROR_PATH_UNSUPPORTED, "the profile has no such path");
             suggested.bindings.push_back({action.number, path});
         }
         std::erase_if(owner.suggestions, [&](const auto& earlier) { return earlier.profile == suggested.profile; });

@@ -34,7 +34,7 @@ Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const
     require(source.starts_with(prefix), XR_ERROR_PATH_UNSUPPORTED, "not an input of this device");
     const auto has = [&](const Profile& profile) {
         return session.instance.has(profile) &&
-               hasComponent(profile, user, source.substr(user.size()) + suffix, session.instance.vocabulary());
+               findComponent(profile, user, source.substr(user.size()) + suffix, session.instance) != nullptr;
     };
     bool is_known = device.profile != nullptr && has(*device.profile);
     if (device.profile == nullptr) {

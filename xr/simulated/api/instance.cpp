@@ -48,11 +48,11 @@ void checkApplication(const XrApplicationInfo& application) {
     throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
 }
 
-std::set<std::string> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
+std::set<std::string, std::less<>> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
     require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE,
             "an array of extension names is missing");
     const std::vector<Extension> offered = offeredExtensions(script);
-    std::set<std::string> names;
+    std::set<std::string, std::less<>> names;
     for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
         const char* const name = info.enabledExtensionNames[i];
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");

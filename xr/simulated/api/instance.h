@@ -18,12 +18,9 @@ namespace simulated {
 
 struct Session;
 
-struct Instance : Object {
+struct Instance : Object, Enabled {
     using Handle = XrInstance;
 
-    // Of API 1.1, not 1.0.
-    bool is_1_1 = false;
-    std::set<std::string> extensions;
     Paths paths;
     Events events;
     std::unique_ptr<Simulation> simulation;
@@ -44,17 +41,10 @@ struct Instance : Object {
         Simulation::end(std::move(simulation));
     }
 
-    [[nodiscard]] bool has(const Profile& profile) const {
-        const bool is_core = profile.since == Since::k1_0 || (profile.since == Since::k1_1 && is_1_1);
-        return is_core || extensions.contains(std::string(profile.extension));
-    }
+    [[nodiscard]] bool has(const Profile& profile) const { return meets(profile.depends); }
     // /user/eyes_ext is the extension's.
     [[nodiscard]] bool hasUserPath(std::string_view path) const {
         return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
-    }
-    [[nodiscard]] Vocabulary vocabulary() const {
-        return {has1_1Or(XR_KHR_MAINTENANCE1_EXTENSION_NAME), extensions.contains(XR_EXT_PALM_POSE_EXTENSION_NAME),
-                extensions.contains("XR_EXT_hand_interaction")};
     }
     // What the core has since 1.1, and what 1.0 has with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }

@@ -8,20 +8,19 @@
 namespace simulated {
 namespace {
 
-using Names = std::span<const std::string_view>;
-
 constexpr std::string_view kProfilePrefix = "/interaction_profiles/";
 constexpr std::string_view kUserPaths[] = {"/user/hand/left", "/user/hand/right", "/user/head",
                                            "/user/gamepad",   "/user/eyes_ext",   "/user/treadmill"};
 
-bool holds(Names names, std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+bool holds(std::span<const std::string_view> names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
+
+bool isThere(const Component& component, std::string_view user_path, const Enabled& enabled) {
+    return (component.user_path.empty() || component.user_path == user_path) && enabled.meets(component.depends);
+}
 
 // "/input/trigger" stands for its components; "/input" and "/output" stand for nothing.
-bool isParentIn(Names names, std::string_view parent) {
-    if (!parent.starts_with("/input/")) return false;
-    return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-        return name.starts_with(parent) && name.size() > parent.size() && name[parent.size()] == '/';
-    });
+bool isParent(std::string_view parent, std::string_view path) {
+    return parent.starts_with("/input/") && path.starts_with(parent) && path.size() > parent.size() && path[parent.size()] == '/';
 }
 
 }  // namespace
@@ -48,24 +47,36 @@ std::string handProfiles() {
     return names;
 }
 
-bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component, const Vocabulary& words) {
-    if (!holds(profile.user_paths, user_path)) return false;
-    const Names of_side = user_path == "/user/hand/left" ? profile.left_components : profile.right_components;
-    if (holds(profile.components, component) || holds(of_side, component)) return true;
-    if (profile.user_paths.front() != kHands[0]) return false;
-    return (component == "/input/grip_surface/pose" && words.has_grip_surface) ||
-           (component == "/input/palm_ext/pose" && words.has_palm_ext) ||
-           ((component == "/input/pinch_ext/pose" || component == "/input/poke_ext/pose") && words.has_finger_tips);
+bool Enabled::meets(std::string_view depends) const {
+    const auto has = [&](std::string_view name) { return name == "XR_VERSION_1_1" ? is_1_1 : extensions.contains(name); };
+    bool meets = true;
+    while (!depends.empty()) {
+        const std::size_t end = depends.find_first_of("+,");
+        meets = meets && has(depends.substr(0, end));
+        if (end == std::string_view::npos) break;
+        if (depends[end] == ',') {
+            if (meets) return true;
+            meets = true;
+        }
+        depends.remove_prefix(end + 1);
+    }
+    return meets;
 }
 
-bool allowsBinding(const Profile& profile, std::string_view binding, const Vocabulary& words) {
+const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled) {
+    if (!holds(profile.user_paths, user_path)) return nullptr;
+    const auto found = std::ranges::find_if(profile.components,
+                                            [&](const Component& one) { return one.path == path && isThere(one, user_path, enabled); });
+    return found == profile.components.end() ? nullptr : &*found;
+}
+
+bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled) {
     const std::string_view user_path = userPathOf(binding);
     if (!holds(profile.user_paths, user_path)) return false;
-    const std::string_view component = binding.substr(user_path.size());
-    const Names of_side = user_path == "/user/hand/left" ? profile.left_components : profile.right_components;
-    return hasComponent(profile, user_path, component, words) || isParentIn(profile.components, component) ||
-           isParentIn(of_side, component) ||
-           (component.starts_with("/input/") && hasComponent(profile, user_path, std::string(component) + "/pose", words));
+    const std::string_view path = binding.substr(user_path.size());
+    return std::ranges::any_of(profile.components, [&](const Component& one) {
+        return isThere(one, user_path, enabled) && (one.path == path || isParent(path, one.path));
+    });
 }
 
 std::optional<std::size_t> deviceOf(std::string_view user_path) {

@@ -1,33 +1,41 @@
-// Section 6.4 of the specification: which input and output paths each interaction profile of the core, 1.0 and 1.1, has.
+// Section 6.4 of the specification: which input and output paths each interaction profile has.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace simulated {
 
-// kNone: only an extension has it.
-enum class Since { k1_0, k1_1, kNone };
+// What a component reads or does: its type in the registry.
+enum class ComponentKind { kBoolean, kFloat, kPose, kVibration };
+
+// `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty: always.
+struct Component {
+    ComponentKind kind;
+    std::string_view path;            // "/input/trigger/value"
+    std::string_view user_path = {};  // empty: all of the profile's
+    std::string_view depends = {};
+};
 
 struct Profile {
     std::string_view path;
     std::string_view title;
     std::span<const std::string_view> user_paths;
-    std::span<const std::string_view> components;
-    std::span<const std::string_view> left_components, right_components;
-    // Before that, with this extension, if there is one.
-    Since since = Since::k1_0;
-    std::string_view extension = {};
+    std::span<const Component> components;
+    std::string_view depends = {};
 };
 
-// What of all hands' paths an instance has: grip_surface came with 1.1 (and XR_KHR_maintenance1), palm_ext is XR_EXT_palm_pose's name for
-// it; XR_EXT_hand_interaction knows the finger tips of whatever hand holds something.
-struct Vocabulary {
-    bool has_grip_surface = false;
-    bool has_palm_ext = false;
-    bool has_finger_tips = false;
+// The version and extensions of an instance.
+struct Enabled {
+    // Of API 1.1, not 1.0.
+    bool is_1_1 = false;
+    std::set<std::string, std::less<>> extensions;
+
+    [[nodiscard]] bool meets(std::string_view depends) const;
 };
 
 // In the order in which the simulated controllers like to play them; those that they cannot play come last.
@@ -39,8 +47,9 @@ const Profile* findHandProfile(std::string_view name);
 // All of these names, for messages.
 std::string handProfiles();
 // Whether "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
-bool allowsBinding(const Profile& profile, std::string_view binding, const Vocabulary& words);
-bool hasComponent(const Profile& profile, std::string_view user_path, std::string_view component, const Vocabulary& words);
+bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
+// Null if it has none: of this user path, with this version and these extensions.
+const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.
 bool isUserPath(std::string_view path);

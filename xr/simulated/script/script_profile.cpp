@@ -12,10 +12,11 @@ namespace {
 
 bool hasInput(const Profile& profile, Side side, std::string_view input) {
     const std::string prefix = "/input/" + std::string(input) + "/";
-    const auto holds = [&](std::span<const std::string_view> components) {
-        return std::any_of(components.begin(), components.end(), [&](std::string_view component) { return component.starts_with(prefix); });
-    };
-    return holds(profile.components) || holds(side == kLeft ? profile.left_components : profile.right_components);
+    const std::string_view user_path = side == kLeft ? "/user/hand/left" : "/user/hand/right";
+    return std::ranges::any_of(profile.components, [&](const Component& one) {
+        const bool is_of_side = one.user_path.empty() || one.user_path == user_path;
+        return is_of_side && one.kind != ComponentKind::kPose && one.path.starts_with(prefix);
+    });
 }
 
 std::string inputsOf(const Profile& profile, Side side) {
