@@ -302,6 +302,6 @@ TEST_CASE("messages of refused calls come through the loader") {
     REQUIRE(create(fixture.instance, &info, &messenger) == XR_SUCCESS);
     XrPath path = XR_NULL_PATH;
     CHECK(xrStringToPath(fixture.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
-    CHECK(heard == std::vector<std::string>{"xrStringToPath: not a well-formed path"});
+    CHECK(heard == std::vector<std::string>{"xrStringToPath: 'no slash' is not a well-formed path"});
     CHECK(fixture.function<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_SUCCESS);
 }

@@ -60,7 +60,7 @@ TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's o
     CHECK(heard[0].types == XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT);
     CHECK(heard[0].id == "XR_ERROR_PATH_FORMAT_INVALID");
     CHECK(heard[0].function == "xrStringToPath");
-    CHECK(heard[0].text == "not a well-formed path");
+    CHECK(heard[0].text == "'no slash' is not a well-formed path");
     CHECK(heard[0].labels.empty());
     // The loader's own questions are no mistakes.
     CHECK_FALSE(has("xrMakeCoffee"));
@@ -69,6 +69,45 @@ TEST_CASE_FIXTURE(MessageFixture, "a refused call is told to the application's o
     beMistaken();
     CHECK(heard.size() == 1);
     CHECK(xr<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_ERROR_HANDLE_INVALID);
+}
+
+TEST_CASE_FIXTURE(MessageFixture, "the reason of a refusal names what was refused") {
+    const char *const simple = "/interaction_profiles/khr/simple_controller", *const touch =
+                                                                                  "/interaction_profiles/oculus/touch_controller";
+    const auto reason = [&] {
+        REQUIRE(heard.size() == 1);
+        const std::string text = heard[0].text;
+        heard.clear();
+        return text;
+    };
+    CHECK(suggest(simple, "/user/hand/left/input/trigger/value") == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(reason() ==
+          "/interaction_profiles/khr/simple_controller has no /user/hand/left/input/trigger/value, suggested for the action action");
+    CHECK(suggest(touch, "/user/hand/left/input/trigger/proximity") == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(reason() ==
+          "/interaction_profiles/oculus/touch_controller has no /user/hand/left/input/trigger/proximity without XR_VERSION_1_1, suggested "
+          "for "
+          "the action action");
+    CHECK(suggest("/interaction_profiles/meta/touch_plus_controller", "/user/hand/left/input/trigger/value") == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(reason() == "/interaction_profiles/meta/touch_plus_controller needs XR_VERSION_1_1");
+    CHECK(suggest("/interaction_profiles/nobody/nothing", "/user/hand/left/input/trigger/value") == XR_ERROR_PATH_UNSUPPORTED);
+    CHECK(reason() == "/interaction_profiles/nobody/nothing is not an interaction profile");
+    std::uint32_t count = 0;
+    char text[4];
+    CHECK(xr<PFN_xrPathToString>("xrPathToString")(instance, path("/user/head"), 4, &count, text) == XR_ERROR_SIZE_INSUFFICIENT);
+    CHECK(reason() == "the array has room for 4, must have for 11");
+    CHECK(xr<PFN_xrPathToString>("xrPathToString")(instance, 4711, 4, &count, text) == XR_ERROR_PATH_INVALID);
+    CHECK(reason() == "the number 4711 is not a path");
+    XrSpace space = XR_NULL_HANDLE;
+    XrReferenceSpaceCreateInfo info{XR_TYPE_ACTION_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 2}, {0, 0, 0}}};
+    const auto make = xr<PFN_xrCreateReferenceSpace>("xrCreateReferenceSpace");
+    CHECK(make(session, &info, &space) == XR_ERROR_VALIDATION_FAILURE);
+    CHECK(reason() == "a structure is of type XR_TYPE_ACTION_CREATE_INFO, must be XR_TYPE_REFERENCE_SPACE_CREATE_INFO");
+    info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
+    CHECK(make(session, &info, &space) == XR_ERROR_POSE_INVALID);
+    CHECK(reason() == "the quaternion 0 0 0 2 is not of length 1");
+    CHECK(make(reinterpret_cast<XrSession>(0x1234), &info, &space) == XR_ERROR_HANDLE_INVALID);
+    CHECK(reason() == "0x1234 is not an XrSession that lives");
 }
 
 TEST_CASE_FIXTURE(MessageFixture, "a messenger hears what it asked for, and has to ask for something") {
@@ -143,7 +182,8 @@ TEST_CASE_FIXTURE(MessageFixture, "applications submit messages of their own, wi
     CHECK(end_region(XR_NULL_HANDLE) == XR_ERROR_HANDLE_INVALID);
 }
 
-TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed on as it is, and what it leaves out stays left out") {
+TEST_CASE_FIXTURE(MessageFixture,
+                  "what an application's message says is passed on, but objects go by the names that they were given for good") {
     const auto submit = xr<PFN_xrSubmitDebugUtilsMessageEXT>("xrSubmitDebugUtilsMessageEXT");
     const XrDebugUtilsLabelEXT region{XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, "the session's own"};
     CHECK(xr<PFN_xrSessionBeginDebugUtilsLabelRegionEXT>("xrSessionBeginDebugUtilsLabelRegionEXT")(session, &region) == XR_SUCCESS);
@@ -167,7 +207,7 @@ TEST_CASE_FIXTURE(MessageFixture, "what an application's message says is passed 
     CHECK(heard[0].id == "none");
     CHECK(heard[0].function == "none");
     CHECK(heard[0].labels == std::vector<std::string>{"inner", "outer"});
-    CHECK(heard[0].objects == std::vector<std::string>{"passed", "registered", "never registered"});
+    CHECK(heard[0].objects == std::vector<std::string>{"registered", "registered", "never registered"});
     data.messageId = "an id";
     data.functionName = "";
     CHECK(submit(instance, info, general, &data) == XR_SUCCESS);

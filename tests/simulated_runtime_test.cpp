@@ -127,7 +127,7 @@ TEST_CASE("what the loader asks for after a refused instance is not explained, w
             CHECK(runtime.get(instance, name, &found) == XR_ERROR_HANDLE_INVALID);
         }
     });
-    CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: no instance creation flags are known\n");
+    CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are known\n");
 }
 
 TEST_CASE("the environment's names say what the runtime is, and those of before go on") {
@@ -156,6 +156,22 @@ TEST_CASE("the environment's names say what the runtime is, and those of before 
     });
     CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
     for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK", "BINOSPLAT_SIMULATED_CLOCK"}) unsetenv(name);
+}
+
+TEST_CASE("a refusal that comes again is counted, not repeated") {
+    const std::string explained = explainedBy([&] {
+        const DirectInstance made(k1_0, {});
+        XrPath path = XR_NULL_PATH;
+        const auto toPath = made.xr<PFN_xrStringToPath>("xrStringToPath");
+        for (int i = 0; i < 125; ++i) {
+            CHECK(toPath(made.instance, "no slash", &path) == XR_ERROR_PATH_FORMAT_INVALID);
+            if (i % 20 == 0) { CHECK(toPath(made.instance, "/a/../b", &path) == XR_ERROR_PATH_FORMAT_INVALID); }
+        }
+    });
+    const std::string line = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: 'no slash' is not a well-formed path";
+    const std::string other = "simulated runtime: xrStringToPath: XR_ERROR_PATH_FORMAT_INVALID: '/a/../b' is not a well-formed path";
+    CHECK(explained == line + "\n" + other + "\n" + line + " (10 times so far)\n" + line + " (100 times so far)\n" + other +
+                           " (7 times in all)\n" + line + " (125 times in all)\n");
 }
 
 TEST_CASE("an instance empties the folder of an earlier run, one that is refused leaves it alone") {

@@ -18,15 +18,16 @@ AttachedAction attach(const Action& action, const ActionSet& set) {
 }
 
 std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActionsSyncInfo& info) {
-    require(info.activeActionSets != nullptr || info.countActiveActionSets == 0, XR_ERROR_VALIDATION_FAILURE,
-            "an array of action sets is missing");
+    require(info.activeActionSets != nullptr || info.countActiveActionSets == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
+            info.countActiveActionSets, " action sets is missing");
     std::vector<ActiveSet> active;
     for (std::uint32_t i = 0; i < info.countActiveActionSets; ++i) {
         const auto& [handle, path] = info.activeActionSets[i];
-        const std::uint64_t set = getActionSet(session.instance, handle).number;
+        const ActionSet& described = getActionSet(session.instance, handle);
+        const std::uint64_t set = described.number;
         const bool is_attached =
             session.attachment && std::count(session.attachment->sets.begin(), session.attachment->sets.end(), set) > 0;
-        require(is_attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "an action set is not attached to this session");
+        require(is_attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action set ", described.name, " is not attached to this session");
         std::vector<XrPath> declared;
         for (const AttachedAction& action : session.attachment->actions) {
             if (action.set == set) declared.insert(declared.end(), action.subaction_paths.begin(), action.subaction_paths.end());
@@ -41,7 +42,8 @@ std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActions
 const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* getInfo, XrActionType type) {
     const XrActionStateGetInfo& info = checked(getInfo, XR_TYPE_ACTION_STATE_GET_INFO);
     const AttachedAction& action = getAttached(session, info.action);
-    require(action.type == type, XR_ERROR_ACTION_TYPE_MISMATCH, "an action of another type");
+    require(action.type == type, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ", getAction(session.instance, info.action).name,
+            " is of another type");
     checkSubactionPath(session.instance, action.subaction_paths, info.subactionPath);
     static constexpr ActionReading kInactive;
     return session.is_running ? action.readings.at(info.subactionPath) : kInactive;

@@ -12,9 +12,9 @@ namespace simulated {
 namespace {
 
 void checkNames(const std::string& name, const std::string& localized_name) {
-    require(!name.empty(), XR_ERROR_NAME_INVALID, "a name is empty");
-    require(!localized_name.empty(), XR_ERROR_LOCALIZED_NAME_INVALID, "a localized name is empty");
-    require(isPathLevel(name), XR_ERROR_PATH_FORMAT_INVALID, "a name has characters that a path may not have");
+    require(!name.empty(), XR_ERROR_NAME_INVALID, "the name is empty");
+    require(!localized_name.empty(), XR_ERROR_LOCALIZED_NAME_INVALID, name, ": the localized name is empty");
+    require(isPathLevel(name), XR_ERROR_PATH_FORMAT_INVALID, name, ": a name has characters that a path may not have");
 }
 
 // Among live ones only: a destroyed one frees its names.
@@ -23,19 +23,22 @@ void checkUnique(const Object& parent, const std::string& name, const std::strin
     for (const auto& child : parent.children) {
         const T* const sibling = dynamic_cast<const T*>(child.get());
         if (sibling == nullptr) continue;
-        require(sibling->name != name, XR_ERROR_NAME_DUPLICATED, "a name is taken");
-        require(sibling->localized_name != localized_name, XR_ERROR_LOCALIZED_NAME_DUPLICATED, "a localized name is taken");
+        require(sibling->name != name, XR_ERROR_NAME_DUPLICATED, name, ": the name is taken");
+        require(sibling->localized_name != localized_name, XR_ERROR_LOCALIZED_NAME_DUPLICATED, localized_name,
+                ": the localized name is taken");
     }
 }
 
 std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActionCreateInfo& info) {
-    require(info.subactionPaths != nullptr || info.countSubactionPaths == 0, XR_ERROR_VALIDATION_FAILURE, "an array of paths is missing");
+    require(info.subactionPaths != nullptr || info.countSubactionPaths == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
+            info.countSubactionPaths, " subaction paths is missing");
     std::vector<XrPath> paths;
     for (std::uint32_t i = 0; i < info.countSubactionPaths; ++i) {
         const XrPath path = info.subactionPaths[i];
         const std::string& text = instance.paths.textOf(path);
-        require(deviceOf(text) && instance.hasUserPath(text), XR_ERROR_PATH_UNSUPPORTED, "not a subaction path");
-        require(std::find(paths.begin(), paths.end(), path) == paths.end(), XR_ERROR_PATH_UNSUPPORTED, "a subaction path comes twice");
+        require(deviceOf(text) && instance.hasUserPath(text), XR_ERROR_PATH_UNSUPPORTED, text, " is not a subaction path");
+        require(std::find(paths.begin(), paths.end(), path) == paths.end(), XR_ERROR_PATH_UNSUPPORTED, "the subaction path ", text,
+                " comes twice");
         paths.push_back(path);
     }
     return paths;
@@ -45,21 +48,21 @@ std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActi
 
 ActionSet& getActionSet(const Instance& instance, XrActionSet set) {
     ActionSet& found = get<ActionSet>(set);
-    require(found.parent == &instance, XR_ERROR_HANDLE_INVALID, "an action set of another instance");
+    if (found.parent != &instance) refuseHandle(set, " of this instance");
     return found;
 }
 
 Action& getAction(const Instance& instance, XrAction action) {
     Action& found = get<Action>(action);
-    require(found.parent->parent == &instance, XR_ERROR_HANDLE_INVALID, "an action of another instance");
+    if (found.parent->parent != &instance) refuseHandle(action, " of this instance");
     return found;
 }
 
 void checkSubactionPath(const Instance& instance, const std::vector<XrPath>& declared, XrPath path) {
     if (path == XR_NULL_PATH) return;
-    instance.paths.textOf(path);
-    require(std::find(declared.begin(), declared.end(), path) != declared.end(), XR_ERROR_PATH_UNSUPPORTED,
-            "a subaction path that was not declared");
+    const std::string& text = instance.paths.textOf(path);
+    require(std::find(declared.begin(), declared.end(), path) != declared.end(), XR_ERROR_PATH_UNSUPPORTED, text,
+            " is not among the subaction paths that were declared");
 }
 
 XrResult xrCreateActionSet(XrInstance instance, const XrActionSetCreateInfo* createInfo, XrActionSet* actionSet) {
@@ -91,7 +94,7 @@ XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createI
         const Instance& instance = getInstance(handleOf(ancestor<Instance>(set)));
         const XrActionCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_CREATE_INFO);
         XrAction& output = checkedOutput(action);
-        require(!set.is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set is attached already");
+        require(!set.is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set ", set.name, " is attached already");
         switch (info.actionType) {
             case XR_ACTION_TYPE_BOOLEAN_INPUT:
             case XR_ACTION_TYPE_FLOAT_INPUT:
@@ -100,7 +103,7 @@ XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createI
             case XR_ACTION_TYPE_VIBRATION_OUTPUT:
                 break;
             default:
-                throw Refusal{XR_ERROR_VALIDATION_FAILURE, "no such type of action"};
+                refuse(XR_ERROR_VALIDATION_FAILURE, info.actionType, " is no type of action");
         }
         auto created = std::make_unique<Action>();
         created->name = textOf(info.actionName);
@@ -125,16 +128,24 @@ XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrIntera
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
         const XrInteractionProfileSuggestedBinding& info = checked(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
-        const Profile* const profile = findProfile(owner.paths.textOf(info.interactionProfile));
-        require(profile != nullptr && owner.has(*profile), XR_ERROR_PATH_UNSUPPORTED,
-                "not an interaction profile of this version, nor of an extension that is enabled");
-        require(info.countSuggestedBindings > 0 && info.suggestedBindings != nullptr, XR_ERROR_VALIDATION_FAILURE, "no bindings");
+        const std::string& name = owner.paths.textOf(info.interactionProfile);
+        const Profile* const profile = findProfile(name);
+        require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, name, " is not an interaction profile");
+        require(owner.has(*profile), XR_ERROR_PATH_UNSUPPORTED, name, " needs ", profile->depends);
+        require(info.countSuggestedBindings > 0 && info.suggestedBindings != nullptr, XR_ERROR_VALIDATION_FAILURE, name,
+                ": no bindings are suggested");
         SuggestedProfile suggested{info.interactionProfile, {}};
         for (std::uint32_t i = 0; i < info.countSuggestedBindings; ++i) {
             const Action& action = getAction(owner, info.suggestedBindings[i].action);
-            require(!action.set().is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "an action set is attached already");
+            require(!action.set().is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set ", action.set().name,
+                    " is attached already");
             const XrPath path = info.suggestedBindings[i].binding;
-            require(allowsBinding(*profile, owner.paths.textOf(path), owner), XR_ERROR_PATH_UNSUPPORTED, "the profile has no such path");
+            const std::string& binding = owner.paths.textOf(path);
+            if (!allowsBinding(*profile, binding, owner)) {
+                const std::string_view needed = neededFor(*profile, binding);
+                refuse(XR_ERROR_PATH_UNSUPPORTED, name, " has no ", binding, needed.empty() ? "" : " without ", needed,
+                       ", suggested for the action ", action.name);
+            }
             suggested.bindings.push_back({action.number, path});
         }
         std::erase_if(owner.suggestions, [&](const auto& earlier) { return earlier.profile == suggested.profile; });

@@ -1,8 +1,10 @@
 // The lock that every call takes, and what is said of calls that were refused or failed.
 #include "xr/simulated/api/answer.h"
 
+#include <cinttypes>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <string>
 
 #include "xr/simulated/api/messages.h"
@@ -10,10 +12,55 @@
 #include "xr/simulated/names.h"
 
 namespace simulated {
+namespace {
+
+struct Said {
+    std::uint64_t times = 0, told = 0;
+};
+
+std::map<std::string, Said>& saidLines() {
+    static std::map<std::string, Said> lines;
+    return lines;
+}
+
+bool isPowerOfTen(std::uint64_t number) {
+    while (number >= 10 && number % 10 == 0) number /= 10;
+    return number == 1;
+}
+
+// The runtime's lock guards what was said.
+void say(const std::string& line) {
+    // A program whose lines are all different is not remembered for ever.
+    constexpr std::size_t kMostLines = 1000;
+    if (saidLines().size() == kMostLines && !saidLines().contains(line)) sayTotals();
+    Said& said = saidLines()[line];
+    if (!isPowerOfTen(++said.times)) return;
+    said.told = said.times;
+    if (said.times == 1)
+        std::fprintf(stderr, "simulated runtime: %s\n", line.c_str());
+    else
+        std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times so far)\n", line.c_str(), said.times);
+}
+
+}  // namespace
 
 std::mutex& runtimeLock() {
     static std::mutex lock;
     return lock;
+}
+
+void sayTotals() {
+    for (const auto& [line, said] : saidLines()) {
+        if (said.times > said.told) std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times in all)\n", line.c_str(), said.times);
+    }
+    saidLines().clear();
+}
+
+void append(std::string& reason, XrStructureType type) {
+    if (const char* const name = nameOf(type))
+        reason += name;
+    else
+        append(reason, static_cast<std::int64_t>(type));
 }
 
 void explain(const char* function, const Refusal& refusal) {
@@ -23,17 +70,12 @@ void explain(const char* function, const Refusal& refusal) {
     if (!is_loaders) queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason);
     const bool is_wanted = settingOf("EXPLAIN").value != nullptr && !is_loaders;
     if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) return;
-    std::fprintf(stderr, "simulated runtime: %s: %s: %s\n", function, nameOf(refusal.result), refusal.reason.c_str());
+    say(std::string(function) + ": " + nameOf(refusal.result) + ": " + refusal.reason);
 }
 
 void explainFailure(const char* function, const char* what) {
     queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, nameOf(XR_ERROR_RUNTIME_FAILURE), function, what);
-    // A program that asks again each frame is told once.
-    static std::string last;
-    std::string said = std::string(function) + ": " + what;
-    if (said == last) return;
-    last = std::move(said);
-    std::fprintf(stderr, "simulated runtime: %s\n", last.c_str());
+    say(std::string(function) + ": " + what);
 }
 
 }  // namespace simulated

@@ -1,9 +1,13 @@
 // How a function of the API answers: what is wrong with a call is thrown as a Refusal and becomes the result code in one place.
 #pragma once
 
+#include <charconv>
+#include <cstdint>
 #include <mutex>
 #include <new>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "xr/simulated/openxr.h"
@@ -15,11 +19,30 @@ struct Refusal {
     std::string reason;
 };
 
-inline void require(bool holds, XrResult otherwise, const char* reason) {
-    if (!holds) throw Refusal{otherwise, reason};
+inline void append(std::string& reason, std::string_view part) { reason += part; }
+// Its name, or its number.
+void append(std::string& reason, XrStructureType type);
+template <class Number>
+requires std::is_arithmetic_v<Number>
+void append(std::string& reason, Number number) {
+    char digits[32];
+    reason.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
 }
-inline void require(bool holds, XrResult otherwise, const std::string& reason) {
-    if (!holds) throw Refusal{otherwise, reason};
+template <class Enumerant>
+requires std::is_enum_v<Enumerant>
+void append(std::string& reason, Enumerant value) { append(reason, static_cast<std::int64_t>(value)); }
+
+template <class... Parts>
+[[noreturn]] void refuse(XrResult result, const Parts&... parts) {
+    Refusal refusal{result, {}};
+    (append(refusal.reason, parts), ...);
+    throw refusal;
+}
+
+// The reason names what was refused: it is put together of words and values only where it is needed.
+template <class... Parts>
+void require(bool holds, XrResult otherwise, const Parts&... parts) {
+    if (!holds) refuse(otherwise, parts...);
 }
 
 // One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
@@ -28,6 +51,8 @@ std::mutex& runtimeLock();
 // With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
 void explain(const char* function, const Refusal& refusal);
 void explainFailure(const char* function, const char* what);
+// A line that comes again is counted: it is said at ten times, at a hundred and so on, and here, at the end.
+void sayTotals();
 
 template <class Body>
 XrResult answerUnlocked(const char* function, Body&& body) {

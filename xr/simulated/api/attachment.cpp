@@ -164,7 +164,8 @@ void Attachment::read(const State& state, const std::vector<ActiveSet>& active, 
 AttachedAction& getAttached(Session& session, XrAction action) {
     const Action& described = getAction(session.instance, action);
     AttachedAction* const attached = session.attachment ? session.attachment->find(described.number) : nullptr;
-    require(attached != nullptr, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action's set is not attached to this session");
+    require(attached != nullptr, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the set of the action ", described.name,
+            " is not attached to this session");
     return *attached;
 }
 

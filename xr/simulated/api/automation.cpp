@@ -16,8 +16,9 @@ namespace {
 constexpr std::string_view kInputPrefix = "/input/";
 
 std::size_t checkedDevice(const Session& session, XrPath user_path) {
-    const std::optional<std::size_t> device = deviceOf(session.instance.paths.textOf(user_path));
-    require(device.has_value(), XR_ERROR_PATH_UNSUPPORTED, "not the path of a device");
+    const std::string& text = session.instance.paths.textOf(user_path);
+    const std::optional<std::size_t> device = deviceOf(text);
+    require(device.has_value(), XR_ERROR_PATH_UNSUPPORTED, text, " is not the path of a device");
     return *device;
 }
 
@@ -31,7 +32,7 @@ Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const
     DeviceOverride& device = session.automation.devices[checkedDevice(session, user_path)];
     const std::string &user = session.instance.paths.textOf(user_path), &source = session.instance.paths.textOf(source_path);
     const std::string prefix = user + std::string(kInputPrefix);
-    require(source.starts_with(prefix), XR_ERROR_PATH_UNSUPPORTED, "not an input of this device");
+    require(source.starts_with(prefix), XR_ERROR_PATH_UNSUPPORTED, source, " is not an input of ", user);
     const auto has = [&](const Profile& profile) {
         return session.instance.has(profile) &&
                findComponent(profile, user, source.substr(user.size()) + suffix, session.instance) != nullptr;
@@ -40,14 +41,15 @@ Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const
     if (device.profile == nullptr) {
         for (const Profile& profile : allProfiles()) is_known = is_known || has(profile);
     }
-    require(is_known, XR_ERROR_PATH_UNSUPPORTED, "the device's profile has no such input");
+    require(is_known, XR_ERROR_PATH_UNSUPPORTED, device.profile != nullptr ? device.profile->path : "no interaction profile", " has no ",
+            source, suffix);
     return {device, source.substr(prefix.size())};
 }
 
 XrResult setInput(const char* function, XrSession session, XrPath user_path, XrPath source_path, double value) {
     return answer(function, [&] {
         Session& owner = getSession(session);
-        require(std::isfinite(value), XR_ERROR_VALIDATION_FAILURE, "not a number");
+        require(std::isfinite(value), XR_ERROR_VALIDATION_FAILURE, "the value is ", value, ", must be finite");
         const Input input = checkedInput(owner, user_path, source_path, "");
         input.device.inputs[input.name] = value;
         return successOf(owner);
@@ -70,12 +72,14 @@ void Automation::applyTo(State& state) const {
 XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile, XrPath topLevelPath, XrBool32 isActive) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const Profile* const profile = findProfile(owner.instance.paths.textOf(interactionProfile));
-        require(profile != nullptr && owner.instance.has(*profile), XR_ERROR_PATH_UNSUPPORTED, "no such interaction profile");
+        const std::string& name = owner.instance.paths.textOf(interactionProfile);
+        const Profile* const profile = findProfile(name);
+        require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, name, " is not an interaction profile");
+        require(owner.instance.has(*profile), XR_ERROR_PATH_UNSUPPORTED, name, " needs ", profile->depends);
         const std::size_t device = checkedDevice(owner, topLevelPath);
         const std::string& user_path = owner.instance.paths.textOf(topLevelPath);
         const bool is_for_it = std::find(profile->user_paths.begin(), profile->user_paths.end(), user_path) != profile->user_paths.end();
-        require(is_for_it, XR_ERROR_PATH_UNSUPPORTED, "the profile is not for this device");
+        require(is_for_it, XR_ERROR_PATH_UNSUPPORTED, name, " is not for ", user_path);
         DeviceOverride& moved = owner.automation.devices[device];
         // Another controller's buttons are others.
         if (moved.profile != profile) moved.inputs.clear();
@@ -96,7 +100,8 @@ XrResult xrSetInputDeviceStateFloatEXT(XrSession session, XrPath topLevelPath, X
 XrResult xrSetInputDeviceStateVector2fEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrVector2f state) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        require(std::isfinite(state.x) && std::isfinite(state.y), XR_ERROR_VALIDATION_FAILURE, "not a number");
+        require(std::isfinite(state.x) && std::isfinite(state.y), XR_ERROR_VALIDATION_FAILURE, "the value is ", state.x, " ", state.y,
+                ", must be finite");
         const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "/x");
         input.device.inputs[input.name + "/x"] = state.x;
         input.device.inputs[input.name + "/y"] = state.y;
@@ -108,7 +113,7 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "");
-        require(input.name.ends_with("/pose"), XR_ERROR_PATH_UNSUPPORTED, "not a pose");
+        require(input.name.ends_with("/pose"), XR_ERROR_PATH_UNSUPPORTED, input.name, " is not a pose");
         checkPose(pose);
         const std::optional<Pose> stage_from_space =
             stageFromSpace(getSpace(owner, space), owner.at(owner.instance.simulation->clock.now()));

@@ -87,7 +87,8 @@ Device::Implementation::Implementation(const GraphicsBinding& binding)
     const auto families = physical_device.getQueueFamilyProperties(dispatch);
     const bool can_draw = binding.queue_family < families.size() && binding.queue < families[binding.queue_family].queueCount &&
                           (families[binding.queue_family].queueFlags & vk::QueueFlagBits::eGraphics);
-    require(can_draw, XR_ERROR_GRAPHICS_DEVICE_INVALID, "not a queue that can draw");
+    require(can_draw, XR_ERROR_GRAPHICS_DEVICE_INVALID, "queue ", binding.queue, " of family ", binding.queue_family,
+            " cannot draw, or is not there");
     queue = device.getQueue(binding.queue_family, binding.queue, dispatch);
     for (const SwapchainFormat& format : kFormats) {
         const auto features = physical_device.getFormatProperties(vk::Format(format.format), dispatch).optimalTilingFeatures;
@@ -145,10 +146,11 @@ void Device::checkImage(const ImageInfo& info) const {
     vk::ImageFormatProperties limits;
     const vk::Result result = physical_device.getImageFormatProperties(wanted.format, wanted.imageType, wanted.tiling, wanted.usage,
                                                                        wanted.flags, &limits, dispatch);
-    require(result == vk::Result::eSuccess, XR_ERROR_FEATURE_UNSUPPORTED, "the device cannot use this format in this way");
+    require(result == vk::Result::eSuccess, XR_ERROR_FEATURE_UNSUPPORTED, "the device cannot use ", info.format.name, " in this way");
     require(info.size.width <= limits.maxExtent.width && info.size.height <= limits.maxExtent.height &&
                 info.layers <= limits.maxArrayLayers && info.mips <= limits.maxMipLevels,
-            XR_ERROR_VALIDATION_FAILURE, "an image beyond the device's limits");
+            XR_ERROR_VALIDATION_FAILURE, "an image of ", info.size.width, "x", info.size.height, " with ", info.layers, " layers and ",
+            info.mips, " mips is beyond the device's limits");
 }
 
 std::unique_ptr<DeviceImage> Device::createImage(const ImageInfo& info) {

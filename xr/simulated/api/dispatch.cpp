@@ -45,7 +45,7 @@ XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoid
         if (instance != XR_NULL_HANDLE)
             owner = &get<Instance>(instance);
         else
-            require(needsNoInstance(name), XR_ERROR_HANDLE_INVALID, "this function needs an instance");
+            require(needsNoInstance(name), XR_ERROR_HANDLE_INVALID, name, " needs an instance");
         for (const Entry& entry : kEntries) {
             if (std::strcmp(entry.name, name) != 0) continue;
             if (entry.extension != nullptr && !owner->extensions.contains(entry.extension)) break;
@@ -53,7 +53,7 @@ XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoid
             output = entry.function;
             return XR_SUCCESS;
         }
-        throw Refusal{XR_ERROR_FUNCTION_UNSUPPORTED, "no such function, or its extension or version was not asked for"};
+        refuse(XR_ERROR_FUNCTION_UNSUPPORTED, name, ": no such function, or its extension or version was not asked for");
     });
 }
 

@@ -72,8 +72,10 @@ XrResult xrCreateHandTrackerEXT(XrSession session, const XrHandTrackerCreateInfo
         Session& owner = getSession(session);
         const auto& info = checked(createInfo, XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
         XrHandTrackerEXT& output = checkedOutput(handTracker);
-        require(info.hand == XR_HAND_LEFT_EXT || info.hand == XR_HAND_RIGHT_EXT, XR_ERROR_VALIDATION_FAILURE, "no such hand");
-        require(info.handJointSet == XR_HAND_JOINT_SET_DEFAULT_EXT, XR_ERROR_VALIDATION_FAILURE, "no such set of joints");
+        require(info.hand == XR_HAND_LEFT_EXT || info.hand == XR_HAND_RIGHT_EXT, XR_ERROR_VALIDATION_FAILURE, "the hand is ", info.hand,
+                ", must be left or right");
+        require(info.handJointSet == XR_HAND_JOINT_SET_DEFAULT_EXT, XR_ERROR_VALIDATION_FAILURE, "the set of joints is ", info.handJointSet,
+                ", must be the default");
         output = handleOf(adopt(owner, std::make_unique<HandTracker>(owner, info.hand == XR_HAND_LEFT_EXT ? kLeft : kRight)));
         return successOf(owner);
     });
@@ -93,11 +95,12 @@ XrResult xrLocateHandJointsEXT(XrHandTrackerEXT handTracker, const XrHandJointsL
         checkNotLost(tracker.session);
         const auto& info = checked(locateInfo, XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
         auto& output = checked(locations, XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
-        require(output.jointCount == kHandJoints && output.jointLocations != nullptr, XR_ERROR_VALIDATION_FAILURE, "a hand has 26 joints");
+        require(output.jointCount == kHandJoints && output.jointLocations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.jointCount,
+                " locations, a hand has ", kHandJoints, " joints");
         auto* const velocities = reinterpret_cast<XrHandJointVelocitiesEXT*>(
             const_cast<XrBaseInStructure*>(findInChain(output.next, XR_TYPE_HAND_JOINT_VELOCITIES_EXT)));
         require(velocities == nullptr || (velocities->jointCount == kHandJoints && velocities->jointVelocities != nullptr),
-                XR_ERROR_VALIDATION_FAILURE, "a hand has 26 joints");
+                XR_ERROR_VALIDATION_FAILURE, "not as many velocities as a hand has joints, ", kHandJoints);
         const Space& base = getSpace(tracker.session, info.baseSpace);
         checkTime(info.time);
         locateJoints(tracker, base, info.time, output, velocities);

@@ -42,6 +42,16 @@ std::uint64_t numberOf(Handle handle) {
     return reinterpret_cast<std::uint64_t>(handle);
 }
 
+// What the specification calls them.
+constexpr const char* typeOf(XrInstance) { return "XrInstance"; }
+constexpr const char* typeOf(XrSession) { return "XrSession"; }
+constexpr const char* typeOf(XrSpace) { return "XrSpace"; }
+constexpr const char* typeOf(XrSwapchain) { return "XrSwapchain"; }
+constexpr const char* typeOf(XrActionSet) { return "XrActionSet"; }
+constexpr const char* typeOf(XrAction) { return "XrAction"; }
+constexpr const char* typeOf(XrHandTrackerEXT) { return "XrHandTrackerEXT"; }
+constexpr const char* typeOf(XrDebugUtilsMessengerEXT) { return "XrDebugUtilsMessengerEXT"; }
+
 template <class T>
 typename T::Handle handleOf(const T& object) {
     return reinterpret_cast<typename T::Handle>(object.number);
@@ -52,10 +62,18 @@ T* find(typename T::Handle handle) {
     return dynamic_cast<T*>(findObject(numberOf(handle)));
 }
 
+// "0x51a000000002 is not an XrSession that lives".
+template <class Handle>
+[[noreturn]] void refuseHandle(Handle handle, const char* why) {
+    char digits[16];
+    const std::string_view number(digits, std::to_chars(digits, digits + sizeof digits, numberOf(handle), 16).ptr - digits);
+    refuse(XR_ERROR_HANDLE_INVALID, "0x", number, " is not an ", typeOf(handle), why);
+}
+
 template <class T>
 T& get(typename T::Handle handle) {
     T* const object = find<T>(handle);
-    require(object != nullptr, XR_ERROR_HANDLE_INVALID, "no such handle of this type");
+    if (object == nullptr) refuseHandle(handle, " that lives");
     return *object;
 }
 

@@ -34,23 +34,22 @@ void checkApplication(const XrApplicationInfo& application) {
     require(!textOf(application.applicationName).empty(), XR_ERROR_NAME_INVALID, "the application has no name");
     textOf(application.engineName);
     const XrVersion version = application.apiVersion;
-    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED,
-            "this runtime implements OpenXR 1.0 and 1.1");
+    require(XR_VERSION_MAJOR(version) == 1 && XR_VERSION_MINOR(version) <= 1, XR_ERROR_API_VERSION_UNSUPPORTED, "the API version is ",
+            XR_VERSION_MAJOR(version), ".", XR_VERSION_MINOR(version), ", this runtime implements OpenXR 1.0 and 1.1");
 }
 
 [[noreturn]] void refuseExtension(const char* name) {
     // Programs with other graphics could have no session here: they are told at once what there is.
     for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
         if (std::strcmp(name, graphics) != 0) continue;
-        throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT,
-                      std::string(name) + ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable"};
+        refuse(XR_ERROR_EXTENSION_NOT_PRESENT, name, ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
     }
     throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
 }
 
 std::set<std::string, std::less<>> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
-    require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE,
-            "an array of extension names is missing");
+    require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
+            info.enabledExtensionCount, " extension names is missing");
     const std::vector<Extension> offered = offeredExtensions(script);
     std::set<std::string, std::less<>> names;
     for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
@@ -77,7 +76,7 @@ XrResult spell(char (&text)[size], const char* name, const char* unknown_prefix,
 
 Instance& getInstance(XrInstance instance) {
     Instance& owner = get<Instance>(instance);
-    require(!owner.lost_from || owner.simulation->clock.now() < *owner.lost_from, XR_ERROR_INSTANCE_LOST, "the script lost it");
+    require(!owner.lost_from || owner.simulation->clock.now() < *owner.lost_from, XR_ERROR_INSTANCE_LOST, "the script lost the instance");
     return owner;
 }
 
@@ -89,7 +88,7 @@ XrResult xrEnumerateApiLayerProperties(uint32_t propertyCapacityInput, uint32_t*
 XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t propertyCapacityInput, uint32_t* propertyCountOutput,
                                                 XrExtensionProperties* properties) {
     return answer(__func__, [&] {
-        require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, "a runtime has no layers");
+        require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, layerName, ": a runtime has no layers");
         const std::vector<Extension> offered = offeredExtensions(scriptBeforeInstance());
         if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) return XR_SUCCESS;
         for (std::size_t i = 0; i < offered.size(); ++i) checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES);
@@ -106,7 +105,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
     return answer(__func__, [&] {
         const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
         XrInstance& output = checkedOutput(instance);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no instance creation flags are known");
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
         checkApplication(info.applicationInfo);
         auto created = std::make_unique<Instance>();
@@ -123,6 +122,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
 XrResult xrDestroyInstance(XrInstance instance) {
     return answer(__func__, [&] {
         destroyObject(get<Instance>(instance));
+        sayTotals();
         return XR_SUCCESS;
     });
 }

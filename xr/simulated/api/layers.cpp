@@ -23,13 +23,16 @@ Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& imag
     const std::int64_t right = std::int64_t{offset.x} + extent.width, bottom = std::int64_t{offset.y} + extent.height;
     const bool is_inside = offset.x >= 0 && offset.y >= 0 && extent.width >= 0 && extent.height >= 0 &&
                            right <= swapchain.info.size.width && bottom <= swapchain.info.size.height;
-    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "a rectangle reaches out of its image, or is of negative size");
-    require(image.imageArrayIndex < swapchain.info.layers, XR_ERROR_VALIDATION_FAILURE, "no such array layer");
+    require(is_inside, XR_ERROR_SWAPCHAIN_RECT_INVALID, "the rectangle ", offset.x, " ", offset.y, " ", extent.width, " ", extent.height,
+            " is not within its image of ", swapchain.info.size.width, "x", swapchain.info.size.height);
+    require(image.imageArrayIndex < swapchain.info.layers, XR_ERROR_VALIDATION_FAILURE, "imageArrayIndex is ", image.imageArrayIndex,
+            ", the swapchain has ", swapchain.info.layers, " layers");
     return swapchain;
 }
 
 void checkColour(const Swapchain& swapchain) {
-    require(swapchain.info.format.aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_LAYER_INVALID, "a depth image shown as a picture");
+    require(swapchain.info.format.aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_LAYER_INVALID, swapchain.info.format.name,
+            " is shown as a picture");
     require(swapchain.info.faces == 1, XR_ERROR_LAYER_INVALID, "a cube map shown as a picture");
 }
 
@@ -42,25 +45,30 @@ void checkDepth(const Session& session, const XrCompositionLayerDepthInfoKHR& de
     const Swapchain& swapchain = checkSubImage(session, depth.subImage);
     const bool takes_depth = session.instance.simulation->script.depth != Script::Depth::kNoLayers;
     require(takes_depth, XR_ERROR_LAYER_INVALID, "the script takes no depth");
-    require((swapchain.info.format.aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0, XR_ERROR_LAYER_INVALID, "a colour image given as depth");
+    require((swapchain.info.format.aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0, XR_ERROR_LAYER_INVALID, swapchain.info.format.name,
+            " is given as depth");
     const bool is_range = depth.minDepth >= 0 && depth.maxDepth <= 1 && depth.minDepth <= depth.maxDepth;
-    require(is_range, XR_ERROR_VALIDATION_FAILURE, "minDepth and maxDepth are not in order within 0 to 1");
+    require(is_range, XR_ERROR_VALIDATION_FAILURE, "minDepth is ", depth.minDepth, " and maxDepth ", depth.maxDepth,
+            ", must be in order within 0 to 1");
     const bool are_distances = depth.nearZ >= 0 && depth.farZ >= 0 && depth.nearZ != depth.farZ;
-    require(are_distances, XR_ERROR_VALIDATION_FAILURE, "nearZ and farZ are equal or negative");
+    require(are_distances, XR_ERROR_VALIDATION_FAILURE, "nearZ is ", depth.nearZ, " and farZ ", depth.farZ,
+            ", must differ and not be negative");
 }
 
 void checkView(const Session& session, const XrCompositionLayerProjectionView& view) {
     checkType(view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
     checkPose(view.pose);
     for (const float angle : {view.fov.angleLeft, view.fov.angleRight, view.fov.angleUp, view.fov.angleDown}) {
-        require(std::abs(angle) < static_cast<float>(M_PI_2), XR_ERROR_VALIDATION_FAILURE, "a view angle of 90 degrees or more");
+        require(std::abs(angle) < static_cast<float>(M_PI_2), XR_ERROR_VALIDATION_FAILURE, "a view angle is ", angle,
+                ", must be within a quarter turn");
     }
     checkColour(checkSubImage(session, view.subImage));
     if (const XrCompositionLayerDepthInfoKHR* depth = depthOf(session, view)) checkDepth(session, *depth);
 }
 
 void checkProjection(const Session& session, const XrCompositionLayerProjection& layer) {
-    require(layer.viewCount == kEyes && layer.views != nullptr, XR_ERROR_VALIDATION_FAILURE, "not a view for each eye");
+    require(layer.viewCount == kEyes && layer.views != nullptr, XR_ERROR_VALIDATION_FAILURE, layer.viewCount,
+            " views, must be one for each eye");
     for (std::size_t eye = 0; eye < kEyes; ++eye) checkView(session, layer.views[eye]);
 }
 
@@ -68,7 +76,8 @@ void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
     checkEyeVisibility(layer.eyeVisibility);
     checkPose(layer.pose);
     // A quad may be a line or a point: nobody sees it.
-    require(layer.size.width >= 0 && layer.size.height >= 0, XR_ERROR_VALIDATION_FAILURE, "a quad of negative size");
+    require(layer.size.width >= 0 && layer.size.height >= 0, XR_ERROR_VALIDATION_FAILURE, "the quad's size is ", layer.size.width, " ",
+            layer.size.height, ", must not be negative");
     checkColour(checkSubImage(session, layer.subImage));
 }
 
@@ -99,8 +108,8 @@ std::vector<std::string> loggedFlags(XrCompositionLayerFlags flags) {
 }  // namespace
 
 void checkEyeVisibility(XrEyeVisibility visibility) {
-    require(visibility >= XR_EYE_VISIBILITY_BOTH && visibility <= XR_EYE_VISIBILITY_RIGHT, XR_ERROR_VALIDATION_FAILURE,
-            "no such eye visibility");
+    require(visibility >= XR_EYE_VISIBILITY_BOTH && visibility <= XR_EYE_VISIBILITY_RIGHT, XR_ERROR_VALIDATION_FAILURE, visibility,
+            " is no eye visibility");
 }
 
 Visibility visibilityOf(XrEyeVisibility visibility) {
@@ -153,7 +162,7 @@ LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image)
 }
 
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
-    require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, "more layers than maxLayerCount");
+    require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, info.layerCount, " layers, at most ", kMostLayers, " are shown");
     require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of layers is missing");
     require(info.layerCount == 0 || !session.isHeadless(), XR_ERROR_LAYER_INVALID, "a headless session shows no layers");
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
@@ -162,9 +171,10 @@ void checkLayers(const Session& session, const XrFrameEndInfo& info) {
         const bool is_surrounding = isSurrounding(session, layer.type);
         const bool is_known =
             layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding;
-        require(is_known, XR_ERROR_LAYER_INVALID, "a layer that is neither projection nor quad nor of an extension that is enabled");
+        require(is_known, XR_ERROR_LAYER_INVALID, layer.type,
+                " is neither a projection nor a quad, nor a layer of an extension that is enabled");
         checkChain(layer.next);
-        require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags");
+        require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
         getSpace(session, layer.space);
         if (is_surrounding)
             checkSurrounding(session, layer);

@@ -73,9 +73,9 @@ std::vector<std::string> labelsOf(const Instance* instance) {
 const XrDebugUtilsMessengerCreateInfoEXT& checkedMessenger(const XrDebugUtilsMessengerCreateInfoEXT* info) {
     const auto& checked_info = checked(info, XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
     require(checked_info.messageSeverities != 0 && (checked_info.messageSeverities & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE,
-            "no or unknown severities");
-    require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE,
-            "no or unknown types of messages");
+            "messageSeverities is ", checked_info.messageSeverities, ", must be of the bits ", kSeverities);
+    require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ",
+            checked_info.messageTypes, ", must be of the bits ", kTypes);
     require(checked_info.userCallback != nullptr, XR_ERROR_VALIDATION_FAILURE, "no callback");
     return checked_info;
 }
@@ -166,22 +166,23 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
         const auto& data = checked(callbackData, XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT);
-        require(messageSeverity != 0 && (messageSeverity & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE, "no or unknown severities");
-        require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "no or unknown types of messages");
+        require(messageSeverity != 0 && (messageSeverity & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE, "messageSeverity is ",
+                messageSeverity, ", must be of the bits ", kSeverities);
+        require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ", messageTypes,
+                ", must be of the bits ", kTypes);
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
         require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
         require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
-        // What the application says stays as it is; what it leaves open is filled in.
+        // What the application says stays as it is, but for the names of objects; what it leaves open is filled in.
         Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
                         {},      {}};
         for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) message.labels.push_back(checkedLabel(&data.sessionLabels[i]));
         if (message.labels.empty()) message.labels = labelsOf(&owner);
         for (std::uint32_t i = 0; i < data.objectCount; ++i) {
             const auto& object = data.objects[i];
-            std::optional<std::string> name = copyOf(object.objectName);
+            // The registered name counts, as in the loader's own messengers.
             const auto registered = owner.object_names.find({object.objectType, object.objectHandle});
-            if (!name && registered != owner.object_names.end()) name = registered->second;
-            message.objects.emplace_back(object, std::move(name));
+            message.objects.emplace_back(object, registered == owner.object_names.end() ? copyOf(object.objectName) : registered->second);
         }
         queueForAll(message);
         return XR_SUCCESS;

@@ -32,12 +32,12 @@ bool isPathLevel(std::string_view text) {
 }
 
 XrPath Paths::pathOf(std::string_view text) {
-    require(isWellFormed(text), XR_ERROR_PATH_FORMAT_INVALID, "not a well-formed path");
+    if (!isWellFormed(text)) refuse(XR_ERROR_PATH_FORMAT_INVALID, printable(text), " is not a well-formed path");
     const auto [entry, is_new] = paths.try_emplace(std::string(text), texts.size() + 1);
     if (is_new) {
         if (texts.size() == kMostPaths) {
             paths.erase(entry);
-            throw Refusal{XR_ERROR_PATH_COUNT_EXCEEDED, "65536 paths are the most"};
+            refuse(XR_ERROR_PATH_COUNT_EXCEEDED, text, " is one more than ", kMostPaths, ", the most paths that there may be");
         }
         texts.emplace_back(text);
     }
@@ -45,7 +45,7 @@ XrPath Paths::pathOf(std::string_view text) {
 }
 
 const std::string& Paths::textOf(XrPath path) const {
-    require(path != XR_NULL_PATH && path <= texts.size(), XR_ERROR_PATH_INVALID, "no such path");
+    require(path != XR_NULL_PATH && path <= texts.size(), XR_ERROR_PATH_INVALID, "the number ", path, " is not a path");
     return texts[path - 1];
 }
 

@@ -79,6 +79,14 @@ bool allowsBinding(const Profile& profile, std::string_view binding, const Enabl
     });
 }
 
+std::string_view neededFor(const Profile& profile, std::string_view binding) {
+    const std::string_view user_path = userPathOf(binding), path = binding.substr(user_path.size());
+    const auto found = std::ranges::find_if(profile.components, [&](const Component& one) {
+        return one.path == path && (one.user_path.empty() || one.user_path == user_path);
+    });
+    return found == profile.components.end() || !holds(profile.user_paths, user_path) ? std::string_view() : found->depends;
+}
+
 std::optional<std::size_t> deviceOf(std::string_view user_path) {
     // All but the last, in this order.
     for (std::size_t i = 0; i + 1 < std::size(kUserPaths); ++i) {

@@ -51,6 +51,9 @@ bool allowsBinding(const Profile& profile, std::string_view binding, const Enabl
 // Null if it has none: of this user path, with this version and these extensions.
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
 
+// What the profile has this path with, if that is all that it lacks; else empty.
+std::string_view neededFor(const Profile& profile, std::string_view binding);
+
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.
 bool isUserPath(std::string_view path);
 // "/user/hand/left" is 0, right 1, head 2, gamepad 3, eyes 4 (script.h's InputDevice); none for others.

@@ -87,11 +87,11 @@ void differentiate(const Space& space, const Space& base, XrTime time, Velocity&
 
 }  // namespace
 
-void checkTime(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "a time is not positive"); }
+void checkTime(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "the time is ", time, ", must be positive"); }
 
 Space& getSpace(const Session& session, XrSpace space) {
     Space& found = get<Space>(space);
-    require(&found.session == &session, XR_ERROR_HANDLE_INVALID, "a space of another session");
+    if (&found.session != &session) refuseHandle(space, " of this session");
     return found;
 }
 
@@ -122,12 +122,12 @@ XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrS
     const XrSpacesLocateInfo& info = checked(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
     XrSpaceLocations& output = checked(space_locations, XR_TYPE_SPACE_LOCATIONS);
     require(info.spaceCount > 0 && info.spaces != nullptr, XR_ERROR_VALIDATION_FAILURE, "no spaces");
-    require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE,
-            "not a location for each space");
+    require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.locationCount,
+            " locations, must be one for each of ", info.spaceCount, " spaces");
     const XrBaseInStructure* const chained = findInChain(output.next, XR_TYPE_SPACE_VELOCITIES);
     auto* const velocities = const_cast<XrSpaceVelocities*>(reinterpret_cast<const XrSpaceVelocities*>(chained));
     require(velocities == nullptr || (velocities->velocityCount == info.spaceCount && velocities->velocities != nullptr),
-            XR_ERROR_VALIDATION_FAILURE, "not a velocity for each space");
+            XR_ERROR_VALIDATION_FAILURE, "not as many velocities as there are spaces, ", info.spaceCount);
     const Space& base = getSpace(owner, info.baseSpace);
     for (std::uint32_t i = 0; i < info.spaceCount; ++i) getSpace(owner, info.spaces[i]);
     checkTime(info.time);
@@ -169,7 +169,8 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         Session& owner = getSession(session);
         const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
-        require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "no such reference space");
+        require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, info.referenceSpaceType,
+                " is no reference space that this session has");
         checkPose(info.poseInReferenceSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
@@ -185,10 +186,10 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
         const XrActionSpaceCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_SPACE_CREATE_INFO);
         XrSpace& output = checkedOutput(space);
         const Action& action = getAction(owner.instance, info.action);
-        require(action.type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "not a pose action");
+        require(action.type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ", action.name, " is not a pose");
         checkSubactionPath(owner.instance, action.subaction_paths, info.subactionPath);
         const bool is_left_out = owner.attachment && owner.attachment->find(action.number) == nullptr;
-        require(!is_left_out, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action is not among those attached");
+        require(!is_left_out, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action ", action.name, " is not among those attached");
         checkPose(info.poseInActionSpace);
         auto created = std::make_unique<Space>(owner);
         created->origin_from_space = fromXr(info.poseInActionSpace);
@@ -205,7 +206,8 @@ XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType r
         const bool left_out = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !hasStage(owner);
         require(!left_out, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
         // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
-        require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, "no such reference space");
+        require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
+                " is no reference space that this session has");
         checkedOutput(bounds) = {0, 0};
         if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
         *bounds = {3, 2};

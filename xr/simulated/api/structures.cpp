@@ -38,7 +38,7 @@ bool isUtf8(std::string_view text) {
 void checkChain(const void* next) {
     int length = 0;
     for (auto* link = static_cast<const XrBaseInStructure*>(next); link != nullptr; link = link->next) {
-        require(++length <= kLongestChain, XR_ERROR_VALIDATION_FAILURE, "a next chain does not end");
+        require(++length <= kLongestChain, XR_ERROR_VALIDATION_FAILURE, "a next chain does not end after ", kLongestChain, " structures");
     }
 }
 
@@ -49,10 +49,20 @@ const XrBaseInStructure* findInChain(const void* next, XrStructureType type) {
     return nullptr;
 }
 
+std::string printable(std::string_view text) {
+    constexpr std::size_t kMost = 300;
+    std::string shown("'");
+    shown.append(text.substr(0, kMost)).append(text.size() > kMost ? "...'" : "'");
+    for (char& letter : shown) {
+        if (letter < ' ' || letter > '~') letter = '?';
+    }
+    return shown;
+}
+
 std::string textOf(const char* characters, std::size_t size) {
     const std::size_t length = strnlen(characters, size);
-    require(length < size, XR_ERROR_VALIDATION_FAILURE, "a string is not terminated");
-    require(isUtf8({characters, length}), XR_ERROR_VALIDATION_FAILURE, "a string is not UTF-8");
+    require(length < size, XR_ERROR_VALIDATION_FAILURE, "a string does not end within its ", size, " bytes");
+    if (!isUtf8({characters, length})) refuse(XR_ERROR_VALIDATION_FAILURE, "a string is not UTF-8: ", printable({characters, length}));
     return {characters, length};
 }
 

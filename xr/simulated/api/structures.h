@@ -17,13 +17,13 @@ const XrBaseInStructure* findInChain(const void* next, XrStructureType type);
 
 template <class T>
 void checkType(const T& structure, XrStructureType type) {
-    require(structure.type == type, XR_ERROR_VALIDATION_FAILURE, "a structure has a wrong type");
+    require(structure.type == type, XR_ERROR_VALIDATION_FAILURE, "a structure is of type ", structure.type, ", must be ", type);
     checkChain(structure.next);
 }
 
 template <class T>
 T& checked(T* structure, XrStructureType type) {
-    require(structure != nullptr, XR_ERROR_VALIDATION_FAILURE, "a structure is missing");
+    require(structure != nullptr, XR_ERROR_VALIDATION_FAILURE, "the structure of type ", type, " is missing");
     checkType(*structure, type);
     return *structure;
 }
@@ -45,7 +45,7 @@ inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void*
     require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
     *count = static_cast<std::uint32_t>(size);
     if (capacity == 0) return false;
-    require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array is too small");
+    require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array has room for ", capacity, ", must have for ", size);
     require(array != nullptr || size == 0, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
     return true;
 }
@@ -64,6 +64,8 @@ inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* b
     return XR_SUCCESS;
 }
 
+// What an application passed, in quotes and without what a line of text cannot show.
+std::string printable(std::string_view text);
 // A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it has no end or is not UTF-8.
 std::string textOf(const char* characters, std::size_t size);
 template <std::size_t size>

@@ -20,19 +20,23 @@ bool isAngle(float angle, float least, float most) { return angle >= least - kSl
 void checkCylinder(const Session& session, const XrCompositionLayerCylinderKHR& layer) {
     checkEyeVisibility(layer.eyeVisibility);
     checkPose(layer.pose);
-    require(isRadius(layer.radius), XR_ERROR_VALIDATION_FAILURE, "a negative radius");
-    require(isAngle(layer.centralAngle, 0, 2 * kPi), XR_ERROR_VALIDATION_FAILURE, "a central angle outside 0 to 2 pi");
-    require(layer.aspectRatio > 0 && std::isfinite(layer.aspectRatio), XR_ERROR_VALIDATION_FAILURE, "an aspect ratio that is not positive");
+    require(isRadius(layer.radius), XR_ERROR_VALIDATION_FAILURE, "the radius is ", layer.radius, ", must not be negative");
+    require(isAngle(layer.centralAngle, 0, 2 * kPi), XR_ERROR_VALIDATION_FAILURE, "the central angle is ", layer.centralAngle,
+            ", must be 0 to 2 pi");
+    require(layer.aspectRatio > 0 && std::isfinite(layer.aspectRatio), XR_ERROR_VALIDATION_FAILURE, "the aspect ratio is ",
+            layer.aspectRatio, ", must be positive");
     checkPicture(session, layer.subImage);
 }
 
 void checkSphere(const Session& session, const XrCompositionLayerEquirect2KHR& layer) {
     checkEyeVisibility(layer.eyeVisibility);
     checkPose(layer.pose);
-    require(isRadius(layer.radius), XR_ERROR_VALIDATION_FAILURE, "a negative radius");
-    require(isAngle(layer.centralHorizontalAngle, 0, 2 * kPi), XR_ERROR_VALIDATION_FAILURE, "a horizontal angle outside 0 to 2 pi");
+    require(isRadius(layer.radius), XR_ERROR_VALIDATION_FAILURE, "the radius is ", layer.radius, ", must not be negative");
+    require(isAngle(layer.centralHorizontalAngle, 0, 2 * kPi), XR_ERROR_VALIDATION_FAILURE, "the horizontal angle is ",
+            layer.centralHorizontalAngle, ", must be 0 to 2 pi");
     const bool are_latitudes = isAngle(layer.upperVerticalAngle, -kPi / 2, kPi / 2) && isAngle(layer.lowerVerticalAngle, -kPi / 2, kPi / 2);
-    require(are_latitudes, XR_ERROR_VALIDATION_FAILURE, "a vertical angle outside -pi/2 to pi/2");
+    require(are_latitudes, XR_ERROR_VALIDATION_FAILURE, "the vertical angles are ", layer.upperVerticalAngle, " and ",
+            layer.lowerVerticalAngle, ", must be -pi/2 to pi/2");
     checkPicture(session, layer.subImage);
 }
 
@@ -44,7 +48,8 @@ void checkCube(const Session& session, const XrCompositionLayerCubeKHR& layer) {
     const Swapchain& swapchain = getSwapchain(session, layer.swapchain);
     require(swapchain.has_released, XR_ERROR_LAYER_INVALID, "no image of the swapchain was released");
     require(swapchain.info.faces == 6, XR_ERROR_LAYER_INVALID, "a picture shown as a cube map");
-    require(layer.imageArrayIndex < swapchain.info.layers / 6, XR_ERROR_VALIDATION_FAILURE, "no such array layer");
+    require(layer.imageArrayIndex < swapchain.info.layers / 6, XR_ERROR_VALIDATION_FAILURE, "imageArrayIndex is ", layer.imageArrayIndex,
+            ", the swapchain has ", swapchain.info.layers / 6, " cube maps");
 }
 
 CubeLayer cubeLayer(const Session& session, const XrCompositionLayerCubeKHR& layer, const Pose& stage_from_space) {

@@ -39,32 +39,39 @@ VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
 const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted) {
     const auto& formats = session.device->formats();
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) { return format.format == wanted; });
-    require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "a format that was not enumerated");
+    require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "the format ", wanted, " was not enumerated");
     const bool takes_depth = session.instance.simulation->script.depth != Script::Depth::kNoImages;
     require(takes_depth || found->aspects == VK_IMAGE_ASPECT_COLOR_BIT, XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "the script takes no depth");
     return *found;
 }
 
 ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info) {
-    require((info.createFlags & ~kKnownFlags) == 0 && (info.usageFlags & ~kKnownUsage) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown flags");
+    require((info.createFlags & ~kKnownFlags) == 0 && (info.usageFlags & ~kKnownUsage) == 0, XR_ERROR_VALIDATION_FAILURE,
+            "unknown flags: createFlags ", info.createFlags, ", usageFlags ", info.usageFlags);
     require((info.createFlags & XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "no protected content");
     const SwapchainFormat& format = checkedFormat(session, info.format);
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
     const XrSwapchainUsageFlags foreign =
         is_colour ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
-    require((info.usageFlags & foreign) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "a colour format as depth attachment, or the reverse");
+    require((info.usageFlags & foreign) == 0, XR_ERROR_FEATURE_UNSUPPORTED, format.name,
+            is_colour ? " cannot be a depth attachment" : " cannot be a colour attachment");
     require(info.width > 0 && info.height > 0 && info.arraySize > 0 && info.mipCount > 0 && info.sampleCount > 0,
-            XR_ERROR_VALIDATION_FAILURE, "a size is 0");
-    require(info.width <= kMostSwapchainPixels && info.height <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE,
-            "larger than maxSwapchainImageWidth and Height");
-    require(info.mipCount <= std::bit_width(std::max(info.width, info.height)), XR_ERROR_VALIDATION_FAILURE, "more mips than the size has");
-    require(info.faceCount == 1 || info.faceCount == 6, XR_ERROR_VALIDATION_FAILURE, "one face, or six");
+            XR_ERROR_VALIDATION_FAILURE, "a size is 0: ", info.width, "x", info.height, ", arraySize ", info.arraySize, ", mipCount ",
+            info.mipCount, ", sampleCount ", info.sampleCount);
+    require(info.width <= kMostSwapchainPixels && info.height <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "the size is ",
+            info.width, "x", info.height, ", at most ", kMostSwapchainPixels, " each are offered");
+    require(info.mipCount <= std::bit_width(std::max(info.width, info.height)), XR_ERROR_VALIDATION_FAILURE, "mipCount is ", info.mipCount,
+            ", more than ", info.width, "x", info.height, " pixels have");
+    require(info.faceCount == 1 || info.faceCount == 6, XR_ERROR_VALIDATION_FAILURE, "faceCount is ", info.faceCount, ", must be 1 or 6");
     const bool is_cube = info.faceCount == 6;
     require(!is_cube || session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_CUBE_EXTENSION_NAME), XR_ERROR_FEATURE_UNSUPPORTED,
             "cube maps are of XR_KHR_composition_layer_cube");
-    require(!is_cube || (info.width == info.height && is_colour), XR_ERROR_VALIDATION_FAILURE, "a cube map's faces are coloured squares");
-    require(info.arraySize <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "too many array layers");
-    require(info.sampleCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "more samples than maxSwapchainSampleCount");
+    require(!is_cube || (info.width == info.height && is_colour), XR_ERROR_VALIDATION_FAILURE, "the faces of a cube map are ", info.width,
+            "x", info.height, " of ", format.name, ", must be coloured squares");
+    require(info.arraySize <= kMostSwapchainPixels, XR_ERROR_VALIDATION_FAILURE, "arraySize is ", info.arraySize, ", at most ",
+            kMostSwapchainPixels, " are offered");
+    require(info.sampleCount == 1, XR_ERROR_FEATURE_UNSUPPORTED, "sampleCount is ", info.sampleCount,
+            ", must be 1, which is maxSwapchainSampleCount");
     const VkImageCreateFlags flags = flagsOf(info.usageFlags) | (is_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0);
     const ImageInfo image{format,        {info.width, info.height},        info.arraySize * info.faceCount,
                           info.mipCount, usageOf(info.usageFlags, format), flags,
@@ -98,7 +105,7 @@ std::uint32_t Swapchain::nextImage() const {
 
 Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
     Swapchain& found = get<Swapchain>(swapchain);
-    require(&found.session == &session, XR_ERROR_HANDLE_INVALID, "a swapchain of another session");
+    if (&found.session != &session) refuseHandle(swapchain, " of this session");
     return found;
 }
 
@@ -164,7 +171,8 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         checkOptional(acquireInfo, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
         uint32_t& output = checkedOutput(index);
         require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
-        require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all images are acquired already");
+        require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all ", owner.images.size(),
+                " images are acquired already");
         const std::uint32_t next = owner.nextImage();
         // The image on show is given away again: the application holds all others.
         if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);

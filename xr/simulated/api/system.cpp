@@ -20,14 +20,17 @@ Structure* chained(const Instance& instance, void* next, XrStructureType type, c
 
 }  // namespace
 
-void checkSystem(XrSystemId system) { require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "no such system"); }
+void checkSystem(XrSystemId system) {
+    require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "the system is ", system, ", must be ", kSystemId);
+}
 
 void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
     // Values of extensions that this runtime does not have are no view configurations at all.
     const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
                           (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET && instance.is_1_1);
-    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such view configuration");
-    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "only primary stereo");
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is no view configuration");
+    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "the view configuration is ",
+            type, ", there is only primary stereo");
 }
 
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
@@ -35,7 +38,8 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
         const Instance& owner = getInstance(instance);
         const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkedOutput(systemId);
-        require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "only head-mounted displays");
+        require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "the form factor is ",
+                info.formFactor, ", there are only head-mounted displays");
         require(owner.simulation->script.plugged, XR_ERROR_FORM_FACTOR_UNAVAILABLE,
                 "no headset: the script says that it is not plugged in");
         std::uint32_t& calls = owner.simulation->calls_without_headset;

@@ -18,7 +18,7 @@ XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timesp
         XrTime& output = checkedOutput(time);
         const bool is_time = timespecTime->tv_sec >= 0 && timespecTime->tv_sec < INT64_MAX / kSecond - 1 && timespecTime->tv_nsec >= 0 &&
                              timespecTime->tv_nsec < kSecond;
-        require(is_time, XR_ERROR_TIME_INVALID, "not a time of CLOCK_MONOTONIC");
+        require(is_time, XR_ERROR_TIME_INVALID, timespecTime->tv_sec, " s ", timespecTime->tv_nsec, " ns is not a time of CLOCK_MONOTONIC");
         const XrTime converted = timespecTime->tv_sec * kSecond + timespecTime->tv_nsec - owner.simulation->clock.monotonicOffset();
         checkTime(converted);
         output = converted;
@@ -33,7 +33,7 @@ XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct
         checkTime(time);
         const std::int64_t offset = owner.simulation->clock.monotonicOffset();
         require(time < INT64_MAX - std::max<std::int64_t>(offset, 0) && time + offset >= 0, XR_ERROR_TIME_INVALID,
-                "CLOCK_MONOTONIC has no such time");
+                "CLOCK_MONOTONIC does not have the time ", time);
         output.tv_sec = (time + offset) / kSecond;
         output.tv_nsec = (time + offset) % kSecond;
         return XR_SUCCESS;

@@ -16,7 +16,7 @@ namespace {
 template <class Function>
 Function resolve(PFN_vkGetInstanceProcAddr loader, VkInstance instance, const char* name) {
     const auto function = reinterpret_cast<Function>(loader(instance, name));
-    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, name);
+    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, "Vulkan has no ", name);
     return function;
 }
 
@@ -45,7 +45,8 @@ std::size_t wantedDevice() {
     const char* const text = setting.value;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(text, text + std::strlen(text), index);
-    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, setting.variable + " must be a whole number from 0 on");
+    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, setting.variable, " is '", text,
+            "', must be a whole number from 0 on");
     return index;
 }
 
@@ -57,9 +58,10 @@ VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance insta
     require(enumerate(instance, &count, devices.data()) == VK_SUCCESS, XR_ERROR_RUNTIME_FAILURE, "Vulkan's devices cannot be listed");
     std::erase_if(devices, [&](VkPhysicalDevice device) { return !canDraw(loader, instance, device); });
     const std::size_t index = wantedDevice();
-    require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE,
-            devices.empty() ? std::string("no GPU: Vulkan has no device that can draw, not even a software one (Mesa's lavapipe)")
-                            : settingOf("GPU").variable + " is more than there are devices that can draw");
+    require(!devices.empty(), XR_ERROR_RUNTIME_FAILURE,
+            "no GPU: Vulkan has no device that can draw, not even a software one (Mesa's lavapipe)");
+    require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE, settingOf("GPU").variable, " is ", index, ", there are ", devices.size(),
+            " devices that can draw");
     return devices[index];
 }
 
