@@ -34,14 +34,16 @@ TEST_CASE("every input and output that is bound is one of its controller") {
         CAPTURE(bindings.path);
         const simulated::Profile* const profile = simulated::findHandProfile(bindings.path);
         REQUIRE(profile != nullptr);
-        CHECK((bindings.extension == nullptr) == (profile->since == simulated::kVersion1_0));
-        if (bindings.extension != nullptr) { CHECK(profile->extension == bindings.extension); }
+        simulated::Enabled enabled;
+        CHECK(enabled.meets(profile->depends) == (bindings.extension == nullptr));
+        if (bindings.extension != nullptr) { enabled.extensions.insert(bindings.extension); }
+        CHECK(enabled.meets(profile->depends));
         for (const std::size_t side : {0, 1}) {
             for (const char* what : {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,
                                      bindings.stick_click, bindings.menu[side], bindings.haptic}) {
                 if (what == nullptr) { continue; }
                 const std::string path = fmt::format("/user/hand/{}/{}", side == 0 ? "left" : "right", what);
-                CHECK_MESSAGE(simulated::allowsBinding(*profile, path, {}), path);
+                CHECK_MESSAGE(simulated::allowsBinding(*profile, path, enabled), path);
             }
         }
     }

@@ -2,6 +2,8 @@
 #include "tests/ksplat_files.h"
 #include "tests/shared_data.h"
 
+TEST_SUITE_BEGIN("ksplat_format");
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -79,7 +81,7 @@ TEST_CASE("sections follow one another, each of its own degree, and room that is
     CHECK(scene.sh[scene.sh.size() - 1] == doctest::Approx(-1.5 + 3.0 / 255.0));
 }
 
-TEST_CASE("the same four splats as .splat and as .ksplat are the same scene") {
+TEST_CASE("the same four splats as .splat and as .ksplat are the same scene" * needsSharedData()) {
     const auto data = sharedData();
     if (!data) { return; }
     const Scene plain = loadScene((*data / "formats/minimal.splat").string()),

@@ -108,6 +108,20 @@ TEST_CASE("without its extension nobody hears of the wearer") {
     CHECK(presences(made).empty());
 }
 
+TEST_CASE("a display whose rate is fixed lists that one") {
+    const HeadlessSession made(k1_0, {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME}, "rate 80 fixed\n");
+    std::uint32_t count = 0;
+    std::vector<float> rates(8);
+    CHECK(made.xr<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB")(made.session, 8, &count, rates.data()) ==
+          XR_SUCCESS);
+    rates.resize(count);
+    CHECK(rates == std::vector<float>{80});
+    const auto request = made.xr<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
+    CHECK(request(made.session, 80) == XR_SUCCESS);
+    CHECK(request(made.session, 0) == XR_SUCCESS);
+    CHECK(request(made.session, 90) == XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB);
+}
+
 TEST_CASE("the display's rate is one of a list, and the frames after it go by it") {
     const HeadlessSession made(k1_0, {XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME}, "rate 100\n");
     const auto enumerate = made.xr<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");

@@ -1,6 +1,8 @@
 // Chapter 11 of OpenXR on the simulated runtime, in motion: what actions read from the script's controllers, and haptics.
 #include "tests/simulated_fixture.h"
 
+#include <fstream>
+
 TEST_SUITE_BEGIN("simulated_input");
 
 using namespace binosplat::test;
@@ -300,6 +302,23 @@ TEST_CASE_FIXTURE(InputFixture, "haptics go to haptic actions, in focus") {
     CHECK(xrStopHapticFeedback(session, &info) == XR_ERROR_ACTION_TYPE_MISMATCH);
     info.action = XR_NULL_HANDLE;
     CHECK(xrStopHapticFeedback(session, &info) == XR_ERROR_HANDLE_INVALID);
+}
+
+TEST_CASE_FIXTURE(InputFixture, "the log tells how strong a vibration is, and one of no strength is none") {
+    attach({set});
+    focus();
+    XrHapticVibration vibration{XR_TYPE_HAPTIC_VIBRATION, nullptr, 20'000'000, XR_FREQUENCY_UNSPECIFIED, 0.25f};
+    const auto* const feedback = reinterpret_cast<const XrHapticBaseHeader*>(&vibration);
+    XrHapticActionInfo info{XR_TYPE_HAPTIC_ACTION_INFO, nullptr, shake, left};
+    sync(set);
+    CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SUCCESS);
+    vibration.amplitude = 0;
+    CHECK(xrApplyHapticFeedback(session, &info, feedback) == XR_SUCCESS);
+    frame();
+    std::ifstream log(written / "frames.jsonl");
+    std::string line, last;
+    while (std::getline(log, line)) last = line;
+    CHECK(last.find("\"haptic left on 20000000 0.25\",\"haptic left off\"]") != std::string::npos);
 }
 
 TEST_CASE("a script that moves what the program's controllers lack is refused when they are chosen") {

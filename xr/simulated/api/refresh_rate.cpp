@@ -10,7 +10,8 @@ namespace simulated {
 namespace {
 
 std::vector<float> ratesOf(const Script& script) {
-    std::vector<float> rates{72, 80, 90, 120, static_cast<float>(script.rate_hz)};
+    std::vector<float> rates{static_cast<float>(script.rate_hz)};
+    if (!script.rate_is_fixed) rates.insert(rates.end(), {72, 80, 90, 120});
     for (const ScriptEvent& event : script.events) {
         if (event.kind == ScriptEvent::Kind::kRate) rates.push_back(static_cast<float>(event.value));
     }
@@ -56,9 +57,10 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         const float wanted = displayRefreshRate == 0 ? static_cast<float>(simulation.script.rate_hz) : displayRefreshRate;
         const std::vector<float> rates = ratesOf(simulation.script);
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
-                "a rate that was not enumerated");
+                displayRefreshRate, " Hz was not enumerated");
         if (wanted == before) return successOf(owner);
-        require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB, "the script says that the rate is fixed");
+        require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
+                "the script says that the rate is fixed, and not at ", displayRefreshRate, " Hz");
         changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);
         return successOf(owner);
     });

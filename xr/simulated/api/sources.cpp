@@ -34,7 +34,8 @@ std::string titleOfComponent(std::string_view component) {
 const AttachedAction& checkedHaptic(Session& session, const XrHapticActionInfo* hapticActionInfo) {
     const XrHapticActionInfo& info = checked(hapticActionInfo, XR_TYPE_HAPTIC_ACTION_INFO);
     const AttachedAction& action = getAttached(session, info.action);
-    require(action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "not a haptic action");
+    require(action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ",
+            getAction(session.instance, info.action).name, " is not haptic");
     checkSubactionPath(session.instance, action.subaction_paths, info.subactionPath);
     return action;
 }
@@ -64,7 +65,7 @@ XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPa
         Session& owner = getSession(session);
         XrInteractionProfileState& output = checked(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
-        require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, "not a top-level user path");
+        require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, user_path, " is not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const Profile* const profile = profileOf(owner, user_path);
         output.interactionProfile = profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
@@ -92,13 +93,13 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
         Session& owner = getSession(session);
         const auto& info = checked(getInfo, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
         require(info.whichComponents != 0 && (info.whichComponents & ~kAllComponents) == 0, XR_ERROR_VALIDATION_FAILURE,
-                "no or unknown parts of a name");
+                "whichComponents is ", info.whichComponents, ", must be of the bits ", kAllComponents);
         const std::string& path = owner.instance.paths.textOf(info.sourcePath);
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const std::string_view user_path = userPathOf(path);
         const std::string_view component = std::string_view(path).substr(user_path.size());
         const bool is_source = !user_path.empty() && (component.starts_with("/input/") || component.starts_with("/output/"));
-        require(is_source, XR_ERROR_PATH_UNSUPPORTED, "not the path of a source");
+        require(is_source, XR_ERROR_PATH_UNSUPPORTED, path, " is not the path of a source");
         std::string name;
         const auto append = [&](XrInputSourceLocalizedNameFlags part, const std::string& title) {
             if ((info.whichComponents & part) != 0 && !title.empty()) name += (name.empty() ? "" : " ") + title;
@@ -119,10 +120,17 @@ XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapt
         const AttachedAction& action = checkedHaptic(owner, hapticActionInfo);
         const auto& vibration = reinterpret_cast<const XrHapticVibration&>(checked(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
         const bool has_duration = vibration.duration > 0 || vibration.duration == XR_MIN_HAPTIC_DURATION;
-        require(has_duration, XR_ERROR_VALIDATION_FAILURE, "a vibration without duration");
+        require(has_duration, XR_ERROR_VALIDATION_FAILURE, "the duration is ", vibration.duration,
+                ", must be positive or XR_MIN_HAPTIC_DURATION");
         const bool is_in_range = vibration.amplitude >= 0 && vibration.amplitude <= 1 && vibration.frequency >= 0;
-        require(is_in_range, XR_ERROR_VALIDATION_FAILURE, "an amplitude outside 0 to 1, or a negative frequency");
-        logHaptic(owner, action, hapticActionInfo->subactionPath, "on " + std::to_string(vibration.duration));
+        require(is_in_range, XR_ERROR_VALIDATION_FAILURE, "the amplitude is ", vibration.amplitude, ", must be 0 to 1, and the frequency ",
+                vibration.frequency, ", must not be negative");
+        std::string pulse = "on ";
+        append(pulse, vibration.duration);
+        pulse += ' ';
+        append(pulse, vibration.amplitude);
+        // Nobody feels an amplitude of 0, which ends what is felt.
+        logHaptic(owner, action, hapticActionInfo->subactionPath, vibration.amplitude > 0 ? pulse : "off");
         return successOf(owner, successOfHaptic(owner));
     });
 }
