@@ -26,7 +26,8 @@ class HelloXr : public Headset {
 public:
     int exit_status = -1;  // 124: it did not end within its time
     std::string output;
-    std::vector<Json> frames;  // by line of the log
+    std::vector<Json> frames;   // of the log
+    std::vector<Json> between;  // its lines that are no frames
 
     // It ends when its session ends or when a key is pressed: its input is a pipe that stays open and silent.
     explicit HelloXr(const std::string& script, const std::string& options = "") : Headset(script) {
@@ -37,7 +38,10 @@ public:
         exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
         output = readFile(log);
         std::ifstream lines(written / "frames.jsonl");
-        for (std::string line; std::getline(lines, line);) { frames.push_back(Json::parse(line)); }
+        for (std::string line; std::getline(lines, line);) {
+            Json json = Json::parse(line);
+            (json.contains("frame") ? frames : between).push_back(std::move(json));
+        }
     }
 
     [[nodiscard]] std::filesystem::path pictureFile(std::size_t frame) const {

@@ -86,6 +86,17 @@ TEST_CASE("framesWithoutLayersHaveEmptyLists") {
     CHECK(json["should_render"] == true);
 }
 
+TEST_CASE("whatHappensBetweenFramesHasALineWithoutANumber") {
+    const Json states = Json::parse(betweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
+    CHECK(states == Json{{"session_state", "EXITING"}, {"display_time_ns", 7}, {"events", {"state IDLE", "state EXITING"}}});
+    const Json refused = Json::parse(betweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
+    CHECK_FALSE(refused.contains("frame"));
+    CHECK(refused["refused"] == "XR_ERROR_TIME_INVALID");
+    CHECK(refused["reason"] == "the time is 0");
+    CHECK(refused["should_render"] == true);
+    CHECK(refused["events"].empty());
+}
+
 TEST_CASE("namesThatAreNoUtf8DoNotStopTheLog") {
     FrameRecord record;
     record.events = {"\xff\xfe"};
@@ -103,12 +114,11 @@ TEST_CASE("aFrameThatHasAPictureNamesIt") {
 TEST_CASE("linesAreThereBeforeTheLogIsClosed") {
     const std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_log_" + std::to_string(::getpid()) + ".jsonl");
     FrameLog log(path);
-    log.write(someRecord());
-    log.write(someRecord());
+    log.write(frameLine(someRecord()));
+    log.write(frameLine(someRecord()));
     CHECK(std::filesystem::file_size(path) == 2 * (frameLine(someRecord()).size() + 1));
     CHECK_THROWS_AS(FrameLog(path / "none" / "a.jsonl"), std::runtime_error);
-    CHECK_THROWS_WITH_AS(FrameLog(path).write(someRecord()), (path.string() + ": cannot be made (File exists)").c_str(),
-                         std::runtime_error);
+    CHECK_THROWS_WITH_AS(FrameLog(path).write(""), (path.string() + ": cannot be made (File exists)").c_str(), std::runtime_error);
     CHECK(std::filesystem::file_size(path) > 0);
     std::filesystem::remove(path);
 }
@@ -209,6 +219,15 @@ TEST_CASE("aRunsFilesDoNotReplaceOthers") {
     SUBCASE("an unfinished picture") {
         const UsedFolder folder({".frame_000001.unfinished.png"});
         folder.checkRefuses(".frame_000001.unfinished.png");
+    }
+    SUBCASE("but a log may begin with a frame that was refused, or with a session's states") {
+        for (const std::string& line :
+             {betweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}), betweenLine({"", "", 0, true, "IDLE", {"state IDLE"}})}) {
+            const UsedFolder folder({});
+            std::ofstream(folder.path / kLogName) << line << "\n";
+            removeOldOutput(folder.path, true, {});
+            CHECK(folder.names().empty());
+        }
     }
     SUBCASE("but an empty log is that of a run without frames") {
         const UsedFolder folder({kLogName});

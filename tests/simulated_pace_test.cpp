@@ -36,6 +36,34 @@ struct ChangesAtBegin : SessionFixture {
     ChangesAtBegin() : SessionFixture(kSmall + "state-changes at-begin\nat 0.2 worn off") { begin(); }
 };
 
+// A program that ignores that none of its frames is taken.
+struct Refused : SessionFixture {
+    Refused() : SessionFixture(kSmall + "at 0.1 exit") { begin(); }
+    std::vector<nlohmann::json> logged() const {
+        std::ifstream log(written / "frames.jsonl");
+        std::vector<nlohmann::json> lines;
+        for (std::string line; std::getline(log, line);) { lines.push_back(nlohmann::json::parse(line)); }
+        return lines;
+    }
+    // Until the session is to stop.
+    std::vector<XrSessionState> runOn() const {
+        std::vector<XrSessionState> seen;
+        for (int i = 0; i < 50; ++i) {
+            const XrTime time = waitFrame().predictedDisplayTime;
+            for (const XrSessionState state : states()) { seen.push_back(state); }
+            if (!seen.empty() && seen.back() == XR_SESSION_STATE_STOPPING) { break; }
+            CHECK(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
+            CHECK(endFrame(-time) == XR_ERROR_TIME_INVALID);
+            CHECK(endFrame(-time) == XR_ERROR_TIME_INVALID);
+        }
+        return seen;
+    }
+};
+
+const std::vector<XrSessionState> kWholeLife{XR_SESSION_STATE_IDLE,         XR_SESSION_STATE_READY,   XR_SESSION_STATE_SYNCHRONIZED,
+                                             XR_SESSION_STATE_VISIBLE,      XR_SESSION_STATE_FOCUSED, XR_SESSION_STATE_VISIBLE,
+                                             XR_SESSION_STATE_SYNCHRONIZED, XR_SESSION_STATE_STOPPING};
+
 XrEventDataBuffer makeEvent() { return {XR_TYPE_EVENT_DATA_BUFFER}; }
 
 std::vector<std::uint32_t> acquireInTurn(const SessionFixture& fixture, int times) {
@@ -122,6 +150,68 @@ TEST_CASE_FIXTURE(Loaded, "a device that takes longer than a period misses displ
     std::set<double> said;
     for (std::string line; std::getline(log, line);) { said.insert(nlohmann::json::parse(line).value("gpu_ms", 0.0)); }
     CHECK(said == std::set<double>{0.0, 7.0, 25.0});
+}
+
+TEST_CASE_FIXTURE(Refused, "the script goes on and the session moves though every frame is refused, and the log has each with its reason") {
+    CHECK(runOn() == kWholeLife);
+    CHECK(xrEndSession(session) == XR_SUCCESS);
+    CHECK(states() == std::vector<XrSessionState>{XR_SESSION_STATE_IDLE, XR_SESSION_STATE_EXITING});
+    std::vector<nlohmann::json> lines = logged();
+    std::vector<std::string> events;
+    std::size_t refused = 0;
+    for (const nlohmann::json& line : lines) {
+        CHECK_FALSE(line.contains("frame"));
+        for (const auto& event : line["events"]) { events.push_back(event); }
+        if (!line.contains("refused")) { continue; }
+        CHECK(line["refused"] == "XR_ERROR_TIME_INVALID");
+        CHECK(line["display_time_ns"] == 1'000'000'000 + kPeriod * static_cast<XrTime>(refused));
+        CHECK(line["reason"] == "the time is " + std::to_string(-line["display_time_ns"].get<XrTime>()) + ", must be positive");
+        ++refused;
+    }
+    CHECK(refused == 13);
+    CHECK(events == std::vector<std::string>{"state IDLE", "state READY", "state SYNCHRONIZED", "state VISIBLE", "state FOCUSED", "exit",
+                                             "state VISIBLE", "state SYNCHRONIZED", "state STOPPING", "state IDLE", "state EXITING"});
+}
+
+TEST_CASE_FIXTURE(Refused, "a frame that is refused and ended again moves the session once") {
+    for (int i = 0; i < 3; ++i) {
+        const XrTime time = waitFrame().predictedDisplayTime;
+        REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+        CHECK(endFrame(0) == XR_ERROR_TIME_INVALID);
+        CHECK(endFrame(time) == XR_SUCCESS);
+        CHECK(states().back() == static_cast<XrSessionState>(XR_SESSION_STATE_SYNCHRONIZED + i));
+    }
+    const std::vector<nlohmann::json> lines = logged();
+    REQUIRE(lines.size() == 6);
+    CHECK(lines[4].contains("refused"));
+    CHECK(lines[5]["frame"] == 2);
+}
+
+TEST_CASE_FIXTURE(Refused, "frames that are given up move the session, too") {
+    std::vector<XrSessionState> seen;
+    for (int i = 0; i < 50 && (seen.empty() || seen.back() != XR_SESSION_STATE_STOPPING); ++i) {
+        waitFrame();
+        CHECK(XR_SUCCEEDED(xrBeginFrame(session, nullptr)));
+        for (const XrSessionState state : states()) { seen.push_back(state); }
+    }
+    CHECK(seen == kWholeLife);
+}
+
+TEST_CASE("the log ends with the session's last states") {
+    struct Ended : Refused {
+        void end() const {
+            while (states() != std::vector{XR_SESSION_STATE_STOPPING}) { frame(); }
+            CHECK(xrEndSession(session) == XR_SUCCESS);
+        }
+    };
+    const Ended ended;
+    ended.end();
+    const std::vector<nlohmann::json> lines = ended.logged();
+    REQUIRE(lines.size() > 3);
+    CHECK(lines[lines.size() - 3].contains("frame"));
+    CHECK(lines[lines.size() - 2]["events"] == nlohmann::json{"state STOPPING"});
+    CHECK(lines[lines.size() - 2]["session_state"] == "STOPPING");
+    CHECK(lines.back()["events"] == nlohmann::json{"state IDLE", "state EXITING"});
 }
 
 TEST_CASE_FIXTURE(Stretched, "a stretched period is as many as the frame before took") {

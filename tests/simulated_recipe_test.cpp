@@ -265,9 +265,12 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
     CHECK(contains(off, "frame_000000.png is off by more than 9 in 1 of 100 pixels (PSNR 52.9 dB)"));
     CHECK(compareRuns("a", "b", forgiving + "9 --share 0.01").exit_code == 0);
     write("c", "{\"frame\": 0, \"x\": [1, 2.5], \"events\": [\"exit\"]}\n{\"frame\": 1}\n", 100);
-    CHECK(contains(compareRuns("a", "c"), "2 frames, expected 1"));
+    CHECK(contains(compareRuns("a", "c"), "2 lines, expected 1"));
     fs::remove(kWork / "c/frame_000000.png");
     CHECK(contains(compareRuns("a", "c", "--pictures 1"), "frame_000000.png is missing"));
+    write("e", "{\"refused\": \"XR_ERROR_TIME_INVALID\"}\n", 100);
+    write("f", "{\"refused\": \"XR_ERROR_POSE_INVALID\"}\n", 100);
+    CHECK(compareRuns("e", "f").output == "line 1: refused is \"XR_ERROR_POSE_INVALID\", expected \"XR_ERROR_TIME_INVALID\"\n");
     write("d", "nonsense\n", 100);
     const Run broken = compareRuns("a", "d");
     CHECK(broken.exit_code == 2);

@@ -153,11 +153,20 @@ TEST_CASE("a recentring is announced for LOCAL, and for LOCAL_FLOOR where that i
             const auto& change = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event);
             CHECK(change.session == made.session);
             CHECK(change.changeTime == kStart + 150'000'000);
+            // From where LOCAL began, at the head of time 0, to where the head is then; LOCAL_FLOOR is below it both times.
+            CHECK(change.poseValid == XR_TRUE);
+            CHECK(change.poseInPreviousSpace.position.x == doctest::Approx(0));
+            const bool is_floor = change.referenceSpaceType == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR;
+            CHECK(change.poseInPreviousSpace.position.y == doctest::Approx(is_floor ? 0 : 0.15));
+            CHECK(change.poseInPreviousSpace.position.z == doctest::Approx(-0.3));
+            CHECK(change.poseInPreviousSpace.orientation.y == doctest::Approx(std::sin(std::acos(-1) / 24)));
+            CHECK(change.poseInPreviousSpace.orientation.x == doctest::Approx(0));
             types.push_back(change.referenceSpaceType);
         }
         return types;
     };
-    const std::string script = "rate 10\nat 0.15 recentre\n";
+
+    const std::string script = "rate 10\nhead 0 position 1 1.6 0 turn 90 0\nhead 1 position -1 2.6 0 turn 190 0\nat 0.15 recentre\n";
     const std::vector<XrReferenceSpaceType> both{XR_REFERENCE_SPACE_TYPE_LOCAL, XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR};
     CHECK(announced(HeadlessSession(k1_0, {}, script)) == std::vector{XR_REFERENCE_SPACE_TYPE_LOCAL});
     CHECK(announced(HeadlessSession(k1_0, {XR_EXT_LOCAL_FLOOR_EXTENSION_NAME}, script)) == both);

@@ -24,7 +24,8 @@ inline const std::string kValidated =
 struct ViewRun {
     Outcome outcome;
     std::filesystem::path out;
-    std::vector<nlohmann::json> frames;  // of frames.jsonl
+    std::vector<nlohmann::json> frames;   // of frames.jsonl
+    std::vector<nlohmann::json> between;  // its lines that are no frames
 
     // What the eye saw in a frame.
     [[nodiscard]] Image eye(std::size_t frame, int side) const {
@@ -70,7 +71,10 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
     run.out = work.path / name;
     run.outcome = work.run(fmt::format("view {0} --simulate {1}.script --out {1}", arguments, name), environment);
     std::ifstream log(run.out / "frames.jsonl");
-    for (std::string line; std::getline(log, line);) { run.frames.push_back(nlohmann::json::parse(line)); }
+    for (std::string line; std::getline(log, line);) {
+        nlohmann::json json = nlohmann::json::parse(line);
+        (json.contains("frame") ? run.frames : run.between).push_back(std::move(json));
+    }
     return run;
 }
 

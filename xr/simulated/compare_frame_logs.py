@@ -147,11 +147,12 @@ def picture_differences(expected, actual, steps, share):
 
 
 def log_differences(expected, actual, tolerance, ignored):
-    for one, other in zip(expected, actual):
+    for number, (one, other) in enumerate(zip(expected, actual), 1):
+        place = f"frame {one['frame']}" if "frame" in one else f"line {number}"
         for line in differences(one, other, tolerance, ignored):
-            yield f"frame {one.get('frame', '?')}: {line}"
+            yield f"{place}: {line}"
     if len(expected) != len(actual):
-        yield f"{len(actual)} frames, expected {len(expected)}"
+        yield f"{len(actual)} lines, expected {len(expected)}"
 
 
 def main():

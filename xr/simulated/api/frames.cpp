@@ -11,6 +11,7 @@
 #include "xr/simulated/api/spaces.h"
 #include "xr/simulated/api/structures.h"
 #include "xr/simulated/compose/show.h"
+#include "xr/simulated/names.h"
 
 namespace simulated {
 namespace {
@@ -32,10 +33,26 @@ Session& runningSession(XrSession session) {
 
 void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
     const bool is_known = mode >= XR_ENVIRONMENT_BLEND_MODE_OPAQUE && mode <= XR_ENVIRONMENT_BLEND_MODE_ALPHA_BLEND;
-    require(is_known, XR_ERROR_VALIDATION_FAILURE, "no such blend mode");
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, mode, " is no blend mode");
     const bool is_offered = std::ranges::any_of(
         script.blend_modes, [&](Script::BlendMode offered) { return static_cast<int>(offered) + 1 == static_cast<int>(mode); });
-    require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer this one");
+    require(is_offered, XR_ERROR_ENVIRONMENT_BLEND_MODE_UNSUPPORTED, "the headset does not offer ", wordOf(mode));
+}
+
+// A frame that was begun and is refused stands in the log, once for each reason; it may be ended again.
+const XrFrameEndInfo& checkedFrame(Session& session, const XrFrameEndInfo* frame_end_info) {
+    try {
+        const XrFrameEndInfo& info = checked(frame_end_info, XR_TYPE_FRAME_END_INFO);
+        require(session.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
+        checkTime(info.displayTime);
+        checkBlendMode(info.environmentBlendMode, session.instance.simulation->script);
+        checkLayers(session, info);
+        return info;
+    } catch (const Refusal& refusal) {
+        if (session.frames.begun && std::exchange(session.frames.refused_for, refusal.reason) != refusal.reason)
+            logBetween(session, &refusal);
+        throw;
+    }
 }
 
 // The display shows a frame in the first period in which the device is done with it.
@@ -108,6 +125,8 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         });
         Session& owner = runningSession(session);
         Simulation& simulation = *owner.instance.simulation;
+        // Time goes on though no frame ends.
+        if (!owner.frames.refused_for.empty()) owner.passFrame(simulation.clock.now());
         const std::int64_t missed = std::exchange(owner.frames.missed, 0);
         frame = simulation.clock.nextFrame(missed);
         const State state = simulation.at(frame.display_time);
@@ -137,8 +156,11 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
         checkOptional(frameBeginInfo, XR_TYPE_FRAME_BEGIN_INFO);
         require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
+        if (is_discarding) owner.passFrame(*owner.frames.begun);
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
-        if (owner.instance.simulation->script.changes_state_at_begin) owner.step(owner.at(*owner.frames.begun));
+        owner.frames.moves_state = true;
+        owner.frames.refused_for.clear();
+        if (owner.instance.simulation->script.changes_state_at_begin) owner.passFrame(*owner.frames.begun);
         wakeFrameWaiters();
         return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
     });
@@ -147,16 +169,13 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
 XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
     return answer(__func__, [&] {
         Session& owner = runningSession(session);
-        const XrFrameEndInfo& info = checked(frameEndInfo, XR_TYPE_FRAME_END_INFO);
-        require(owner.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
-        checkTime(info.displayTime);
-        checkBlendMode(info.environmentBlendMode, owner.instance.simulation->script);
-        checkLayers(owner, info);
+        const XrFrameEndInfo& info = checkedFrame(owner, frameEndInfo);
         owner.frames.begun.reset();
+        owner.frames.refused_for.clear();
         const State state = owner.at(info.displayTime);
         loadGpu(owner, info);
         showFrame(owner, info, state);
-        if (!owner.instance.simulation->script.changes_state_at_begin) owner.step(state);
+        owner.passFrame(info.displayTime);
         return successOf(owner);
     });
 }

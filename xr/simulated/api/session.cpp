@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "xr/simulated/api/api.h"
+#include "xr/simulated/api/poses.h"
 #include "xr/simulated/api/structures.h"
+#include "xr/simulated/compose/show.h"
 #include "xr/simulated/names.h"
 
 namespace simulated {
@@ -18,18 +20,21 @@ XrSessionState targetOf(const Session& session, const State& wanted) {
 }
 
 // LOCAL_FLOOR goes where LOCAL goes.
-void announceRecentring(const Session& session, XrTime change_time) {
-    std::vector<XrReferenceSpaceType> moved{XR_REFERENCE_SPACE_TYPE_LOCAL};
-    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) moved.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
-    for (const XrReferenceSpaceType type : moved) {
-        session.instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
-                                                                            nullptr,
-                                                                            handleOf(session),
-                                                                            type,
-                                                                            change_time,
-                                                                            XR_FALSE,
-                                                                            {{0, 0, 0, 1}, {0, 0, 0}}});
-    }
+void announceRecentring(const Session& session, double change_s) {
+    const Simulation& simulation = *session.instance.simulation;
+    const XrTime change_time = simulation.clock.timeAt(change_s);
+    const auto announce = [&](XrReferenceSpaceType type, Pose (Script::*stage_from_space)(double) const) {
+        // Just before and after; the time itself was added up and may be off by a bit.
+        constexpr double kBeside = 1e-6;
+        const Pose before = (simulation.script.*stage_from_space)(change_s - kBeside),
+                   after = (simulation.script.*stage_from_space)(change_s + kBeside);
+        session.instance.events.push(XrEventDataReferenceSpaceChangePending{XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING, nullptr,
+                                                                            handleOf(session), type, change_time, XR_TRUE,
+                                                                            toXr(compose(inverse(before), after))});
+    };
+    announce(XR_REFERENCE_SPACE_TYPE_LOCAL, &Script::stageFromLocal);
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME))
+        announce(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR, &Script::stageFromLocalFloor);
 }
 
 }  // namespace
@@ -40,6 +45,9 @@ Session::Session(Instance& owner, std::unique_ptr<Device> graphics) : instance(o
 
 Session::~Session() {
     wakeFrameWaiters();
+    try {
+        logBetween(*this);
+    } catch (const std::exception& failure) { explainFailure("xrDestroySession", failure.what()); }
     instance.session = nullptr;
     // It was unplugged: a program asks again for everything.
     if (const std::uint32_t calls = instance.simulation->script.calls_after_loss; loss_announced && calls > 0) {
@@ -68,12 +76,18 @@ void Session::step(const State& wanted) {
     const XrSessionState target = targetOf(*this, wanted);
     if (state == XR_SESSION_STATE_READY)
         enter(XR_SESSION_STATE_SYNCHRONIZED);
-    else if (target == XR_SESSION_STATE_STOPPING && state == XR_SESSION_STATE_SYNCHRONIZED)
+    else if (target == XR_SESSION_STATE_STOPPING && state == XR_SESSION_STATE_SYNCHRONIZED) {
         enter(XR_SESSION_STATE_STOPPING);
-    else if (target == XR_SESSION_STATE_STOPPING || target < state)
+        // There may be no frame any more to tell of it.
+        if (!frames.begun) logBetween(*this);
+    } else if (target == XR_SESSION_STATE_STOPPING || target < state)
         enter(static_cast<XrSessionState>(state - 1));
     else if (target > state)
         enter(static_cast<XrSessionState>(state + 1));
+}
+
+void Session::passFrame(XrTime time) {
+    if (std::exchange(frames.moves_state, false)) step(at(time));
 }
 
 void Session::settle() {
@@ -114,7 +128,7 @@ void Session::meetEvents(XrTime display_time) {
                 wants_exit = true;
                 break;
             case ScriptEvent::Kind::kRecentre:
-                announceRecentring(*this, simulation.clock.timeAt(event.time_s + ScriptEvent::kNoticeSeconds));
+                announceRecentring(*this, event.time_s + ScriptEvent::kNoticeSeconds);
                 break;
             case ScriptEvent::Kind::kLoseSession:
                 loss_announced = display_time;
@@ -148,9 +162,10 @@ void Session::idle() {
     const XrTime now = simulation.clock.now();
     meetEvents(now);
     if (loss_announced) return;
-    if (wants_exit)
+    if (wants_exit) {
         enter(XR_SESSION_STATE_EXITING);
-    else if (simulation.at(now).worn)
+        logBetween(*this);
+    } else if (simulation.at(now).worn)
         enter(XR_SESSION_STATE_READY);
 }
 
@@ -174,7 +189,7 @@ Session& getSession(XrSession session) {
 void checkNotLost(const Session& session) {
     getInstance(handleOf(session.instance));
     require(!session.lost_from || session.instance.simulation->clock.now() < *session.lost_from, XR_ERROR_SESSION_LOST,
-            "the script lost it");
+            "the script lost the session");
 }
 
 XrResult successOf(const Session& session, XrResult success) { return session.loss_announced ? XR_SESSION_LOSS_PENDING : success; }

@@ -1,5 +1,5 @@
-// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each xrEndFrame moves it a
-// state towards the one that the script wants.
+// Chapter 9: a session and its life from IDLE to EXITING or LOSS_PENDING. The application's frames drive it: each moves it a state
+// towards the one that the script wants, also one that xrEndFrame refused.
 #pragma once
 
 #include <array>
@@ -23,6 +23,8 @@ struct FrameLoop {
     std::optional<double> gpu_ms;  // what the script says it took
     bool should_render = false;    // as the frame that was waited for last was told
     bool are_used = false;         // a frame was waited for since the session began
+    bool moves_state = false;      // the frame that was begun has yet to move the session's state
+    std::string refused_for;       // why it could not be ended
 };
 
 struct Session : Object {
@@ -53,8 +55,10 @@ struct Session : Object {
     // The script's state at a time, with what the program's own test says of the controllers.
     [[nodiscard]] State at(XrTime time) const;
     void enter(XrSessionState next);
-    // After an xrEndFrame whose frame shows the headset in this state.
+    // A state nearer to what the headset's state at a frame wants.
     void step(const State& wanted);
+    // The frame that was begun moves the session, once: when it ends, or when the program gives it up.
+    void passFrame(XrTime time);
     // A headless session needs no frames: it goes at once where the script wants it, and each xrSyncActions is a frame's time. If the
     // program waits for frames all the same, time and states go by them, as in any other session.
     [[nodiscard]] bool isHeadless() const { return device == nullptr; }

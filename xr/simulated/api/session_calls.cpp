@@ -2,6 +2,8 @@
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/session.h"
 #include "xr/simulated/api/structures.h"
+#include "xr/simulated/compose/show.h"
+#include "xr/simulated/names.h"
 
 namespace simulated {
 namespace {
@@ -42,7 +44,7 @@ XrResult xrCreateSession(XrInstance instance, const XrSessionCreateInfo* createI
         Instance& owner = getInstance(instance);
         const XrSessionCreateInfo& info = checked(createInfo, XR_TYPE_SESSION_CREATE_INFO);
         XrSession& output = checkedOutput(session);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no session creation flags are known");
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         checkSystem(info.systemId);
         require(owner.simulation->calls_until_plugged == 0, XR_ERROR_SYSTEM_INVALID, "the headset is not there any more");
         const XrGraphicsBindingVulkan2KHR* const binding = checkedBinding(owner, info);
@@ -70,7 +72,8 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
         // XR_MND_headless: whatever it says is ignored.
         if (!begun.isHeadless()) checkViewConfiguration(begun.instance, info.primaryViewConfigurationType);
         require(!begun.is_running, XR_ERROR_SESSION_RUNNING, "the session runs already");
-        require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is not READY");
+        require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is ", wordOf(begun.state),
+                ", must be READY");
         begun.is_running = true;
         begun.frames = {};
         begun.announced_presence.reset();
@@ -85,12 +88,13 @@ XrResult xrEndSession(XrSession session) {
         Session& ended = getSession(session);
         require(ended.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
         const bool may_end = ended.state == XR_SESSION_STATE_STOPPING || ended.loss_announced;
-        require(may_end, XR_ERROR_SESSION_NOT_STOPPING, "the session is not STOPPING");
+        require(may_end, XR_ERROR_SESSION_NOT_STOPPING, "the session is ", wordOf(ended.state), ", must be STOPPING");
         ended.is_running = false;
         wakeFrameWaiters();
         if (ended.loss_announced) return XR_SESSION_LOSS_PENDING;
         ended.enter(XR_SESSION_STATE_IDLE);
         if (ended.wants_exit) ended.enter(XR_SESSION_STATE_EXITING);
+        logBetween(ended);
         return XR_SUCCESS;
     });
 }

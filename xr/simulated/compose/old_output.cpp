@@ -42,15 +42,15 @@ std::string pictureOf(std::string name) {
     return name.substr(1, name.size() - 1 - kUnfinished.size()) + ".png";
 }
 
-// A run that ended before its first frame leaves an empty one.
+// A run that ended before its first frame leaves an empty one. Others begin with a frame, a refused one, or a session's states.
 bool isOurLog(const fs::path& path) {
     if (!isPlainFile(path)) { return false; }
     std::error_code error;
     if (fs::file_size(path, error) == 0 && !error) { return true; }
-    constexpr std::string_view kBeginning = "{\"frame\":0,\"display_time_ns\":";
-    std::string beginning(kBeginning.size(), ' ');
+    std::string beginning(40, ' ');
     std::ifstream(path, std::ios::binary).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-    return beginning == kBeginning;
+    return beginning.starts_with("{\"frame\":0,\"display_time_ns\":") || beginning.starts_with("{\"refused\":\"XR_ERROR_") ||
+           beginning.starts_with("{\"session_state\":\"");
 }
 
 // The names that the log's lines give, of those that pictures can have.

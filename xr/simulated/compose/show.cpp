@@ -59,8 +59,23 @@ void showFrame(Session& session, const XrFrameEndInfo& info, const State& state)
     if (has_picture) record.picture = pictureName(simulation.frames_shown);
     ++simulation.frames_shown;
     // The log first: whatever a run leaves that ends meanwhile, its log names it.
-    simulation.output->log.write(record);
+    simulation.output->log.write(frameLine(record));
     if (has_picture) writePicture(session, info, state, simulation.output->folder / record.picture);
+}
+
+void logBetween(Session& session, const Refusal* refusal) {
+    BetweenRecord record;
+    record.events = std::exchange(session.log_events, {});
+    Simulation& simulation = *session.instance.simulation;
+    if (!simulation.output || (refusal == nullptr && record.events.empty())) return;
+    if (refusal != nullptr) {
+        record.refused = nameOf(refusal->result);
+        record.reason = refusal->reason;
+        record.should_render = session.frames.should_render;
+    }
+    record.display_time_ns = simulation.clock.now();
+    record.session_state = wordOf(session.state);
+    simulation.output->log.write(betweenLine(record));
 }
 
 }  // namespace simulated

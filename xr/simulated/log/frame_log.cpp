@@ -51,6 +51,9 @@ Json jsonOf(const LoggedLayer& layer) {
     return json;
 }
 
+// Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
 
 std::string frameLine(const FrameRecord& record) {
@@ -68,17 +71,26 @@ std::string frameLine(const FrameRecord& record) {
     json["events"] = record.events;
     if (record.gpu_ms) { json["gpu_ms"] = *record.gpu_ms; }
     if (!record.picture.empty()) { json["picture"] = record.picture; }
-    // Names may come from an application: bytes that are no UTF-8 are replaced, not thrown at.
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return textOf(json);
+}
+
+std::string betweenLine(const BetweenRecord& record) {
+    Json json;
+    if (!record.refused.empty()) { json = {{"refused", record.refused}, {"reason", record.reason}}; }
+    json["session_state"] = record.session_state;
+    json["display_time_ns"] = record.display_time_ns;
+    if (!record.refused.empty()) { json["should_render"] = record.should_render; }
+    json["events"] = record.events;
+    return textOf(json);
 }
 
 FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "wbx"), &std::fclose) {
     if (file_ == nullptr) { throw std::runtime_error(path_.string() + ": cannot be made (" + std::strerror(errno) + ")"); }
 }
 
-void FrameLog::write(const FrameRecord& record) {
-    const std::string line = frameLine(record) + '\n';
-    const bool is_written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size() && std::fflush(file_.get()) == 0;
+void FrameLog::write(const std::string& line) {
+    const std::string ended = line + '\n';
+    const bool is_written = std::fwrite(ended.data(), 1, ended.size(), file_.get()) == ended.size() && std::fflush(file_.get()) == 0;
     if (!is_written) { throw std::runtime_error(path_.string() + ": cannot be written (" + std::strerror(errno) + ")"); }
 }
 

@@ -64,15 +64,27 @@ struct FrameRecord {
     std::string picture;              // the file's name, empty if the frame has none
 };
 
+// What happens between the frames that are shown: a frame that xrEndFrame refused, or session states that no frame follows.
+struct BetweenRecord {
+    std::string refused;  // "XR_ERROR_VALIDATION_FAILURE"; empty: no frame was
+    std::string reason;
+    std::int64_t display_time_ns = 0;
+    bool should_render = true;  // of a frame that was refused
+    std::string session_state;
+    std::vector<std::string> events;  // as a frame's
+};
+
 // One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
 [[nodiscard]] std::string frameLine(const FrameRecord& record);
+// Such a line has no "frame".
+[[nodiscard]] std::string betweenLine(const BetweenRecord& record);
 
 // Lines are there as soon as they are written, so that a program that dies leaves a log of all frames before.
 class FrameLog {
 public:
     // Makes the file, which must not be there. Throws std::runtime_error naming it.
     explicit FrameLog(const std::filesystem::path& path);
-    void write(const FrameRecord& record);
+    void write(const std::string& line);
 
 private:
     std::filesystem::path path_;
