@@ -292,6 +292,15 @@ TEST_CASE("aSceneWhoseYIsUpIsSeenUprightAndFromItsFront") {
     CHECK(upright.eye.z > upright.look.z);
 }
 
+TEST_CASE("aSceneOfOneSplatIsSeenFromWhereItIsWhole") {
+    Scene scene;
+    scene.name = "one.ply";
+    scene.positions = {glm::vec3(1.0f, 2.0f, 3.0f)};
+    CHECK(viewOfScene(scene, 60.0).eye.z == doctest::Approx(2.0));
+    scene.scales = {glm::vec2(0.1f, 4.0f)};
+    CHECK(viewOfScene(scene, 60.0).eye.z == doctest::Approx(3.0 - 24.0));
+}
+
 TEST_CASE("vectorsMayBeginWithAMinus") {
     CHECK(render({"--eye", "-1,0,0"}).camera.eye == glm::dvec3(-1.0, 0.0, 0.0));
     CHECK(render({"--eye", "-.5,0,1e-3"}).camera.eye == glm::dvec3(-0.5, 0.0, 1e-3));

@@ -45,8 +45,12 @@ View viewOfScene(const Scene& scene, double fov_x_deg) {
     if (scene.size() == 0) { return view; }
     glm::dvec3 low, high;
     for (int axis = 0; axis < 3; ++axis) { std::tie(low[axis], high[axis]) = commonRange(scene, axis); }
-    // A sphere about the common box fills the picture's width; a point-like scene is seen from one unit away.
-    const double radius = std::max(0.5 * glm::length(high - low), 1e-3);
+    // A sphere about the common box fills the picture's width; about a point it holds the first splat, and half a unit at least.
+    double radius = 0.5 * glm::length(high - low);
+    if (radius < 1e-3) {
+        const glm::vec2 scale = scene.scales.empty() ? glm::vec2(0.0f) : scene.scales.front();
+        radius = std::max(3.0 * static_cast<double>(std::max(scale.x, scale.y)), 0.5);
+    }
     view.look = 0.5 * (low + high);
     view.eye = view.look + glm::dvec3(0.0, 0.0, up_y * radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0))));
     return view;
