@@ -101,6 +101,24 @@ TEST_CASE_FIXTURE(SurroundFixture, "layers that surround reach the wearer and th
     CHECK(seen() == Texel{0, 0, 0, 255});
 }
 
+TEST_CASE_FIXTURE(SurroundFixture,
+                  "a frame that is refused stands in the log, with the layer and the value that were wrong, and has no picture") {
+    cylinder.centralAngle = 7;
+    const XrTime time = waitFrame().predictedDisplayTime;
+    REQUIRE(xrBeginFrame(session, nullptr) == XR_SUCCESS);
+    const std::vector layers{reinterpret_cast<const XrCompositionLayerBaseHeader*>(&sphere),
+                             reinterpret_cast<const XrCompositionLayerBaseHeader*>(&cylinder)};
+    CHECK(endFrame(time, layers) == XR_ERROR_VALIDATION_FAILURE);
+    const nlohmann::json refused = lastLogged();
+    CHECK(refused["refused"] == "XR_ERROR_VALIDATION_FAILURE");
+    CHECK(refused["reason"] == "layer 1: the central angle is 7, must be 0 to 2 pi");
+    CHECK(refused["session_state"] == "FOCUSED");
+    CHECK_FALSE(refused.contains("picture"));
+    cylinder.centralAngle = 1;
+    CHECK(endFrame(time, layers) == XR_SUCCESS);
+    CHECK(lastLogged()["picture"] == "frame_000003.png");
+}
+
 TEST_CASE_FIXTURE(SurroundFixture, "cylinders and spheres have angles, radii and pictures") {
     const auto refusedCylinder = [&](auto&& change) {
         XrCompositionLayerCylinderKHR bad = cylinder;

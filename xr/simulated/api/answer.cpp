@@ -19,7 +19,8 @@ struct Said {
 };
 
 std::map<std::string, Said>& saidLines() {
-    static std::map<std::string, Said> lines;
+    // It outlives whatever the end of the process destroys, which may still have something to say.
+    static auto& lines = *new std::map<std::string, Said>();
     return lines;
 }
 

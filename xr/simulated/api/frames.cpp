@@ -158,6 +158,7 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
         const bool is_discarding = owner.frames.begun.has_value();
         if (is_discarding) owner.passFrame(*owner.frames.begun);
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
+        owner.frames.last_begun = owner.frames.begun;
         owner.frames.moves_state = true;
         owner.frames.refused_for.clear();
         if (owner.instance.simulation->script.changes_state_at_begin) owner.passFrame(*owner.frames.begun);

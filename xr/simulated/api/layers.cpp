@@ -161,27 +161,38 @@ LoggedView loggedImage(const Session& session, const XrSwapchainSubImage& image)
     return logged;
 }
 
+namespace {
+
+void checkLayer(const Session& session, const XrCompositionLayerBaseHeader* submitted) {
+    require(submitted != nullptr, XR_ERROR_LAYER_INVALID, "it is null");
+    const XrCompositionLayerBaseHeader& layer = *submitted;
+    const bool is_surrounding = isSurrounding(session, layer.type);
+    const bool is_known =
+        layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding;
+    require(is_known, XR_ERROR_LAYER_INVALID, layer.type,
+            " is neither a projection nor a quad, nor a layer of an extension that is enabled");
+    checkChain(layer.next);
+    require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
+    getSpace(session, layer.space);
+    if (is_surrounding)
+        checkSurrounding(session, layer);
+    else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD)
+        checkQuad(session, as<XrCompositionLayerQuad>(layer));
+    else
+        checkProjection(session, as<XrCompositionLayerProjection>(layer));
+}
+
+}  // namespace
+
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, info.layerCount, " layers, at most ", kMostLayers, " are shown");
-    require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of layers is missing");
+    require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", info.layerCount,
+            " layers is missing");
     require(info.layerCount == 0 || !session.isHeadless(), XR_ERROR_LAYER_INVALID, "a headless session shows no layers");
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
-        require(info.layers[i] != nullptr, XR_ERROR_LAYER_INVALID, "a layer is null");
-        const XrCompositionLayerBaseHeader& layer = *info.layers[i];
-        const bool is_surrounding = isSurrounding(session, layer.type);
-        const bool is_known =
-            layer.type == XR_TYPE_COMPOSITION_LAYER_PROJECTION || layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD || is_surrounding;
-        require(is_known, XR_ERROR_LAYER_INVALID, layer.type,
-                " is neither a projection nor a quad, nor a layer of an extension that is enabled");
-        checkChain(layer.next);
-        require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
-        getSpace(session, layer.space);
-        if (is_surrounding)
-            checkSurrounding(session, layer);
-        else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD)
-            checkQuad(session, as<XrCompositionLayerQuad>(layer));
-        else
-            checkProjection(session, as<XrCompositionLayerProjection>(layer));
+        try {
+            checkLayer(session, info.layers[i]);
+        } catch (const Refusal& refusal) { refuse(refusal.result, "layer ", i, ": ", refusal.reason); }
     }
 }
 

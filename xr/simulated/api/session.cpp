@@ -158,6 +158,7 @@ void Session::announcePresence(const State& now) {
 void Session::idle() {
     if (state != XR_SESSION_STATE_IDLE || is_running) return;
     Simulation& simulation = *instance.simulation;
+    frames.last_begun.reset();
     simulation.clock.pass();
     const XrTime now = simulation.clock.now();
     meetEvents(now);

@@ -25,6 +25,8 @@ struct FrameLoop {
     bool are_used = false;         // a frame was waited for since the session began
     bool moves_state = false;      // the frame that was begun has yet to move the session's state
     std::string refused_for;       // why it could not be ended
+    // When the frame that was begun last is displayed. Another thread may have moved the clock on.
+    std::optional<XrTime> last_begun;
 };
 
 struct Session : Object {

@@ -119,7 +119,7 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         VkInstance& output = checkedOutput(vulkanInstance);
         VkResult& result = checkedOutput(vulkanResult);
         checkSystem(info.systemId);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no flags are known");
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
                 "vkGetInstanceProcAddr or the VkInstanceCreateInfo is missing");
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
@@ -169,7 +169,7 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
         VkDevice& output = checkedOutput(vulkanDevice);
         VkResult& result = checkedOutput(vulkanResult);
         checkSystem(info.systemId);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "no flags are known");
+        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
                 "vkGetInstanceProcAddr or the VkDeviceCreateInfo is missing");
         require(info.vulkanPhysicalDevice != VK_NULL_HANDLE && info.vulkanPhysicalDevice == owner.graphics_device, XR_ERROR_HANDLE_INVALID,

@@ -73,7 +73,7 @@ void logBetween(Session& session, const Refusal* refusal) {
         record.reason = refusal->reason;
         record.should_render = session.frames.should_render;
     }
-    record.display_time_ns = simulation.clock.now();
+    record.display_time_ns = session.frames.last_begun.value_or(simulation.clock.now());
     record.session_state = wordOf(session.state);
     simulation.output->log.write(betweenLine(record));
 }

@@ -60,7 +60,7 @@ struct FrameRecord {
     Pose stage_from_head;
     std::array<LoggedEye, 2> eyes;  // by Side
     std::vector<LoggedLayer> layers;
-    std::vector<std::string> events;  // since the frame before: "state VISIBLE", "exit", "slow-images 3" ...
+    std::vector<std::string> events;  // since the line before: "state VISIBLE", "exit", "slow-images 3" ...
     std::string picture;              // the file's name, empty if the frame has none
 };
 
