@@ -146,13 +146,15 @@ std::string Session::askForRate(double rate_hz) {
         for (const double rate : rates) { offered += fmt::format("{}{:g}", offered.empty() ? "" : ", ", rate); }
         return fmt::format("refresh-rate is {:g}, this headset has {}", rate_hz, offered);
     }
-    try {
-        const auto request = instance_.function<PFN_xrRequestDisplayRefreshRateFB>("xrRequestDisplayRefreshRateFB");
-        checkResult(request(session_, rate_hz == 0.0 ? 0.0f : static_cast<float>(*found)), "xrRequestDisplayRefreshRateFB");
-    } catch (const Lost&) { throw; } catch (const InstanceLost&) {
-        throw;
-    } catch (const Error& error) { return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, error.what()); }
-    return {};
+    PFN_xrVoidFunction request = nullptr;
+    XrResult result = xrGetInstanceProcAddr(instance_.handle(), "xrRequestDisplayRefreshRateFB", &request);
+    if (XR_SUCCEEDED(result)) {
+        const float asked_hz = rate_hz == 0.0 ? 0.0f : static_cast<float>(*found);
+        result = reinterpret_cast<PFN_xrRequestDisplayRefreshRateFB>(request)(session_, asked_hz);
+    }
+    if (XR_SUCCEEDED(result)) { return {}; }
+    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_INSTANCE_LOST) { checkResult(result, "xrRequestDisplayRefreshRateFB"); }
+    return fmt::format("refresh-rate is {:g}, this headset refuses it ({})", rate_hz, nameOf(result));
 }
 
 void Session::requestExit() {
