@@ -48,6 +48,12 @@ public:
         return names;
     }
 
+    // Addresses that are loaded out of memory as if they might lie elsewhere than at a multiple of eight bytes.
+    [[nodiscard]] std::size_t looseAddresses() const {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(loosely_loaded_, [&](std::uint32_t type) { return addresses_.contains(type); }));
+    }
+
 private:
     using Words = std::span<const std::uint32_t>;
     enum Opcode : std::uint32_t {
@@ -119,6 +125,10 @@ private:
         std::size_t first = 0, end = operands.size();
         switch (opcode) {
             case kLoad:
+                // A mask that says Aligned, and to how many bytes.
+                if (operands.size() > 4 && (operands[3] & 2) != 0 && operands[4] < 8) { loosely_loaded_.push_back(operands[0]); }
+                end = 3;
+                break;
             case kCompositeExtract:
                 end = 3;
                 break;
@@ -157,6 +167,7 @@ private:
     std::map<std::uint32_t, std::uint32_t> constants_, elements_, local_pointers_;
     std::map<std::uint32_t, std::vector<std::uint32_t>> structs_;
     std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> made_of_;
+    std::vector<std::uint32_t> loosely_loaded_;
     std::set<std::uint32_t> used_, addresses_, result_types_;
 };
 

@@ -62,6 +62,10 @@ std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     return {};
 }
 
+bool offersExtension(const std::vector<vk::ExtensionProperties>& offered, const char* name) {
+    return std::ranges::any_of(offered, [&](const auto& extension) { return std::strcmp(extension.extensionName, name) == 0; });
+}
+
 int preferenceOf(vk::PhysicalDeviceType type) {
     switch (type) {
         case vk::PhysicalDeviceType::eDiscreteGpu:
@@ -118,18 +122,18 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
                                        [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
-        extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     }
+    // Newer layers have not got it any more: there a settings file or the environment says what is checked.
+    const bool chooses_checks = validation && offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
+                                                              VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    if (chooses_checks) { extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME); }
     // The validation layer has it, too, where no driver does.
-    const auto offered = loader_->enumerateInstanceExtensionProperties();
-    labels_ = validation || std::ranges::any_of(offered, [](const vk::ExtensionProperties& extension) {
-                  return std::strcmp(extension.extensionName, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
-              });
+    labels_ = validation || offersExtension(loader_->enumerateInstanceExtensionProperties(), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (labels_) { extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME); }
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT validation_features(synchronization);
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
-    if (validation) { info.pNext = &validation_features; }
+    if (chooses_checks) { info.pNext = &validation_features; }
     const DeviceMaker& maker = options.maker;
     instance_ = maker.create_instance
                     ? vk::raii::Instance(*loader_, maker.create_instance(loader_->getDispatcher()->vkGetInstanceProcAddr, info))

@@ -33,16 +33,16 @@ struct SplatPlace {
     uint chunk, in_chunk;
 };
 SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
-vec3 positionOf(SceneChunks chunks, SplatPlace at) { return chunks.at[at.chunk].positions.at[at.in_chunk]; }
+vec3 positionOf(SceneChunks chunks, SplatPlace at) { return Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]; }
 
 // The same in world space.
 CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     CameraSplat splat;
-    tangents(chunks.at[at.chunk].rotations.at[at.in_chunk], splat.t_u, splat.t_v);
+    tangents(Vec4s(chunks.at[at.chunk].rotations).at[at.in_chunk], splat.t_u, splat.t_v);
     splat.centre = positionOf(chunks, at);
-    splat.scale = chunks.at[at.chunk].scales.at[at.in_chunk];
-    splat.thickness = kSplatKind != kDiscs ? chunks.at[at.chunk].thicknesses.at[at.in_chunk] : 0;
-    splat.opacity = chunks.at[at.chunk].opacities.at[at.in_chunk];
+    splat.scale = Vec2s(chunks.at[at.chunk].scales).at[at.in_chunk];
+    splat.thickness = kSplatKind != kDiscs ? Floats(chunks.at[at.chunk].thicknesses).at[at.in_chunk] : 0;
+    splat.opacity = Floats(chunks.at[at.chunk].opacities).at[at.in_chunk];
     return splat;
 }
 

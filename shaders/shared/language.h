@@ -44,11 +44,13 @@ struct DeviceAddress {
 #define BINOSPLAT_ARRAY_OF(Element, Name) using Name = DeviceAddress<Element>
 #define BINOSPLAT_ALIGNED_ARRAY_OF(Element, Align, Name) using Name = DeviceAddress<Element>
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) using Name = DeviceAddress<Element>
+#define BINOSPLAT_STORED(Name) Name
 #define BINOSPLAT_CONSTANT inline constexpr
 
 #else
 
 #extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_scalar_block_layout : require
 
 #define BINOSPLAT_BEGIN_SHARED
@@ -61,6 +63,9 @@ struct DeviceAddress {
 // Where workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
+// An address that lies in memory; Name(it) is the array. As a number: glslang would say of its load that it is aligned to what the array is
+// aligned to, which may be four bytes, where Vulkan asks for eight.
+#define BINOSPLAT_STORED(Name) uvec2
 #define BINOSPLAT_CONSTANT const
 
 #endif

@@ -21,13 +21,13 @@ BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 // A run of splats that lies in one allocation: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has
 // them.
 struct SceneChunk {
-    Vec3s positions;
-    Vec4s rotations;  // x, y, z, w
-    Vec2s scales;
-    Floats thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
-    Floats opacities;
-    UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
-    Uints sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
+    BINOSPLAT_STORED(Vec3s) positions;
+    BINOSPLAT_STORED(Vec4s) rotations;  // x, y, z, w
+    BINOSPLAT_STORED(Vec2s) scales;
+    BINOSPLAT_STORED(Floats) thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
+    BINOSPLAT_STORED(Floats) opacities;
+    BINOSPLAT_STORED(UVec2s) base_colours;  // f_dc: r | g << 16, b, as half floats
+    BINOSPLAT_STORED(Uints) sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
