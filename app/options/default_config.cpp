@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kHelpFrom = 36;  // columns
 
 // Values of keys that have none if nobody says so.
-constexpr std::array<std::pair<std::string_view, const char*>, 13> kExamples{{
+constexpr std::array<std::pair<std::string_view, const char*>, 14> kExamples{{
     {"eye", "[0.0, -1.5, -3.0]"},
     {"look", "[0.0, -1.0, 0.0]"},
     {"up", "[0.0, -1.0, 0.0]"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 13> kExamples{{
     {"headset", "\"quest2\""},
     {"ipd", "0.063"},
     {"gaze", "[0.0, 0.0, 1.0]"},
+    {"order", "\"depth\""},
     {"lod", "0"},
     {"sh-degree", "3"},
     {"memory-limit", "4096"},
