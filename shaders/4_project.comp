@@ -92,18 +92,18 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
     const SplatPlace at = placeOfSplat(pass.order.at[rank], pass.chunk_bits);
     const uvec2 size_tiles = eye.size_tiles;
 
-    const vec3 position = positionOf(pass.chunks, at);
-    const CameraSplat splat = loadCameraSplat(pass.chunks, at, eye);
+    const CameraSplat in_world = loadWorldSplat(pass.chunks, at);
+    const CameraSplat splat = cameraFromWorld(eye, in_world);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
-    if (has_reference) { placeExactly(p, position, eye); }
+    if (has_reference) { placeExactly(p, in_world.centre, eye); }
     const Outline outline = outlineOfProjected(p);
     const ivec4 box = tileBox(splat, eye, outline);
     square_tiles = kSquareBoxes ? squareBoxTiles(splat, eye) : 0;
     uint small;
     const uint tiles = countTiles(outline, box, size_tiles, small);
     if (tiles > 0) {
-        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, position))));
+        p.colour = uvec2(0, p.colour.y & 0xffff0000u) | packColour(shColour(pass.chunks, at, normalize(fromEye(eye, in_world.centre))));
         pass.splats.at[rank] = p;
     }
     // Empty where the splat meets no tile: then there is no splat either.

@@ -24,7 +24,7 @@ shared uint unseen_count;
 // Splats over more tiles than these would take one thread long: they stay in the list, and all others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
-shared bool any_large;
+shared uint large_count;
 
 // A tile's sum stops at half of what a word holds, in steps; whatever gets there is rendered anyway. The greatest float below it is what one
 // splat adds at most.
@@ -87,7 +87,7 @@ void main() {
     const uint begin = groupIndex() * kNewcomersBlock;
     if (gl_LocalInvocationIndex == 0) {
         unseen_count = 0;
-        any_large = false;
+        large_count = 0;
     }
     barrier();
     for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kStereoGroup) {
@@ -99,14 +99,14 @@ void main() {
     const StereoView stereo = pass.stereo.at[0];
     [[dont_unroll]] for (uint round = 0; round < 2; ++round) {
         const bool together = round == 1;
-        const uint end = together && !any_large ? 0 : unseen_count;
+        const uint end = together && large_count == 0 ? 0 : unseen_count;
         for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end; unseen += together ? 1 : kStereoGroup) {
             const uint rank = unseen_ranks[unseen];
             if (rank == kDone) { continue; }
             if (addNewcomer(rank, eye, stereo, together)) {
                 if (!together) { unseen_ranks[unseen] = kDone; }
             } else {
-                any_large = true;
+                atomicAdd(large_count, 1);
             }
         }
         barrier();

@@ -16,7 +16,7 @@ vec3 shCoefficient(Uints sh, uint first_word, uint k) {
 
 // max(0, 0.5 + SH(d)) for a unit direction d from the eye to the splat.
 vec3 shColour(SceneChunks chunks, SplatPlace at, vec3 d) {
-    const uvec2 base = UVec2s(chunks.at[at.chunk].base_colours).at[at.in_chunk];
+    const uvec2 base = chunks.at[at.chunk].base_colours.at[at.in_chunk];
     vec3 colour = 0.5 + 0.28209479177387814 * vec3(unpackHalf2x16(base.x), unpackHalf2x16(base.y).x);
     Uints sh = Uints(chunks.at[at.chunk].sh);
     const uint word = at.in_chunk * kShWords;

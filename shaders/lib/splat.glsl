@@ -28,7 +28,7 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
-// Where a splat of the scene lies. Each of a chunk's addresses is read where it is used: not every compiler survives a copy of all of them.
+// Where a splat of the scene lies. A chunk's addresses are read one by one: not every compiler survives a copy of all of them.
 struct SplatPlace {
     uint chunk, in_chunk;
 };
@@ -37,12 +37,16 @@ vec3 positionOf(SceneChunks chunks, SplatPlace at) { return Vec3s(chunks.at[at.c
 
 // The same in world space.
 CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
+    const uvec2 positions = chunks.at[at.chunk].positions;
+    Vec4s rotations = chunks.at[at.chunk].rotations;
+    Vec2s scales = chunks.at[at.chunk].scales;
+    const uvec2 thicknesses = chunks.at[at.chunk].thicknesses, opacities = chunks.at[at.chunk].opacities;
     CameraSplat splat;
-    tangents(Vec4s(chunks.at[at.chunk].rotations).at[at.in_chunk], splat.t_u, splat.t_v);
-    splat.centre = positionOf(chunks, at);
-    splat.scale = Vec2s(chunks.at[at.chunk].scales).at[at.in_chunk];
-    splat.thickness = kSplatKind != kDiscs ? Floats(chunks.at[at.chunk].thicknesses).at[at.in_chunk] : 0;
-    splat.opacity = Floats(chunks.at[at.chunk].opacities).at[at.in_chunk];
+    tangents(rotations.at[at.in_chunk], splat.t_u, splat.t_v);
+    splat.centre = Vec3s(positions).at[at.in_chunk];
+    splat.scale = scales.at[at.in_chunk];
+    splat.thickness = kSplatKind != kDiscs ? Floats(thicknesses).at[at.in_chunk] : 0;
+    splat.opacity = Floats(opacities).at[at.in_chunk];
     return splat;
 }
 

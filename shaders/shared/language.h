@@ -63,8 +63,8 @@ struct DeviceAddress {
 // Where workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
-// An address that lies in memory; Name(it) is the array. As a number: glslang would say of its load that it is aligned to what the array is
-// aligned to, which may be four bytes, where Vulkan asks for eight.
+// An address, in memory, of an array that is aligned to less than eight bytes; Name(it) is the array. As a number: glslang would say of its
+// load, too, that it is aligned to less, where Vulkan asks for eight. Others are addresses, since a load of 64 bits is cheaper.
 #define BINOSPLAT_STORED(Name) uvec2
 #define BINOSPLAT_CONSTANT const
 

@@ -22,11 +22,11 @@ BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 // them.
 struct SceneChunk {
     BINOSPLAT_STORED(Vec3s) positions;
-    BINOSPLAT_STORED(Vec4s) rotations;  // x, y, z, w
-    BINOSPLAT_STORED(Vec2s) scales;
+    Vec4s rotations;  // x, y, z, w
+    Vec2s scales;
     BINOSPLAT_STORED(Floats) thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
     BINOSPLAT_STORED(Floats) opacities;
-    BINOSPLAT_STORED(UVec2s) base_colours;  // f_dc: r | g << 16, b, as half floats
+    UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
     BINOSPLAT_STORED(Uints) sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
