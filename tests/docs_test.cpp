@@ -69,7 +69,7 @@ bool hasAnchor(const fs::path& document, const std::string& anchor) {
 const std::set<std::string> kForeignOptions{"--preset",    "--build",   "--install", "--config",    "--test-dir",
                                             "--test-case", "--target",  "--prefix",  "--component", "--output-on-failure",
                                             "--help",      "--version", "--success", "--pictures",  "--share",
-                                            "--tolerance", "--ignore",  "--whole",   "--try"};
+                                            "--tolerance", "--ignore",  "--whole",   "--try",       "--test-suite"};
 
 bool isOption(const std::string& name) {
     const auto has = [&](const Command& command) {

@@ -74,7 +74,7 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
     fs::create_directory(path / "pictures");
     REQUIRE(mkfifo((path / "pipe.ply").c_str(), 0600) == 0);
     checkRefused(scenes, path / "notes.txt", "not a scene file of a known format");
-    checkRefused(scenes, path / "pictures", "is a directory, expected a scene");
+    checkRefused(scenes, path / "pictures", "is a directory, expected one with");
     checkRefused(scenes, path / "pipe.ply", "is not a regular file");
     checkRefused(scenes, path / "gone.ply", "no such file");
     CHECK_FALSE(scenes.loading().has_value());

@@ -111,7 +111,9 @@ ViewSettings readViewSettings(const std::vector<SettingsTable>& tables, ViewSett
 
 std::string viewSettingsToml(const ViewSettings& settings) {
     std::string text = "# What the viewer's panel was set to, and where the wearer's room lay in the scene.\n\n[stereo]\n";
-    for (const auto& [key, value] : stereoLines(settings.stereo)) { text += fmt::format("{} = {}\n", key, value); }
+    for (const auto& [key, value] : stereoLines(settings.stereo)) {
+        if (!value.empty()) { text += fmt::format("{} = {}\n", key, value); }  // else it is the scene's
+    }
     text += "\n[view]\n";
     for (const auto& [key, value] : viewLines(settings)) { text += fmt::format("{} = {}\n", key, value); }
     if (settings.scene_from_room) {
