@@ -2,6 +2,7 @@
 #include "app/program.h"
 #include "tests/run_program.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <wordexp.h>
 
@@ -70,7 +71,13 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
     return status;
 }
 
-const bool is_set = (run_in_fork = runInFork) != nullptr;
+// What the loaders of Vulkan load in every run, where it is there: to link LLVM alone takes as long as a small frame.
+bool loadAhead() {
+    for (const char* library : {"libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) { dlopen(library, RTLD_LAZY | RTLD_NODELETE); }
+    return true;
+}
+
+const bool is_set = loadAhead() && (run_in_fork = runInFork) != nullptr;
 
 }  // namespace
 }  // namespace binosplat::test
