@@ -6,10 +6,6 @@
 #include <fcntl.h>
 #include <wordexp.h>
 
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/lsan_interface.h>
-#endif
-
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -45,9 +41,6 @@ void redirect(int descriptor, const std::filesystem::path& file) {
     words.we_wordv[0] = strdup(BINOSPLAT_PROGRAM);
     const int code = runProgram(static_cast<int>(words.we_wordc), words.we_wordv);
     std::fflush(nullptr);
-#if defined(__SANITIZE_ADDRESS__)
-    __lsan_do_leak_check();
-#endif
     _exit(code);  // `exit` would wait for the libraries' threads
 }
 
