@@ -26,8 +26,8 @@ struct SceneChunk {
     Vec2s scales;
     BINOSPLAT_STORED(Floats) thicknesses;  // of 3D Gaussians: the third scale, along t_u x t_v
     BINOSPLAT_STORED(Floats) opacities;
-    UVec2s base_colours;  // f_dc: r | g << 16, b, as half floats
-    BINOSPLAT_STORED(Uints) sh;             // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
+    UVec2s base_colours;         // f_dc: r | g << 16, b, as half floats
+    BINOSPLAT_STORED(Uints) sh;  // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
