@@ -19,29 +19,10 @@ namespace binosplat {
 
 namespace {
 
-// As many as six digits count.
-constexpr double kMostFrames = 1e6;
-
 std::string pictureName(std::size_t number, std::string_view eye) { return fmt::format("frame_{:06}_{}", number, eye); }
 
 std::vector<std::string_view> eyeNames(bool mono) {
     return mono ? std::vector<std::string_view>{"mono"} : std::vector<std::string_view>{"left", "right"};
-}
-
-std::vector<double> frameTimes(const HeadMotion& motion, const RenderOptions& options) {
-    std::vector<double> times_s;
-    if (!options.rate_hz) {
-        for (const HeadSample& sample : motion.samples()) { times_s.push_back(sample.time_s); }
-        check(static_cast<double>(times_s.size()) <= kMostFrames, "{}: holds {} poses, must be at most {:.0f}", options.path,
-              times_s.size(), kMostFrames);
-        return times_s;
-    }
-    // The last pose counts where it lies on the beat but for what rounding makes of it.
-    const double last = std::floor(motion.duration_s() * *options.rate_hz + 1e-6);
-    check(last < kMostFrames, "{}: makes {:.0f} frames of --rate {}, must be at most {:.0f}", options.path, last + 1.0, *options.rate_hz,
-          kMostFrames);
-    for (double i = 0.0; i <= last; ++i) { times_s.push_back(i / *options.rate_hz); }
-    return times_s;
 }
 
 // Whether a path of so many frames writes a picture of this name over the one that is there.
@@ -71,8 +52,9 @@ void requireNoOthers(const std::filesystem::path& folder, std::size_t frames, bo
 }  // namespace
 
 HeadPath readHeadPath(const RenderOptions& options) {
-    HeadMotion motion = readHeadMotion(options.path, options.path_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr);
-    std::vector<double> times_s = frameTimes(motion, options);
+    HeadMotion motion =
+        readHeadMotion(options.path, options.path_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr, options.segment);
+    std::vector<double> times_s = frameTimes(motion, options.segment, options.path);
     requireNoOthers(options.out, times_s.size(), options.run.stereo.mode == Mode::kMono);
     return {std::move(motion), std::move(times_s)};
 }

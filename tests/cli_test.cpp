@@ -480,6 +480,11 @@ TEST_CASE("benchPlaysHeadMotion") {
     CHECK(fs::exists(work.path / "out" / "motion.csv"));
     CHECK(fs::exists(work.path / "out" / "motion.svg"));
     checkRefused(work.run("bench builtin:one-splat --motion none.csv --out out"), 1, "none.csv");
+    REQUIRE(
+        work.run("bench builtin:one-splat --size 16x16 --motion m.csv --from 0.1 --seconds 0.1 --rate 40 --every 3 --out part").exit_code ==
+        0);
+    CHECK(nlohmann::json::parse(std::ifstream(work.path / "part" / "motion.json"))["results"][0]["frames"] == 2);
+    checkRefused(work.run("bench builtin:one-splat --rate 40 --out out"), 2, "--rate is given without --motion");
 }
 
 TEST_CASE("benchComparesWithPhotographs") {

@@ -164,6 +164,25 @@ TEST_CASE("aCameraStartsWhereItIsPutAndMovesInItsOwnFrame") {
     CHECK(glm::length(motion.cameraAt(1.0, start).position - start.position) == doctest::Approx(0.5));
 }
 
+TEST_CASE("aSegmentsFramesAreItsSamplesOrAtARateAndItsEndIsNotOneOfThem") {
+    const HeadMotion motion =
+        parseHeadMotion("0,0,0,0,0,0,0,1\n0.5,1,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n2,3,0,0,0,0,0,1\n", "m", MotionAxes::kOpenXr);
+    using Times = std::vector<double>;
+    CHECK(frameTimes(motion, {}, "m") == Times{0.0, 0.5, 1.0, 2.0});
+    CHECK(frameTimes(motion, {0.0, 1.0, {}}, "m") == Times{0.0, 0.5});
+    CHECK(frameTimes(motion, {0.0, {}, 2.0}, "m") == Times{0.0, 0.5, 1.0, 1.5, 2.0});
+    CHECK(frameTimes(motion, {0.0, 1.0, 2.0}, "m") == Times{0.0, 0.5});
+    CHECK(frameTimes(motion, {0.0, 2.0, 90.0}, "m").size() == 180);
+    CHECK(frameTimes(motion, {0.0, 100.0, 2.0}, "m").size() == 5);  // no longer than it is
+    // From between two samples on, relative to the pose there.
+    const HeadMotion rest = motion.startingAt(0.75);
+    CHECK(frameTimes(rest, {}, "m") == Times{0.0, 0.25, 1.25});
+    CHECK(rest.duration_s() == 1.25);
+    CHECK(rest.poseAt(0.0).position.x == doctest::Approx(2.0));
+    CHECK(rest.cameraAt(0.25, {}).position.x == doctest::Approx(1.0));
+    CHECK_THROWS_AS(frameTimes(motion, {0.0, {}, 1e6}, "m"), Error);
+}
+
 TEST_CASE("theSharedRecordingReadsAndItsWearerWalksForward" * test::needsSharedData()) {
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }

@@ -137,6 +137,21 @@ TEST_CASE("a rate puts frames between the poses, turns by the great arc") {
     }
 }
 
+TEST_CASE("a path may begin on the way, where the camera then stands, and end before its end") {
+    const Way way;
+    REQUIRE(way.walk("--mode mono --from 0.5 --seconds 0.5 --rate 4").exit_code == 0);
+    const nlohmann::json frames = way.report().at("frames");
+    REQUIRE(frames.size() == 2);
+    CHECK(frames.at(0).at("time_s") == 0.0);
+    CHECK(frames.at(0).at("eyes").at("mono").at("position").at(0) == doctest::Approx(0.0));
+    CHECK(frames.at(0).at("eyes").at("mono").at("orientation_wxyz").at(2) == doctest::Approx(0.0));
+    // A quarter of the way back, of which the head that looks 20 degrees aside sees that part as going aside.
+    const double turn = std::acos(-1.0) / 9.0;
+    CHECK(frames.at(1).at("time_s") == doctest::Approx(0.25));
+    CHECK(frames.at(1).at("eyes").at("mono").at("position").at(0) == doctest::Approx(-0.025 * std::cos(turn)));
+    CHECK(std::abs(frames.at(1).at("eyes").at("mono").at("orientation_wxyz").at(2).get<double>()) == doctest::Approx(std::sin(turn / 8.0)));
+}
+
 TEST_CASE("a recording in Unity's axes goes the other way") {
     const Way way("0,0,0,0,0,0,0,1\n1,0,0,0.5,0,0,0,1\n");
     const auto depth = [&](const std::string& axes) {
@@ -156,11 +171,13 @@ TEST_CASE("a path that cannot be used is one line and one, and leaves nothing") 
         .checkRefused("--rate 1000", 1, "makes 1000001 frames of --rate 1000, must be at most 1000000");
     const Way way;
     way.checkRefused("--rate 0", 1, "--rate is 0, must be");
+    way.checkRefused("--from 2", 1, "poses.csv: --from is 2, must be at most 1.5, where the recording ends");
+    way.checkRefused("--seconds 0", 1, "--seconds is 0, must be");
     way.checkRefused("--path-axes vulkan", 1, "--path-axes is vulkan");
     const Outcome missing = way.run(kRender + "--path nowhere.csv --out frames");
     CHECK(missing.exit_code == 1);
     CHECK(missing.errors.find("nowhere.csv") != std::string::npos);
-    for (const std::string option : {"--rate 5", "--path-axes unity"}) {
+    for (const std::string option : {"--rate 5", "--from 1", "--seconds 1", "--path-axes unity"}) {
         const Outcome alone = way.run(kRender + "--out frames " + option);
         CHECK(alone.exit_code == 2);
         CHECK(alone.errors.find("is given without --path") != std::string::npos);

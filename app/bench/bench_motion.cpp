@@ -113,11 +113,12 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     MotionPoint point(context, gpu_scene, view_run, plan, name);
     point.warmUp(start, plan.warm_up);
     ProgressLine progress(name);
-    for (std::size_t i = 0; i < motion.samples().size(); i += options.every) {
-        const double time_s = motion.samples()[i].time_s;
+    const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
+    for (std::size_t i = 0; i < times_s.size(); i += options.every) {
+        const double time_s = times_s[i];
         const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
         point.play(moveCameras(start, world_from_middle), time_s, run.frames);
-        progress.show(time_s / std::max(motion.duration_s(), 1e-9));
+        progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
 }
 
@@ -126,7 +127,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
 void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     requireScenes(plan);
     const HeadMotion motion =
-        readHeadMotion(options.motion_file, options.motion_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr);
+        readHeadMotion(options.motion_file, options.motion_axes == "unity" ? MotionAxes::kUnity : MotionAxes::kOpenXr, options.segment);
     OutputFiles files(options.out);
     const Context context(contextOptions(options.run));
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};

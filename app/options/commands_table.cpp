@@ -64,7 +64,7 @@ Options makeRender(const Settings& given) {
     render.scene = wordOf(line, "SCENE");
     render.run = readRun(line, {"view"});
     readRows(renderRows(), line, render);
-    for (const char* key : {"path-axes", "rate"}) {
+    for (const char* key : {"path-axes", "from", "seconds", "rate"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
     }
     return render;
@@ -97,6 +97,11 @@ Options makeBench(const Settings& given) {
     bench.asked = runOptions(line).camera;
     readRows(benchRows(), line, bench);
     requireBenchKind(bench);
+    for (const char* key : {"motion-axes", "from", "seconds", "rate"}) {
+        if (line.contains(key) && bench.motion_file.empty()) {
+            throw Error(ExitCode::kUsage, fmt::format("--{} is given without --motion", key));
+        }
+    }
     return bench;
 }
 

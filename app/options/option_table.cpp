@@ -20,6 +20,7 @@ constexpr std::uint64_t kMaxMemoryMib = std::uint64_t{1} << 30;
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxFrames = 1'000'000'000;
 constexpr std::uint64_t kMaxStep = 1'000'000;
+constexpr double kMaxSeconds = 1e6, kMaxRateHz = 10'000.0;
 
 constexpr unsigned kPictures = kRender | kBench;          // what makes pictures without a headset
 constexpr unsigned kWearer = kPictures | kView;           // what shows a scene to two eyes
@@ -29,6 +30,8 @@ constexpr unsigned kTried = kWearer | kMethods;  // what a bench varies
 
 constexpr auto kCamera = &RunOptions::camera;
 constexpr auto kStereo = &RunOptions::stereo;
+constexpr auto kPathSegment = &RenderOptions::segment;
+constexpr auto kMotionSegment = &BenchOptions::segment;
 constexpr auto kLoad = &RunOptions::load;
 
 // A count of 0 that stands for no limit.
@@ -147,8 +150,12 @@ std::span<const OptionRow<RenderOptions>> renderRows() {
         {{"path", "", kRender, "POSES.csv", "head poses to render relative to the camera, one numbered frame after the other"},
          field::file<&RenderOptions::path>()},
         {{"path-axes", "", kRender, "AXES", "axes of --path"}, field::choice<&RenderOptions::path_axes>({"openxr", "unity"})},
+        {{"from", "", kRender, "S", "second of --path that the frames begin at; the camera stands where the head is then"},
+         field::number<kPathSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
+        {{"seconds", "", kRender, "S", "how long a part of --path is rendered", "all that is left"},
+         field::number<kPathSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
         {{"rate", "", kRender, "HZ", "frames in a second of --path, between its poses", "one for each pose"},
-         field::number<&RenderOptions::rate_hz>(0.001, 10'000.0)},
+         field::number<kPathSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
     };
     return rows;
 }
@@ -159,12 +166,18 @@ std::span<const OptionRow<BenchOptions>> benchRows() {
          field::file<&BenchOptions::out>()},
         {{"motion", "", kBench, "TRACE.csv", "head poses to play relative to the camera"}, field::file<&BenchOptions::motion_file>()},
         {{"motion-axes", "", kBench, "AXES", "axes of --motion"}, field::choice<&BenchOptions::motion_axes>({"openxr", "unity"})},
+        {{"from", "", kBench, "S", "second of --motion that the frames begin at; the camera stands where the head is then"},
+         field::number<kMotionSegment, &MotionSegment::from_s>(0.0, kMaxSeconds)},
+        {{"seconds", "", kBench, "S", "how long a part of --motion is played", "all that is left"},
+         field::number<kMotionSegment, &MotionSegment::seconds>(0.001, kMaxSeconds)},
+        {{"rate", "", kBench, "HZ", "frames in a second of --motion, between its poses", "one for each pose"},
+         field::number<kMotionSegment, &MotionSegment::rate_hz>(0.001, kMaxRateHz)},
         {{"photos", "", kBench, "DIR", "photographs of the cameras of --cameras, to compare with"},
          field::file<&BenchOptions::photos_folder>()},
         {{"orders", "", kBench, "",
           "compare both orders of splats with the exact order of each pixel, on the CPU, and count pixels that pop"},
          field::flag<&BenchOptions::orders>()},
-        {{"every", "", kBench, "N", "only every Nth pose of --motion or camera of --photos"},
+        {{"every", "", kBench, "N", "only every Nth frame of --motion or camera of --photos"},
          field::count<&BenchOptions::every>(1, kMaxStep)},
         {{"repeats", "", kBench, "N", "measured frames per method", "5, or what the config says"},
          noneIfZero(field::count<&BenchOptions::repeats>(1, kMaxStep))},

@@ -3,6 +3,7 @@
 
 #include "engine/geometry.h"
 #include "engine/mode.h"
+#include "engine/setup/head_motion.h"
 #include "engine/setup/settings.h"
 
 #include <cstdint>
@@ -86,7 +87,7 @@ struct RenderOptions {
     RunOptions run;
     std::string path;                  // --path: head poses to render, relative to the camera; empty: one frame
     std::string path_axes = "openxr";  // --path-axes: of the recording
-    std::optional<double> rate_hz;     // --rate: frames in a second of the path; absent: one for each of its poses
+    MotionSegment segment;             // --from, --seconds, --rate: of the path
 };
 
 struct BenchOptions {
@@ -97,6 +98,7 @@ struct BenchOptions {
     std::vector<SettingsTable> tables;   // the config's tables that the bench alone reads, see bench_plan.h
     std::string motion_file;             // --motion: head poses to play, relative to the camera
     std::string motion_axes = "openxr";  // --motion-axes: of the recording
+    MotionSegment segment;               // --from, --seconds, --rate: of the motion
     std::string photos_folder;           // --photos: what the cameras of --cameras saw
     std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
     std::uint32_t repeats = 0;           // --repeats: measured frames per method; 0: as the config says

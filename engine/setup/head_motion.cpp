@@ -34,6 +34,41 @@ Pose HeadMotion::poseAt(double time_s) const {
     return {glm::normalize(glm::slerp(a.orientation, b.orientation, share)), glm::mix(a.position, b.position, share)};
 }
 
+HeadMotion HeadMotion::startingAt(double from_s) const {
+    std::vector<HeadSample> samples{{0.0, poseAt(from_s)}};
+    for (const HeadSample& sample : samples_) {
+        if (sample.time_s > from_s) { samples.push_back({sample.time_s - from_s, sample.world_from_head}); }
+    }
+    return HeadMotion(std::move(samples));
+}
+
+std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file) {
+    constexpr double kMostFrames = 1e6;  // numbers of six digits
+    constexpr double kRounding = 1e-6;   // of a frame: what lies on the beat counts but for what rounding makes of it
+    std::vector<double> times_s;
+    if (!segment.rate_hz) {
+        for (const HeadSample& sample : motion.samples()) {
+            if (!segment.seconds || sample.time_s < *segment.seconds) { times_s.push_back(sample.time_s); }
+        }
+        check(static_cast<double>(times_s.size()) <= kMostFrames, "{}: holds {} poses, must be at most {:.0f}", file, times_s.size(),
+              kMostFrames);
+        return times_s;
+    }
+    double frames = std::floor(motion.duration_s() * *segment.rate_hz + kRounding) + 1.0;
+    if (segment.seconds) { frames = std::min(frames, std::ceil(*segment.seconds * *segment.rate_hz - kRounding)); }
+    check(frames <= kMostFrames, "{}: makes {:.0f} frames of --rate {}, must be at most {:.0f}", file, frames, *segment.rate_hz,
+          kMostFrames);
+    for (double i = 0.0; i < frames; ++i) { times_s.push_back(i / *segment.rate_hz); }
+    return times_s;
+}
+
+HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes, const MotionSegment& segment) {
+    HeadMotion motion = readHeadMotion(path, axes);
+    check(segment.from_s <= motion.duration_s(), "{}: --from is {}, must be at most {}, where the recording ends", path.string(),
+          segment.from_s, motion.duration_s());
+    return segment.from_s > 0.0 ? motion.startingAt(segment.from_s) : motion;
+}
+
 Pose HeadMotion::cameraAt(double time_s, const Pose& world_from_start, double units_per_metre) const {
     Pose start_from_camera = compose(inverse(samples_.front().world_from_head), poseAt(time_s));
     start_from_camera.position *= units_per_metre;

@@ -4,6 +4,7 @@
 #include "engine/geometry.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ public:
     // Rotation with Quaternion Curves", SIGGRAPH 1985, section 3.3). Before the first and after the last sample the head rests.
     [[nodiscard]] Pose poseAt(double time_s) const;
 
+    // The motion from a second on, up to the last sample; its times begin at 0 with the pose there.
+    [[nodiscard]] HeadMotion startingAt(double from_s) const;
+
     // A camera that starts at `world_from_start` and moves relative to there as the head does relative to its first pose, a metre
     // being `units_per_metre` scene units: world_from_camera at `time_s`.
     [[nodiscard]] Pose cameraAt(double time_s, const Pose& world_from_start, double units_per_metre = 1.0) const;
@@ -44,8 +48,22 @@ private:
     std::vector<HeadSample> samples_;
 };
 
+// What is played of a recording.
+struct MotionSegment {
+    double from_s = 0.0;            // where it begins
+    std::optional<double> seconds;  // how long it is, the end not included; absent: to the end, that included
+    std::optional<double> rate_hz;  // frames in a second; absent: one for each sample
+};
+
+// Where a motion that starts at the segment's beginning has its frames. Throws Error if there are more than a million; `file` is for
+// messages.
+std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file);
+
 // A file as xr/simulated/files/motion_file.h describes it. Throws Error with file and line.
 HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes);
+
+// The same from a second on. Throws Error if the recording ends before.
+HeadMotion readHeadMotion(const std::filesystem::path& path, MotionAxes axes, const MotionSegment& segment);
 
 // The same of a text in memory; `file` is for messages.
 HeadMotion parseHeadMotion(std::string_view text, const std::string& file, MotionAxes axes);
