@@ -477,7 +477,23 @@ TEST_CASE("benchPlaysHeadMotion") {
     CHECK(results[0]["full_change"]["p99"] > 0.0);
     CHECK(results[4]["mode"] == "predicted");
     CHECK(results[4]["flicker"]["median"] > 0.0);
-    CHECK(fs::exists(work.path / "out" / "motion.csv"));
+    CHECK(results[4]["psnr_db"]["run"] > 20.0);
+    CHECK(results[4]["psnr_db"]["worst"] <= results[4]["psnr_db"]["run"]);
+    CHECK(results[4]["work_rendered"]["median"] < 1.0);
+    CHECK(results[1]["work_rendered"]["median"] == 1.0);
+    // The dominant eye has no error, the other one has.
+    std::ifstream csv(work.path / "out" / "motion.csv");
+    std::string header, row;
+    std::getline(csv, header);
+    CHECK(header.ends_with("psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,flicker_right,work_rendered,pixels_warped"));
+    while (std::getline(csv, row) && row.find(",predicted,") == std::string::npos) {}
+    std::vector<std::string> cells;
+    std::istringstream split(row);
+    for (std::string cell; std::getline(split, cell, ',');) { cells.push_back(cell); }
+    REQUIRE(cells.size() >= static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1);
+    CHECK(std::stod(cells[cells.size() - 6]) == 0.0);
+    CHECK(std::stod(cells[cells.size() - 5]) > 0.0);
+    CHECK(std::stod(cells.back()) > 0.0);
     CHECK(fs::exists(work.path / "out" / "motion.svg"));
     checkRefused(work.run("bench builtin:one-splat --motion none.csv --out out"), 1, "none.csv");
     REQUIRE(

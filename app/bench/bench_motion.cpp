@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -28,8 +29,29 @@ namespace {
 // What is recorded for one method between frames.
 struct MethodHistory {
     BenchMethod method;
-    Image error;  // picture less full render, of the frame before
+    std::array<Image, 2> error;  // pictures less full renders, of the frame before
 };
+
+// Both eyes in full, and how many pairs of tile and splat they took.
+struct FullRender {
+    std::array<Image, 2> eyes;
+    double pairs = 0.0;
+};
+
+double pairsOf(const FrameResult& frame) {
+    return static_cast<double>(frame.counters.at("tile_pairs_left") + frame.counters.at("tile_pairs_right"));
+}
+
+// In tiles of the affiliated eye that are shown and were not rendered.
+std::uint64_t pixelsWarped(const FrameResult& frame, int affiliated) {
+    const std::string suffix = affiliated == kLeft ? "_left" : "_right";
+    const auto count = [&](const std::string& name) {
+        const auto found = frame.counters.find(name);
+        return found == frame.counters.end() ? std::uint64_t{0} : static_cast<std::uint64_t>(found->second);
+    };
+    const std::uint64_t tiles = count("tiles" + suffix), rendered = count("tiles_hidden" + suffix) + count("tiles_patched");
+    return std::min(count("pixels" + suffix), 256 * (tiles - std::min(tiles, rendered)));
+}
 
 // R, G and B of a less those of b.
 Image subtract(const Image& a, const Image& b) {
@@ -69,25 +91,38 @@ public:
         }
     }
 
-    void play(const Cameras& cameras, double time_s, std::vector<MotionFrame>& result) {
-        const int affiliated = 1 - shared_.stereo.dominant;
-        std::map<std::optional<Order>, Image> full_by_order;
+    void play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
+        std::map<std::optional<Order>, FullRender> full_by_order;
         for (MethodHistory& sequence : sequences_) {
             shared_.stereo.order = sequence.method.stereo.order;
-            Image& full = full_by_order[shared_.stereo.order];
-            if (full.values.empty()) { full = frames_.render(cameras, camera_, shared_.stereo).frame->readPicture(affiliated); }
-            const double full_change = meanChange(full, full_before_[shared_.stereo.order]);
+            FullRender& full = full_by_order[shared_.stereo.order];
+            if (full.pairs == 0.0) {
+                const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
+                full = {{frame->readPicture(kLeft), frame->readPicture(kRight)}, std::max(pairsOf(rendered), 1.0)};
+            }
+            const FullRender& before = full_before_[shared_.stereo.order];
             const Mode mode = sequence.method.stereo.mode;
             const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
-            MotionFrame row{name_, sequence.method.name, mode, time_s, rendered.gpu_total_ms, stagesOf(mode, rendered.gpu_ms), 0.0,
-                            0.0,   full_change};
-            if (reprojects(mode)) {
-                const Image picture = frame->readPicture(affiliated);
-                Image error = subtract(picture, full);
-                row.mean_square = compare(picture, full).mean_square;
-                row.flicker = meanChange(error, sequence.error);
-                sequence.error = std::move(error);
+            MotionFrame row;
+            row.point = name_;
+            row.method = sequence.method.name;
+            row.mode = mode;
+            row.number = number;
+            row.time_s = time_s;
+            row.total_ms = rendered.gpu_total_ms;
+            row.stage_ms = stagesOf(mode, rendered.gpu_ms);
+            row.work_rendered = pairsOf(rendered) / full.pairs;
+            for (const int eye : {kLeft, kRight}) {
+                const auto e = static_cast<std::size_t>(eye);
+                row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
+                if (!reprojects(mode)) { continue; }
+                const Image picture = frame->readPicture(eye);
+                Image error = subtract(picture, full.eyes[e]);
+                row.mean_square[e] = compare(picture, full.eyes[e]).mean_square;
+                row.flicker[e] = meanChange(error, sequence.error[e]);
+                sequence.error[e] = std::move(error);
             }
+            if (reprojects(mode)) { row.pixels_warped = pixelsWarped(rendered, 1 - sequence.method.stereo.dominant); }
             result.push_back(std::move(row));
         }
         full_before_ = std::move(full_by_order);
@@ -99,7 +134,7 @@ private:
     MethodFrames frames_;
     std::string name_;
     std::vector<MethodHistory> sequences_;
-    std::map<std::optional<Order>, Image> full_before_;
+    std::map<std::optional<Order>, FullRender> full_before_;
 };
 
 // One view of a scene at every pose.
@@ -117,7 +152,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     for (std::size_t i = 0; i < times_s.size(); i += options.every) {
         const double time_s = times_s[i];
         const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
-        point.play(moveCameras(start, world_from_middle), time_s, run.frames);
+        point.play(moveCameras(start, world_from_middle), i, time_s, run.frames);
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
 }

@@ -3,23 +3,33 @@
 
 #include "app/bench/bench_results.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace binosplat {
 
-// One method at one pose.
+// One method at one pose. Errors are those of the left and right eye against their own full renders.
 struct MotionFrame {
     std::string point;  // scene and view
     std::string method;
-    Mode mode;
-    double time_s = 0.0;  // of the recording
+    Mode mode = Mode::kShared;
+    std::size_t number = 0;  // of the frame, from 0
+    double time_s = 0.0;     // of the segment
     double total_ms = 0.0;
     NamedTimes stage_ms;
-    double mean_square = 0.0;  // of the affiliated eye against its own full render
+    double work_rendered = 1.0;       // pairs of tile and splat, of those of both full eyes
+    std::uint64_t pixels_warped = 0;  // in tiles that were not rendered
+    std::array<double, 2> mean_square{};
     // Mean absolute change of the error image since the frame before: by so much the picture changes otherwise than the full render
-    // does. The full render's own change beside it. 0 for the first frame.
-    double flicker = 0.0, full_change = 0.0;
+    // does. 0 for the first frame.
+    std::array<double, 2> flicker{};
+    double full_change = 0.0;  // of the full renders, mean of both eyes
+
+    [[nodiscard]] double worseSquare() const { return std::max(mean_square[0], mean_square[1]); }
+    [[nodiscard]] double worseFlicker() const { return std::max(flicker[0], flicker[1]); }
 };
 
 struct MotionRun {
@@ -28,7 +38,8 @@ struct MotionRun {
 };
 
 std::string motionCsv(const MotionRun& run);
-// Medians, 95th and 99th percentiles by point and method; of the error: the PSNR that 95 and 99 % of the frames reach.
+// Medians, 95th and 99th percentiles and worst frames by point and method; of the error the PSNR that so many frames reach in both eyes,
+// and the run's: that of the mean square of both eyes and of all frames after the tenth, or of all where there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);
 std::string motionPlot(const MotionRun& run);
