@@ -17,7 +17,14 @@ void runConvert(const ConvertOptions& options) {
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
 
     LoadNotes notes;
-    const Scene scene = loadWithProgress(options.scene, options.load, notes);
+    Scene scene = loadWithProgress(options.scene, options.load, notes);
+    if (options.crop) {
+        const std::size_t before = scene.size();
+        keepWithin(scene, glm::dvec3(*options.crop), options.crop->w);
+        check(scene.size() > 0, "{}: none of its {} splats lies within --crop {},{},{},{}", options.scene, before, options.crop->x,
+              options.crop->y, options.crop->z, options.crop->w);
+        notes.lines.push_back(fmt::format("{} of {} splats lie within the sphere of --crop", scene.size(), before));
+    }
     {
         ProgressLine line("writing " + out);
         const Progress progress = [&](double share) { line.show(share); };

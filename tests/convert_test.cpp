@@ -3,6 +3,7 @@
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 TEST_SUITE_BEGIN("convert");
 
@@ -43,6 +44,35 @@ TEST_CASE("a scene goes through PLY unchanged and through SPZ within its quanta"
         CHECK(glm::distance(spz.positions[i], made.positions[i]) < 2e-5f);
         CHECK(std::abs(spz.opacities[i] - made.opacities[i]) < 0.002f);
     }
+}
+
+TEST_CASE("a sphere can be cut out of a scene, and keeps all that its splats have") {
+    const Workplace work;
+    const Scene wall = loadScene("builtin:slanted-wall");
+    const glm::dvec3 centre(wall.positions[100]);
+    const Outcome outcome = work.run(fmt::format("convert builtin:slanted-wall a.ply --crop {},{},{},0.5", centre.x, centre.y, centre.z));
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    const Scene cut = loadScene((work.path / "a.ply").string());
+    CHECK(outcome.output.find(fmt::format("{} of 1681 splats lie within", cut.size())) != std::string::npos);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < wall.size(); ++i) {
+        if (glm::distance(glm::dvec3(wall.positions[i]), centre) > 0.5) { continue; }
+        REQUIRE(next < cut.size());
+        CHECK(cut.positions[next] == wall.positions[i]);
+        CHECK(std::equal(cut.sh.begin() + 3 * static_cast<std::ptrdiff_t>(next), cut.sh.begin() + 3 * static_cast<std::ptrdiff_t>(next + 1),
+                         wall.sh.begin() + 3 * static_cast<std::ptrdiff_t>(i)));
+        ++next;
+    }
+    CHECK(next == cut.size());
+    CHECK(next > 1);
+    CHECK(next < wall.size());
+    for (const char* wrong : {"0,0,0", "0,0,0,0", "0,0,0,-1", "0,0,nan,1", "0,0,0,inf", "0,0,0,1,2", ","}) {
+        checkRefused(work, std::string("convert builtin:slanted-wall b.ply --crop=") + wrong, 1, "must be four finite numbers x,y,z,r");
+    }
+    checkRefused(work, "convert builtin:slanted-wall b.ply --crop 1e6,0,0,1", 1,
+                 "builtin:slanted-wall: none of its 1681 splats lies within --crop 1000000,0,0,1");
+    CHECK(fileCount(work) == 1);
 }
 
 TEST_CASE("a scene may take the place of its own file") {

@@ -125,7 +125,14 @@ Options makeScene(const Settings& line) {
     return scene;
 }
 
-Options makeConvert(const Settings& line) { return ConvertOptions{wordOf(line, "SCENE"), runOptions(line).load, wordOf(line, "OUT")}; }
+Options makeConvert(const Settings& line) {
+    ConvertOptions convert;
+    convert.scene = wordOf(line, "SCENE");
+    convert.load = runOptions(line).load;
+    convert.out = wordOf(line, "OUT");
+    readRows(convertRows(), line, convert);
+    return convert;
+}
 
 Options makeCompare(const Settings& line) {
     CompareOptions compare;
@@ -185,7 +192,7 @@ std::span<const Command> commands() {
          kConvert,
          "Write a scene as a PLY or an SPZ file",
          {scene, {"OUT", "file to write, by its name: .ply or .spz"}},
-         {},
+         describe(convertRows()),
          makeConvert},
         {"compare",
          kCompare,

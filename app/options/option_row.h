@@ -98,6 +98,8 @@ OptionValue toValue(const Value& value) {
         return std::string(nameOf(value));
     } else if constexpr (std::is_same_v<Value, glm::uvec2>) {
         return fmt::format("{}x{}", value.x, value.y);
+    } else if constexpr (std::is_same_v<Value, glm::dvec4>) {
+        return fmt::format("{},{},{},{}", value.x, value.y, value.z, value.w);
     } else if constexpr (std::is_convertible_v<Value, std::filesystem::path>) {
         const std::string text = std::filesystem::path(value).string();
         return text.empty() ? OptionValue{} : text;
@@ -183,6 +185,11 @@ auto vector() {
 template <auto... Members>
 auto direction() {
     return make<Members...>("of any length", readDirection);
+}
+
+template <auto... Members>
+auto sphere() {
+    return make<Members...>("", readSphere);
 }
 
 template <auto... Members>

@@ -211,6 +211,14 @@ std::span<const OptionRow<SceneOptions>> sceneRows() {
     return rows;
 }
 
+std::span<const OptionRow<ConvertOptions>> convertRows() {
+    static const std::vector<OptionRow<ConvertOptions>> rows{
+        {{"crop", "", kConvert, "x,y,z,r", "keep the splats whose centres lie in this sphere, in scene units"},
+         field::sphere<&ConvertOptions::crop>()},
+    };
+    return rows;
+}
+
 std::span<const OptionRow<CompareOptions>> compareRows() {
     static const std::vector<OptionRow<CompareOptions>> rows{
         {{"lpips", "", kCompare, "WEIGHTS", "also measure LPIPS, with this file of weights (SqueezeNet variant, version 0.1)"},

@@ -20,6 +20,7 @@ std::span<const OptionRow<RenderOptions>> renderRows();
 std::span<const OptionRow<BenchOptions>> benchRows();
 std::span<const OptionRow<ViewOptions>> viewRows();
 std::span<const OptionRow<SceneOptions>> sceneRows();
+std::span<const OptionRow<ConvertOptions>> convertRows();
 std::span<const OptionRow<CompareOptions>> compareRows();
 std::span<const OptionRow<StabilityOptions>> stabilityRows();
 std::span<const OptionRow<KernelsOptions>> kernelsRows();

@@ -135,6 +135,7 @@ struct ConvertOptions {
     std::string scene;
     LoadOptions load;
     std::filesystem::path out;
+    std::optional<glm::dvec4> crop;  // --crop: centre and radius of the sphere that is kept, in scene units
 };
 
 struct CompareOptions {

@@ -152,6 +152,28 @@ void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes) {
     scene.sh_degree = sh_degree;
 }
 
+void keepWithin(Scene& scene, const glm::dvec3& centre, double radius) {
+    const std::size_t numbers = scene.size() == 0 ? 0 : scene.sh.size() / scene.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        if (!(glm::distance(glm::dvec3(scene.positions[i]), centre) <= radius)) { continue; }
+        scene.positions[kept] = scene.positions[i];
+        scene.rotations[kept] = scene.rotations[i];
+        scene.scales[kept] = scene.scales[i];
+        if (scene.isGaussian3d()) { scene.thicknesses[kept] = scene.thicknesses[i]; }
+        scene.opacities[kept] = scene.opacities[i];
+        std::copy_n(scene.sh.begin() + static_cast<std::ptrdiff_t>(i * numbers), numbers,
+                    scene.sh.begin() + static_cast<std::ptrdiff_t>(kept * numbers));
+        ++kept;
+    }
+    if (scene.isGaussian3d()) { scene.thicknesses.resize(kept); }
+    scene.positions.resize(kept);
+    scene.rotations.resize(kept);
+    scene.scales.resize(kept);
+    scene.opacities.resize(kept);
+    scene.sh.resize(kept * numbers);
+}
+
 void flatten(Scene& scene, LoadNotes& notes) {
     if (!scene.isGaussian3d()) { return; }
     scene.thicknesses = {};

@@ -71,6 +71,9 @@ Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, Loa
 // Leaves out the bands of colours above `sh_degree`, and says so in `notes` if there are any.
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);
 
+// Keeps the splats whose centres lie within a sphere, in scene units.
+void keepWithin(Scene& scene, const glm::dvec3& centre, double radius);
+
 // Makes discs of 3D Gaussians by dropping the shortest axis of each, and says so in `notes`; discs stay as they are.
 void flatten(Scene& scene, LoadNotes& notes);
 

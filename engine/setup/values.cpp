@@ -73,6 +73,15 @@ glm::dvec3 readDirection(const Setting& setting) {
     return *vector;
 }
 
+glm::dvec4 readSphere(const Setting& setting) {
+    const std::string text = setting.text();
+    const std::size_t comma = text.rfind(',');
+    const std::optional<glm::dvec3> centre = comma == std::string::npos ? std::nullopt : parseVector(text.substr(0, comma));
+    const std::optional<double> radius = centre ? parseNumber(std::string_view(text).substr(comma + 1)) : std::nullopt;
+    if (!radius || !(*radius > 0.0)) { refuse(setting, "four finite numbers x,y,z,r, with a radius r over 0"); }
+    return {*centre, *radius};
+}
+
 glm::dvec3 readColour(const Setting& setting) {
     const std::optional<glm::dvec3> colour = parseVector(setting.text());
     const bool in_range =

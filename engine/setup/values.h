@@ -25,6 +25,7 @@ std::uint64_t readCount(const Setting& setting, std::uint64_t least, std::uint64
 glm::dvec3 readVector(const Setting& setting);
 glm::dvec3 readDirection(const Setting& setting);  // of any length but 0
 glm::dvec3 readColour(const Setting& setting);
+glm::dvec4 readSphere(const Setting& setting);  // centre and radius, which is over 0
 glm::uvec2 readSize(const Setting& setting);
 bool readFlag(const Setting& setting);
 std::string readText(const Setting& setting);
