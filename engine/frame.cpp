@@ -28,36 +28,37 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
     for (ShownTiles& shown : shown_) { shown.record(commands); }
     switch (settings.mode) {
         case Mode::kMono:
-            passes_.recordVisible(commands, *scene_, buffers_, alone(0), "");
-            passes_.recordEye(commands, *scene_, buffers_, dominant, "");
+            passes_.recordVisible(commands, *scene_, buffers_, alone(0), Role::kNone);
+            passes_.recordEye(commands, *scene_, buffers_, dominant, Role::kNone);
             break;
         case Mode::kTwoPass:
-            passes_.recordVisible(commands, *scene_, buffers_, alone(first), "dominant ");
-            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
-            passes_.recordVisible(commands, *scene_, buffers_, alone(second), "affiliated ");
-            passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
+            passes_.recordVisible(commands, *scene_, buffers_, alone(first), Role::kDominant);
+            passes_.recordEye(commands, *scene_, buffers_, dominant, Role::kDominant);
+            passes_.recordVisible(commands, *scene_, buffers_, alone(second), Role::kAffiliated);
+            passes_.recordEye(commands, *scene_, buffers_, affiliated, Role::kAffiliated);
             break;
         case Mode::kShared:
-            passes_.recordVisible(commands, *scene_, buffers_, both, "both ");
-            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
+            passes_.recordVisible(commands, *scene_, buffers_, both, Role::kBoth);
+            passes_.recordEye(commands, *scene_, buffers_, dominant, Role::kDominant);
             recordOrderOfAffiliated(commands, settings.order);
-            passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
+            passes_.recordEye(commands, *scene_, buffers_, affiliated, Role::kAffiliated);
             break;
         case Mode::kReproject:
         case Mode::kPaper:
         case Mode::kPredicted:
-            passes_.recordVisible(commands, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? "dominant " : "both ");
-            passes_.recordEye(commands, *scene_, buffers_, dominant, "dominant ");
-            if (per_eye_) { passes_.recordVisible(commands, *scene_, buffers_, alone(second), "affiliated "); }
+            passes_.recordVisible(commands, *scene_, buffers_, per_eye_ ? alone(first) : both, per_eye_ ? Role::kDominant : Role::kBoth);
+            passes_.recordEye(commands, *scene_, buffers_, dominant, Role::kDominant);
+            if (per_eye_) { passes_.recordVisible(commands, *scene_, buffers_, alone(second), Role::kAffiliated); }
             recordMoving(commands, eyes, settings, stereo, affiliated);
             if (stereo.patching == Patching::kNone) { break; }
             if (!per_eye_) { recordOrderOfAffiliated(commands, settings.order); }
             if (!may_move_) {
-                passes_.recordEye(commands, *scene_, buffers_, affiliated, "affiliated ");
+                passes_.recordEye(commands, *scene_, buffers_, affiliated, Role::kAffiliated);
                 break;
             }
             passes_.recordTiles(commands, *scene_, buffers_, affiliated,
-                                {stereo_buffers_.tileMask(), stereo_buffers_.tileList(), stereo_buffers_.tilesWithPairs()}, "affiliated ");
+                                {stereo_buffers_.tileMask(), stereo_buffers_.tileList(), stereo_buffers_.tilesWithPairs()},
+                                Role::kAffiliated);
             break;
     }
     commands.endPass();
@@ -127,7 +128,9 @@ EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& 
 }
 
 void StereoFrame::recordOrderOfAffiliated(Commands& commands, Order order) {
-    if (!sharesOrder(order)) { passes_.recordOrder(commands, *scene_, buffers_, {.order_eye = 1 - dominant_, .list = 0}, "affiliated "); }
+    if (!sharesOrder(order)) {
+        passes_.recordOrder(commands, *scene_, buffers_, {.order_eye = 1 - dominant_, .list = 0}, Role::kAffiliated);
+    }
 }
 
 }  // namespace binosplat

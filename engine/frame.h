@@ -47,7 +47,7 @@ struct FrameSettings {
 StereoSettings stereoSettingsOf(const FrameSettings& settings);
 
 struct FrameResult {
-    PassTimes gpu_ms;           // in frame order; "dominant 7_rasterize", "both 1_cull", or the bare pass where there is one eye
+    PassTimes gpu_ms;
     double gpu_total_ms = 0.0;  // from the first pass to the last
     std::map<std::string, std::uint64_t> counters;
     Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, where the mode has any
@@ -175,10 +175,10 @@ private:
     void prepareImages(std::span<const Eye> eyes, const FrameSettings& settings);
     void recordFrame(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings);
     void recordOrderOfAffiliated(Commands& commands, Order order);
-    // Passes 8a to 8i: the dominant eye's picture goes where the affiliated eye sees it.
+    // Passes weigh to select: the dominant eye's picture goes where the affiliated eye sees it.
     void recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
                       const EyeTarget& affiliated);
-    // Whether 7_rasterize leaves odd rows out of what moves: they will be moved like even ones, and nobody asks for their moments.
+    // Whether rasterize leaves odd rows out of what moves: they will be moved like even ones, and nobody asks for their moments.
     [[nodiscard]] static bool sumsEvenRows(const FrameSettings& settings, const EyeRelation& relation) {
         return settings.mode == Mode::kPredicted && relation.rectified && !settings.keep_moments &&
                settings.stereo.depth_choice == gpu::kDepthInverse;

@@ -173,11 +173,12 @@ void StereoFrame::makeRoomForVisible(std::span<const Eye> eyes, const FrameSetti
     flight.commands.update(buffers_.state, &state, sizeof(state));
     if (per_eye_) {
         for (const int e : {kLeft, kRight}) {
-            passes_.recordCull(flight.commands, *scene_, buffers_, {.first = e, .count = 1, .order_eye = e, .list = e}, "");
+            passes_.recordCull(flight.commands, *scene_, buffers_, {.first = e, .count = 1, .order_eye = e, .list = e}, Role::kNone);
         }
     } else {
         const int count = static_cast<int>(eyes.size());
-        passes_.recordCull(flight.commands, *scene_, buffers_, {.first = 0, .count = count, .order_eye = dominant_, .list = 0}, "");
+        passes_.recordCull(flight.commands, *scene_, buffers_, {.first = 0, .count = count, .order_eye = dominant_, .list = 0},
+                           Role::kNone);
     }
     flight.commands.copy(buffers_.state, flight.readback, sizeof(FrameState));
     flight.commands.submitAndWait();

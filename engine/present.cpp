@@ -1,4 +1,4 @@
-// Recording pass 10 and the copies after it.
+// Recording `present` and the copies after it.
 #include "engine/present.h"
 
 #include "engine/error.h"
@@ -7,10 +7,7 @@
 
 namespace binosplat {
 
-KernelTable presentKernels() {
-    return everyVariant("10_present", sizeof(gpu::PresentPass),
-                        {{"kBlueFirst", 2}, {"kLinear", 2}, {"kTint", 2}, {"kDepth", 2}, {"kHalfColours", 2}, {"kSeeThrough", 2}});
-}
+KernelTable presentKernels() { return everyVariant<PresentKernel>(); }
 
 bool Presenter::takes(vk::Format format) {
     using Format = vk::Format;
@@ -27,7 +24,12 @@ Presenter::Presenter(const Context& context, vk::Format format)
 }
 
 const Kernel& Presenter::kernel(bool tinted, bool with_depth, bool half_floats, bool see_through) {
-    return kernels_.get("10_present", sizeof(gpu::PresentPass), {blue_first_, linear_, tinted, with_depth, half_floats, see_through});
+    return kernels_.get(PresentKernel{.blue_first = blue_first_,
+                                      .linear = linear_,
+                                      .tint = tinted,
+                                      .depth = with_depth,
+                                      .half_colours = half_floats,
+                                      .see_through = see_through});
 }
 
 void Presenter::makeKernels(bool with_depth, bool can_see_through) {
@@ -62,7 +64,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.device_depths = depths_.address<float>();
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
-    commands.beginPass("10_present");
+    commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
     commands.dispatch(kernel(tinted, with_depth, eye.image->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16,
                       (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);

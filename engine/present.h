@@ -15,7 +15,7 @@ struct PresentedEye {
     bool see_through = false;                  // its alpha goes along, multiplied in as headsets blend: as light
 };
 
-// All kernels of pass 10.
+// All kernels of `present`.
 KernelTable presentKernels();
 
 class Presenter {
@@ -29,7 +29,7 @@ public:
     void makeKernels(bool with_depth, bool can_see_through);
     // For pictures of that size, while nothing that was recorded is under way. Throws Error if there is no memory for it.
     void makeRoom(glm::uvec2 size_px, bool with_depth);
-    // Records pass 10, making room first. `near` in scene units.
+    // Records it, making room first. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
     // Makes its kernels anew, see Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }

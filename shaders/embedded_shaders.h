@@ -4,13 +4,14 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
 
-// The words of shaders/NAME.comp; empty if there is no such shader.
+// The words of shaders/FOLDER/NAME.comp; empty if there is no such shader.
 std::span<const std::uint32_t> embeddedShader(std::string_view name);
-// All of them, in frame order.
-std::vector<std::string_view> embeddedShaderNames();
+// The folder and the name of each, in frame order.
+std::vector<std::pair<std::string_view, std::string_view>> embeddedShaderNames();
 
 }  // namespace binosplat

@@ -73,7 +73,7 @@ TEST_CASE("kernelsAreAllBuiltAndListed") {
     CHECK(variants.size() == listed.at("kernels").size());
     // Each shader that there is.
     std::set<std::string> files;
-    for (const auto& entry : fs::directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
         if (entry.path().extension() == ".comp") { files.insert(entry.path().stem().string()); }
     }
     CHECK(shaders == files);
@@ -380,7 +380,7 @@ TEST_CASE("benchWritesTableJsonCsvAndPlot") {
     const Outcome outcome = work.run("bench builtin:one-splat --out out --config b.toml");
     INFO(outcome.errors);
     REQUIRE(outcome.exit_code == 0);
-    CHECK(outcome.output.find("7_rasterize") != std::string::npos);
+    CHECK(outcome.output.find("rasterize") != std::string::npos);
     const nlohmann::json bench = nlohmann::json::parse(std::ifstream(work.path / "out" / "bench.json"));
     REQUIRE(bench["results"].size() == 10);
     CHECK(bench["results"][0]["ratio_to_two_pass"] == 1.0);

@@ -1,4 +1,4 @@
-// Facts about foveation: what 8h counts of an error where it is known where an eye looks, against the twin, and the frames that follow.
+// Facts about foveation: what price counts of an error where it is known where an eye looks, against the twin, and the frames that follow.
 #include "engine/picture/metrics.h"
 #include "tests/affiliated_frames.h"
 #include "tests/frame_runs.h"
@@ -81,7 +81,7 @@ bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8h_price counts of an error what the twin's eye sees, wherever it looks") {
+TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, wherever it looks") {
     const Eye eye{Pose{}, intrinsicsFromAngles({-0.9, 0.7, 0.8, -0.85}, {531, 777}), {531, 777}};
     gpu::StereoView view{};
     view.size_px = eye.size_px;

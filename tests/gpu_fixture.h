@@ -45,7 +45,11 @@ public:
         return values;
     }
 
-    // The kernel of a shader with these specialization constants, made once for all tests of a program.
+    // Made once for all tests of a program.
+    template <typename K>
+    [[nodiscard]] const Kernel& kernel(const K& variant) {
+        return kernel(K::kShader, sizeof(typename K::Pass), valuesOf(variant));
+    }
     [[nodiscard]] const Kernel& kernel(const std::string& shader, std::uint32_t push_bytes,
                                        const std::vector<std::uint32_t>& constants = {});
 

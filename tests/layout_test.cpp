@@ -219,40 +219,45 @@ std::string findMismatch(const Layout& shader, const std::vector<Layout>& host) 
     return {};
 }
 
-// The names of shaders/NAME.comp.
+// The names of shaders/FOLDER/NAME.comp.
 std::vector<std::string> shaderNames() {
     std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
         if (entry.path().extension() == ".comp") { names.push_back(entry.path().stem().string()); }
     }
     return names;
 }
 
-// The pass of shaders/1_cull.comp is CullPass, that of shaders/sort_count.comp is SortCountPass.
-std::string passOf(const std::string& shader) {
-    if (shader == "5_bin_large") { return "BinPass"; }  // the second step of 5_bin
-    const bool numbered = shader[0] >= '0' && shader[0] <= '9';
-    std::string name;
-    bool begins_word = true;
-    for (std::size_t i = numbered ? shader.find('_') + 1 : 0; i < shader.size(); ++i) {
-        if (shader[i] != '_') { name += begins_word ? static_cast<char>(shader[i] - 'a' + 'A') : shader[i]; }
-        begins_word = shader[i] == '_';
+// What shaders/passes.def says of each.
+struct ListedPass {
+    std::string push_struct;
+    std::map<std::uint32_t, std::string> constants;
+};
+std::map<std::string, ListedPass> listedPasses() {
+    std::map<std::string, ListedPass> passes;
+#define PASS(folder, shader, Name, Struct, ...)                                            \
+    passes[#shader].push_struct = #Struct;                                                 \
+    for (std::uint32_t id = 0; id < Name##Kernel::constants().size(); ++id) {              \
+        passes[#shader].constants[id] = nameInShader(Name##Kernel::constants()[id].field); \
     }
-    return name + "Pass";
+#include "shaders/passes.def"
+#undef PASS
+    return passes;
 }
 
 }  // namespace
 
 TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gives them") {
     const std::vector<Layout> host = hostLayouts();
+    const std::map<std::string, ListedPass> listed = listedPasses();
     std::set<std::string> seen;
-    REQUIRE(shaderNames().size() >= 12);
+    REQUIRE(shaderNames().size() == listed.size());
     for (const std::string& name : shaderNames()) {
         CAPTURE(name);
         const auto words = embeddedShader(name);
         REQUIRE_FALSE(words.empty());
         const ShaderLayouts shader(words);
-        CHECK(shader.push_struct == passOf(name));
+        CHECK(shader.push_struct == listed.at(name).push_struct);
         for (const Layout& layout : shader.layouts) {
             CHECK(findMismatch(layout, host) == "");
             seen.insert(layout.name);
@@ -264,20 +269,20 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
     }
 }
 
-TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compiled for, and has no other") {
+TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = passKernels(context());
     append(table, stereoKernels(context()));
     append(table, presentKernels());
-    std::map<std::string, std::set<std::uint32_t>> chosen;
-    for (const KernelVariant& variant : table) {
-        auto& ids = chosen[variant.shader];
-        for (std::uint32_t id = 0; id < variant.constants.size(); ++id) { ids.insert(id); }
-    }
-    CHECK(chosen.size() == shaderNames().size());
-    for (const auto& [name, ids] : chosen) {
+    std::set<std::string> made;
+    for (const KernelVariant& variant : table) { made.insert(variant.shader); }
+    const std::map<std::string, ListedPass> listed = listedPasses();
+    CHECK(made.size() == listed.size());
+    for (const auto& [name, pass] : listed) {
         CAPTURE(name);
         const test::ShaderWords shader(embeddedShader(name));
-        CHECK(shader.declaredConstants() == ids);
+        CHECK(shader.declaredConstants() == pass.constants);
+        std::set<std::uint32_t> ids;
+        for (const auto& [id, constant] : pass.constants) { ids.insert(id); }
         CHECK(shader.readConstants() == ids);
     }
 }

@@ -410,31 +410,37 @@ TEST_CASE("ratiosCompareModesAtTheSamePointOnly") {
 
 TEST_CASE("passesOfBothEyesAddUp") {
     BenchResult result;
-    result.pass_ms = {{"both 1_cull", 1.0}, {"dominant 4_project", 2.0}, {"affiliated 4_project", 3.0}};
-    CHECK(byPass(result.pass_ms) == NamedTimes{{"1_cull", 1.0}, {"4_project", 5.0}});
+    result.pass_ms = {{{Role::kBoth, FrameStage::kSort, "cull"}, 1.0},
+                      {{Role::kDominant, FrameStage::kSplat, "project"}, 2.0},
+                      {{Role::kAffiliated, FrameStage::kSplat, "project"}, 3.0}};
+    CHECK(byPass(result.pass_ms) == NamedTimes{{"cull", 1.0}, {"project", 5.0}});
 }
 
 TEST_CASE("stagesAddUpPasses") {
-    const NamedTimes passes{{"both 1_cull", 1.0},
-                            {"both 3_sort_depth", 2.0},
-                            {"dominant 4_project", 4.0},
-                            {"dominant 7_rasterize", 8.0},
-                            {"affiliated 8d_reproject", 16.0},
-                            {"affiliated 8a_weigh", 32.0},
-                            {"affiliated 8f_newcomers", 64.0},
-                            {"affiliated 8i_select", 128.0},
-                            {"affiliated 8e_resample", 256.0},
-                            {"affiliated 7_rasterize", 512.0}};
+    const PassTimes passes{{{Role::kBoth, FrameStage::kSort, "cull"}, 1.0},
+                           {{Role::kBoth, FrameStage::kSort, "sort_depth"}, 2.0},
+                           {{Role::kDominant, FrameStage::kSplat, "project"}, 4.0},
+                           {{Role::kDominant, FrameStage::kSplat, "rasterize"}, 8.0},
+                           {{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 16.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "weigh"}, 32.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 64.0},
+                           {{Role::kAffiliated, FrameStage::kChoose, "select"}, 128.0},
+                           {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 256.0},
+                           {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 512.0}};
     CHECK(stagesOf(Mode::kPredicted, passes) ==
           NamedTimes{{"cull+sort", 3.0}, {"dominant", 12.0}, {"reprojection", 272.0}, {"ROI choice", 224.0}, {"patch", 512.0}});
-    CHECK(stagesOf(Mode::kShared, {{"affiliated 7_rasterize", 1.0}}) == NamedTimes{{"affiliated", 1.0}});
+    CHECK(stagesOf(Mode::kShared, {{{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 1.0}}) == NamedTimes{{"affiliated", 1.0}});
 }
 
 TEST_CASE("what moving a tile costs is told in pairs of shared's affiliated eye") {
     BenchResult predicted = makeResult("a", Mode::kPredicted, 1, 9.0), shared = makeResult("a", Mode::kShared, 1, 10.0);
-    predicted.pass_ms = {{"affiliated 8d_reproject", 1.0}, {"affiliated 8f_newcomers", 5.0}, {"affiliated 8e_resample", 2.0}};
+    predicted.pass_ms = {{{Role::kAffiliated, FrameStage::kWarp, "reproject"}, 1.0},
+                         {{Role::kAffiliated, FrameStage::kChoose, "newcomers"}, 5.0},
+                         {{Role::kAffiliated, FrameStage::kWarp, "resample"}, 2.0}};
     predicted.counters = {{"tiles_weighed_as_moved", 300}};
-    shared.pass_ms = {{"dominant 7_rasterize", 7.0}, {"affiliated 4_project", 1.5}, {"affiliated 7_rasterize", 2.5}};
+    shared.pass_ms = {{{Role::kDominant, FrameStage::kSplat, "rasterize"}, 7.0},
+                      {{Role::kAffiliated, FrameStage::kSplat, "project"}, 1.5},
+                      {{Role::kAffiliated, FrameStage::kSplat, "rasterize"}, 2.5}};
     shared.counters = {{"tile_pairs_left", 9000}, {"tile_pairs_right", 8000}};
     // 10 us a tile, 0.5 us a pair.
     std::vector<BenchResult> results{predicted, shared};
@@ -599,7 +605,7 @@ TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralW
 
 TEST_CASE("plotsOfFewOrBadPointsStayFinite") {
     BenchResult result = makeResult("a&b", Mode::kShared, 1, 0.0);
-    result.pass_ms = {{"1_cull", 0.0}};
+    result.pass_ms = {{{Role::kNone, FrameStage::kSort, "cull"}, 0.0}};
     for (const double ms : {0.0, 1.0, 2.5}) {
         result.total_ms = ms;
         const std::string svg = benchPlot({"GPU", "", {result}});

@@ -49,7 +49,7 @@ struct SceneOnDevice {
     Buffer eyes;
 };
 
-// The depth's key and back (shaders/2_compact.comp): integers in the order of the floats.
+// The depth's key and back (shaders/sort/compact.comp): integers in the order of the floats.
 inline std::uint32_t sortableBits(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
@@ -91,7 +91,7 @@ inline gpu::ProjectedSplat toDevice(const reference::ProjectedSplat& splat) {
     return result;
 }
 
-// What 4_project leaves for a list of splats, on the device.
+// What project leaves for a list of splats, on the device.
 struct ProjectedOnDevice {
     std::uint32_t count;
     Buffer list, order, splats, tile_sets, tile_counts, group_sums, pairs, counters;
@@ -100,9 +100,9 @@ struct ProjectedOnDevice {
 // `tile_mask`, if it is not null, has the bits of the tiles that count (shaders/lib/tile_mask.glsl).
 inline ProjectedOnDevice projectOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& order,
                                          std::uint32_t pair_capacity = UINT32_MAX, gpu::DeviceAddress<gpu::uint> tile_mask = {}) {
-    const Kernel& kernel = gpu.kernel(
-        "4_project", sizeof(gpu::ProjectPass),
-        {static_cast<std::uint32_t>(device.scene.shDegree()), /*masked=*/tile_mask.value != 0 ? 1u : 0u, device.scene.splatKind()});
+    const Kernel& kernel = gpu.kernel(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(device.scene.shDegree()),
+                                                    .masked = tile_mask.value != 0,
+                                                    .splat_kind = device.scene.splatKind()});
     const std::size_t count = order.size();
     ProjectedOnDevice result{static_cast<std::uint32_t>(count),
                              gpu.upload("list", std::vector{makeList(count)}),

@@ -1,4 +1,4 @@
-// Facts about the passes over splats, 1_cull to 4_project, each started from what the twin's pass before it left.
+// Facts about the passes over splats, cull to project, each started from what the twin's pass before it left.
 #include "engine/passes/sort.h"
 #include "tests/pass_stages.h"
 
@@ -47,7 +47,7 @@ struct Culled {
 Culled cullOnDevice(Gpu& gpu, const SceneOnDevice& device, std::uint32_t eye_count) {
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
-    const Kernel& kernel = gpu.kernel("1_cull", sizeof(gpu::CullPass), {device.scene.splatShape()});
+    const Kernel& kernel = gpu.kernel(CullKernel{.splat_kind = device.scene.splatShape()});
     const Buffer bits = gpu.allocate<std::uint32_t>("bits", groups * kGroupWords), counts = gpu.allocate<std::uint32_t>("counts", groups);
     const Buffer list = gpu.upload("visible", std::vector{gpu::ListState{}});
     gpu::CullPass pass{};
@@ -69,10 +69,10 @@ struct Compacted {
     std::vector<std::uint32_t> keys, splats;
 };
 
-// 2_compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
+// compact of these splats, ascending, for the device's first eye; by distance from `middle` where there is one.
 Compacted compactOnDevice(Gpu& gpu, const SceneOnDevice& device, const std::vector<std::uint32_t>& visible,
                           const std::optional<glm::dvec3>& middle) {
-    const Kernel& kernel = gpu.kernel("2_compact", sizeof(gpu::CompactPass), {middle ? 1u : 0u});
+    const Kernel& kernel = gpu.kernel(CompactKernel{.by_distance = middle.has_value()});
     const std::uint32_t count = device.scene.splatCount();
     const std::size_t groups = (count + gpu::kCullBlock - 1) / gpu::kCullBlock;
     std::vector<std::uint32_t> bits(groups * kGroupWords), offsets(groups + 1);
@@ -197,7 +197,7 @@ private:
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "1_cull misses no splat that the twin sees, and keeps hardly one that the twin's culling does not") {
+TEST_CASE_FIXTURE(Gpu, "cull misses no splat that the twin sees, and keeps hardly one that the twin's culling does not") {
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
@@ -219,7 +219,7 @@ TEST_CASE_FIXTURE(Gpu, "1_cull misses no splat that the twin sees, and keeps har
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "1_cull for two eyes keeps what either keeps") {
+TEST_CASE_FIXTURE(Gpu, "cull for two eyes keeps what either keeps") {
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {256, 256}, 20000);
     Eye other = view.eye;
     other.world_from_camera.orientation = other.world_from_camera.orientation * glm::angleAxis(0.5, glm::dvec3(0, 1, 0));
@@ -230,7 +230,7 @@ TEST_CASE_FIXTURE(Gpu, "1_cull for two eyes keeps what either keeps") {
     for (std::size_t w = 0; w < both.bits.size(); ++w) { REQUIRE(both.bits[w] == (one.bits[w] | two.bits[w])); }
 }
 
-TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order with keys that order as their depths") {
+TEST_CASE_FIXTURE(Gpu, "compact lists the visible splats in the scene's order with keys that order as their depths") {
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
@@ -249,8 +249,7 @@ TEST_CASE_FIXTURE(Gpu, "2_compact lists the visible splats in the scene's order 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "2_compact has keys that order as the distances from the middle between the eyes, also far from the world's origin") {
+TEST_CASE_FIXTURE(Gpu, "compact has keys that order as the distances from the middle between the eyes, also far from the world's origin") {
     for (const double offset : {0.0, 1e6}) {
         for (ViewedScene view : allScenes()) {
             CAPTURE(view.name);
@@ -280,7 +279,7 @@ TEST_CASE("keys of depths order as the depths, behind the eye too") {
     for (const float value : ascending) { CHECK(test::floatOfKey(test::sortableBits(value)) == value); }
 }
 
-TEST_CASE_FIXTURE(Gpu, "3_sort_depth puts the twin's depths front to back, ties by index") {
+TEST_CASE_FIXTURE(Gpu, "sort_depth puts the twin's depths front to back, ties by index") {
     const Sort sort(context());
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
@@ -312,7 +311,7 @@ TEST_CASE_FIXTURE(Gpu, "3_sort_depth puts the twin's depths front to back, ties 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "4_project gives the twin's fields, up to roundings times the condition of each") {
+TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times the condition of each") {
     // Measured: reference 1.3, A and B 19, D 11, perspective 5, 1/z 3.1, offset 0.7, of Gaussians 2, in roundings.
     const std::map<std::string, double> bounds{
         {"opacity", 1.0},    {"colour", 1.0},     {"reference_px", 4.0},         {"1/z", 8.0},           {"A", 32.0},

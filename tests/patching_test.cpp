@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
         return makeAffiliated(frame, of, settings);
     };
     const auto reprojects = [](const AffiliatedFrame& made) {
-        return std::ranges::any_of(made.result.gpu_ms, [](const auto& pass) { return pass.first == "affiliated 8e_resample"; });
+        return std::ranges::any_of(made.result.gpu_ms, [](const auto& pass) { return pass.label.text() == "affiliated resample"; });
     };
     const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
         const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));

@@ -37,7 +37,8 @@ Presented runPresent(Gpu& gpu, glm::uvec2 size_px, const std::vector<glm::vec4>&
     pass.device_depths = depths.address<float>();
     pass.size_px = size_px;
     pass.near = static_cast<float>(how.near);
-    const Kernel& kernel = gpu.kernel("10_present", sizeof(pass), {how.blue_first, how.linear, 0, with_depth, halves, how.see_through});
+    const Kernel& kernel = gpu.kernel(PresentKernel{
+        .blue_first = how.blue_first, .linear = how.linear, .depth = with_depth, .half_colours = halves, .see_through = how.see_through});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
     return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, with_depth ? colours.size() : 0)};
 }
@@ -69,7 +70,7 @@ std::vector<glm::dvec4> asDoubles(const std::vector<glm::vec4>& colours) { retur
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "10_present shows half floats as the floats that they stand for") {
+TEST_CASE_FIXTURE(Gpu, "present shows half floats as the floats that they stand for") {
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 9), glm::uvec2(100, 70)}) {
         std::vector<glm::vec4> colours = makeColours(size_px);
         for (glm::vec4& c : colours) {
@@ -117,7 +118,7 @@ TEST_CASE_FIXTURE(Gpu, "tints say what made a pixel, and nothing of tiles that n
     pass.pixel_classes = classes.address<gpu::uint>();
     pass.pixels = pixels.address<gpu::uint>();
     pass.size_px = size_px;
-    const Kernel& kernel = this->kernel("10_present", sizeof(pass), {0, 0, 1, 0, 0, 0});
+    const Kernel& kernel = this->kernel(PresentKernel{.tint = 1});
     run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
     const std::vector<std::uint32_t> shown = readBack<std::uint32_t>(pixels, colours.size());
     CHECK(shown[0] == 0xff000000);

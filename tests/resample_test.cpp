@@ -1,4 +1,5 @@
-// Facts about 8e: what a moved picture looks like, and the error that is expected of it, each started from what the twin's 8d left.
+// Facts about resample: what a moved picture looks like, and the error that is expected of it, each started from what the twin's reproject
+// left.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -36,7 +37,7 @@ double beyondRounding(const gpu::vec4& got, const glm::dvec4& expected, int chan
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample finds the twin's colours, depths and classes in tiles that are moved, and leaves the others alone") {
+TEST_CASE_FIXTURE(Gpu, "resample finds the twin's colours, depths and classes in tiles that are moved, and leaves the others alone") {
     const glm::vec3 background(0.25f, 0.5f, 0.75f);
     double worst = 0.0, worst_depth = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
@@ -50,7 +51,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample finds the twin's colours, depths and classes
                 StereoCase c = whole;
                 if (areHalves(rows)) { test::roundToHalves(c.dominant); }
                 c.settings.forward = forward;
-                // Gaps that 8d has not closed are left for this pass.
+                // Gaps that reproject has not closed are left for this pass.
                 c.settings.gap_px = gap_px == 5 ? 0 : gap_px;
                 const Arrived arrived(c);
                 c.settings.gap_px = gap_px;
@@ -109,7 +110,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample finds the twin's colours, depths and classes
     CHECK(worst_depth <= 1e-6);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, all rows at once or the odd ones later, to the bit") {
+TEST_CASE_FIXTURE(Gpu, "resample moves a row itself as reproject would, all rows at once or the odd ones later, to the bit") {
     std::size_t pictures = 0;
     for (StereoCase c : test::makeStereoCases()) {
         if (toDevice(*this, c).rectified() == 0) { continue; }
@@ -169,7 +170,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample moves a row itself as 8d_reproject would, al
     CHECK(pictures == 60);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample makes odd rows the means of even ones where an eye does not tell them apart, as the twin does") {
+TEST_CASE_FIXTURE(Gpu, "resample makes odd rows the means of even ones where an eye does not tell them apart, as the twin does") {
     std::size_t means = 0;
     double worst = 0.0, worst_depth = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
@@ -232,7 +233,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample makes odd rows the means of even ones where 
     CHECK(worst_depth <= 1e-5);  // where this pass moves rows, inverse depths are its own, to 2^-18
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample expects the twin's errors of tiles that are moved, and none of the others") {
+TEST_CASE_FIXTURE(Gpu, "resample expects the twin's errors of tiles that are moved, and none of the others") {
     std::size_t tiles = 0, other_tiles = 0;
     double worst = 0.0;
     for (const StereoCase& whole : test::makeStereoCases()) {
@@ -276,7 +277,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample expects the twin's errors of tiles that are 
     CHECK(worst <= 0.002);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
+TEST_CASE_FIXTURE(Gpu, "resample copies colours as they are, and mixes those of a gap's two ends, however far each is") {
     // Nothing moves but by whole pixels: one at inverse depth 0.1 by 1 px to the left, one at 0.4 by 4 px. Colours are the columns'
     // squares.
     const glm::uvec2 size_px(16, 1);
@@ -309,7 +310,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample copies colours as they are, and mixes those 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample makes holes their own parents where they are going to be grouped") {
+TEST_CASE_FIXTURE(Gpu, "resample makes holes their own parents where they are going to be grouped") {
     for (StereoCase c : test::makeStereoCases()) {
         for (const bool forward : {false, true}) {
             CAPTURE(c.name);
@@ -346,7 +347,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample makes holes their own parents where they are
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones than it keeps at a time") {
+TEST_CASE_FIXTURE(Gpu, "resample takes rows of any length, also longer ones than it keeps at a time") {
     // A ramp with steps in depth: 20 px apart for a unit of inverse depth.
     const std::uint32_t longest_shared = test::longestSharedRow(context());
     for (const std::uint32_t width : {1u, 31u, 32u, 33u, 127u, 128u, 129u, 256u, 257u, gpu::kArrivalsStep - 1, gpu::kArrivalsStep,
@@ -428,7 +429,7 @@ TEST_CASE_FIXTURE(Gpu, "8e_resample takes rows of any length, also longer ones t
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8e_resample moves nothing where nothing is worth moving, but paints what is hidden") {
+TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, but paints what is hidden") {
     const StereoCase c = test::makeStereoCases().front();
     const Arrived arrived(c);
     StereoOnDevice device = toDevice(*this, c, Rows::kShared);

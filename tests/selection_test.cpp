@@ -1,4 +1,5 @@
-// Facts about 8h and 8i: prices, the dearest errors up to a budget, held to a plain sort, and the lists and masks that patching goes by.
+// Facts about price and select: prices, the dearest errors up to a budget, held to a plain sort, and the lists and masks that patching goes
+// by.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -22,14 +23,14 @@ constexpr std::size_t kVisible = 12345;
 // Of a whole picture, so that a budget of any number of pairs is exact in single precision.
 constexpr gpu::uint kPictureCost = 1u << 24;
 
-// Tiles as 8e and 8a leave them.
+// Tiles as resample and weigh leave them.
 struct Tiles {
     glm::uvec2 size{0, 0};
     std::vector<gpu::uint> kinds, errors, costs;
 
     explicit Tiles(glm::uvec2 size_tiles) : size(size_tiles), kinds(count(), 0), errors(count(), 0), costs(count(), 100) {}
     [[nodiscard]] std::size_t count() const { return std::size_t{size.x} * size.y; }
-    // Above this, 8f's sums stop growing.
+    // Above this, newcomers's sums stop growing.
     [[nodiscard]] gpu::uint errorOf(std::size_t t) const { return kinds[t] == 0 ? std::min(errors[t], 0x7fffffffu) : 0; }
     // -1: none. Plainly as the device does it: a float's exponent and four bits.
     [[nodiscard]] int binOf(std::size_t t) const {
@@ -111,7 +112,7 @@ void checkPrices(StereoOnDevice& device, const Tiles& tiles) {
     CHECK(bins == expected_bins);
 }
 
-// Passes 8h and 8i against a sort, and against the twin.
+// Passes price and select against a sort, and against the twin.
 void checkSelection(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost) {
     CAPTURE(tiles.count());
     CAPTURE(budget_cost);
@@ -153,7 +154,7 @@ void checkSelection(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8h_price and 8i_select choose as a sort does, over any number of tiles, with budgets of none, one and all") {
+TEST_CASE_FIXTURE(Gpu, "price and select choose as a sort does, over any number of tiles, with budgets of none, one and all") {
     std::mt19937 random(7);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(31, 1), glm::uvec2(127, 1), glm::uvec2(32, 4), glm::uvec2(3, 43),
                                   glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
@@ -166,7 +167,7 @@ TEST_CASE_FIXTURE(Gpu, "8h_price and 8i_select choose as a sort does, over any n
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8i_select takes the first of tiles of one price, to the last pair of the budget, and none without an error") {
+TEST_CASE_FIXTURE(Gpu, "select takes the first of tiles of one price, to the last pair of the budget, and none without an error") {
     std::mt19937 random(8);
     for (const glm::uvec2 size : {glm::uvec2(20, 1), glm::uvec2(30, 20)}) {
         for (const unsigned values : {1u, 2u, 5u}) {
@@ -195,7 +196,7 @@ TEST_CASE_FIXTURE(Gpu, "8i_select takes the first of tiles of one price, to the 
     checkSelection(*this, none, 2000);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8h_price tells prices apart from the least to the greatest, and takes sums that stopped growing for equal") {
+TEST_CASE_FIXTURE(Gpu, "price tells prices apart from the least to the greatest, and takes sums that stopped growing for equal") {
     Tiles tiles({31, 8});
     for (std::size_t t = 0; t < tiles.count(); ++t) {
         const std::size_t bit = t % 31;
@@ -211,7 +212,7 @@ TEST_CASE_FIXTURE(Gpu, "8h_price tells prices apart from the least to the greate
     for (const std::uint64_t budget : {100, 250, 300, 499, 600}) { checkSelection(*this, full, budget); }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8i_select pays from a share of the picture's cost, rounded down") {
+TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded down") {
     Tiles tiles({10, 1});
     tiles.errors.assign(10, 1000);
     for (const auto& [share, picture_cost, chosen] :
@@ -232,7 +233,7 @@ TEST_CASE_FIXTURE(Gpu, "8i_select pays from a share of the picture's cost, round
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8i_select lists the tiles that others have marked, and forgets no kind") {
+TEST_CASE_FIXTURE(Gpu, "select lists the tiles that others have marked, and forgets no kind") {
     std::mt19937 random(10);
     for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(64, 4), glm::uvec2(65, 40)}) {
         for (const unsigned percent : {0u, 3u, 50u, 100u}) {
@@ -245,7 +246,7 @@ TEST_CASE_FIXTURE(Gpu, "8i_select lists the tiles that others have marked, and f
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8i_select renders everything that is shown where nothing is worth moving") {
+TEST_CASE_FIXTURE(Gpu, "select renders everything that is shown where nothing is worth moving") {
     std::mt19937 random(12);
     const Tiles tiles = drawTiles({40, 9}, random);
     StereoOnDevice device = toDevice(*this, tiles, 0);

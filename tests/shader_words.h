@@ -24,11 +24,16 @@ public:
         }
     }
 
-    // constant_id of what the shader declares, and of what it reads.
-    [[nodiscard]] std::set<std::uint32_t> declaredConstants() const {
-        std::set<std::uint32_t> ids;
-        for (const auto& [id, constant] : constants_) { ids.insert(constant); }
-        return ids;
+    // The names of what the shader declares, by constant_id, and the constant_id of what it reads.
+    [[nodiscard]] std::map<std::uint32_t, std::string> declaredConstants() const {
+        std::map<std::uint32_t, std::string> names;
+        for (const auto& [id, constant] : constants_) {
+            if (names_.contains(id)) { names[constant] = names_.at(id); }
+        }
+        for (const auto& [id, constant] : constants_) {
+            names.emplace(constant, "local_size_x");
+        }  // where it is nothing else, it has no name
+        return names;
     }
     [[nodiscard]] std::set<std::uint32_t> readConstants() const {
         std::set<std::uint32_t> ids;

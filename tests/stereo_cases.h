@@ -159,7 +159,7 @@ inline bool isNear(double a, double b, double relative, double absolute) {
     return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b)) + absolute;
 }
 
-// What the twin's 8d leaves, as the device holds it, and the same for the twin again.
+// What the twin's reproject leaves, as the device holds it, and the same for the twin again.
 struct Arrived {
     explicit Arrived(const StereoCase& c) {
         for (const reference::Arrival& arrival : reference::reproject(c.dominant, c.eyes, c.settings)) {
@@ -176,7 +176,7 @@ inline std::size_t tileOf(std::size_t pixel, glm::uvec2 size_px) {
     return pixel / size_px.x / 16 * ((size_px.x + 15) / 16) + pixel % size_px.x / 16;
 }
 
-// What 8a tells 8f of each tile.
+// What weigh tells newcomers of each tile.
 inline std::vector<gpu::uint> depthsOfTiles(const StereoCase& c) {
     std::vector<gpu::uint> depths(std::size_t{(c.sizePx().x + 15) / 16} * ((c.sizePx().y + 15) / 16));
     for (std::size_t t = 0; t < depths.size(); ++t) { depths[t] = packMoving(reference::movingAtMiddle(c.dominant, t, c.settings)); }

@@ -1,5 +1,6 @@
-// Facts about the passes that make one eye's picture from the other's, 8d and 8f (8e: resample_test.cpp), each started from what the twin's
-// pass before it left. Where a place lies on the border of a pixel, float32 may round to either side: such flips have a budget.
+// Facts about the passes that make one eye's picture from the other's, reproject and newcomers (resample: resample_test.cpp), each started
+// from what the twin's pass before it left. Where a place lies on the border of a pixel, float32 may round to either side: such flips have
+// a budget.
 #include "tests/pass_stages.h"
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
@@ -95,7 +96,7 @@ TEST_CASE_FIXTURE(Gpu, "eyes side by side move along rows, whatever their angles
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8d_reproject brings to each pixel what the twin brings there, wherever the words lie") {
+TEST_CASE_FIXTURE(Gpu, "reproject brings to each pixel what the twin brings there, wherever the words lie") {
     Differences all;
     for (StereoCase c : test::makeStereoCases()) {
         for (const auto& [gap_px, forward] :
@@ -127,7 +128,7 @@ TEST_CASE_FIXTURE(Gpu, "8d_reproject brings to each pixel what the twin brings t
     CHECK(test::share(all.off_by_step, all.pixels) <= 0.01);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8d_reproject moves nothing from beside what a lens hides") {
+TEST_CASE_FIXTURE(Gpu, "reproject moves nothing from beside what a lens hides") {
     std::size_t held_back = 0;
     for (StereoCase c : test::makeStereoCases()) {
         CAPTURE(c.name);
@@ -147,7 +148,7 @@ TEST_CASE_FIXTURE(Gpu, "8d_reproject moves nothing from beside what a lens hides
     CHECK(held_back > 10000);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8d_reproject fills a stretch that begins beyond the border") {
+TEST_CASE_FIXTURE(Gpu, "reproject fills a stretch that begins beyond the border") {
     // 10 px of disparity for a unit of inverse depth: pixel 5 goes to -12, pixel 6 to 6.2, all others out of sight to the left.
     const glm::uvec2 size_px(40, 1);
     const auto eyes = stereoPair({Pose{}, {100.0, 100.0, 20.0, 0.5}, size_px}, 0.1);
@@ -177,7 +178,7 @@ TEST_CASE_FIXTURE(Gpu, "8d_reproject fills a stretch that begins beyond the bord
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's errors") {
+TEST_CASE_FIXTURE(Gpu, "newcomers finds the twin's splats and adds the twin's errors") {
     struct Setting {
         test::ViewedScene view;
         std::array<Eye, 2> eyes;
@@ -217,7 +218,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers finds the twin's splats and adds the twin's
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_newcomers adds what a large splat near a canted eye brings to every tile it meets, up to what a sum holds") {
+TEST_CASE_FIXTURE(Gpu, "newcomers adds what a large splat near a canted eye brings to every tile it meets, up to what a sum holds") {
     // Eyes that look past each other, and before one of them discs over nearly all of its 40x35 tiles.
     const glm::uvec2 size_px(640, 560);
     const auto turnBy = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(0.0, 1.0, 0.0)); };
@@ -252,7 +253,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers adds what a large splat near a canted eye b
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
+TEST_CASE_FIXTURE(Gpu, "newcomers holds a splat against the middle of its tile, and against nothing where nothing is moved") {
     // Small discs of inverse depth 1/3 along the middle row.
     const glm::uvec2 size_px(64, 16);
     const Eye eye = test::makeEye(size_px);
@@ -282,7 +283,7 @@ TEST_CASE_FIXTURE(Gpu, "8f_newcomers holds a splat against the middle of its til
     CHECK(found({nothing, nothing, nothing, nothing}, {0, 0, 0, 0}) == "5xxxx");
 }
 
-TEST_CASE_FIXTURE(Gpu, "8f_newcomers stops a tile's error at what half a word holds, however many splats add to it") {
+TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds, however many splats add to it") {
     // A thousand discs before one tile, of which each alone adds more than is left.
     const glm::uvec2 size_px(16, 16);
     const Eye eye = test::makeEye(size_px);

@@ -20,7 +20,7 @@ enum class Rows { kOwn, kShared, kOwnHalves, kSharedHalves };
 inline bool isShared(Rows rows) { return rows == Rows::kShared || rows == Rows::kSharedHalves; }
 inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Rows::kSharedHalves; }
 
-// The longest row that 8e keeps in shared memory.
+// The longest row that resample keeps in shared memory.
 inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
 
 // What passes 8 work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to write begins
@@ -70,7 +70,7 @@ public:
         fill(tile_depths_, tileCount(), kUnwritten);
         fill(tile_mask_, maskWords(), kUnwritten);
         fill(bins_, gpu::kPriceBins, kUnwritten);
-        dispatch("8a_weigh", {rectified(), hidden_tiles, /*kKindsGiven=*/1, may_move},
+        dispatch(WeighKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .kinds_given = 1, .may_move = may_move},
                  gpu::WeighPass{.stereo = view(),
                                 .ranges = range_buffer.address<gpu::uvec2>(),
                                 .moving = moving(),
@@ -87,7 +87,7 @@ public:
                  tileGroups());
     }
     void boundDepths() {
-        dispatch("8b_depth_bounds", {areHalves(rows_)},
+        dispatch(DepthBoundsKernel{.half_colours = areHalves(rows_)},
                  gpu::DepthBoundsPass{.stereo = view(),
                                       .colours = colours_.address<gpu::vec4>(),
                                       .half_colours = colours_.address<gpu::uvec2>(),
@@ -96,7 +96,7 @@ public:
                  {groupsOver(view_.size_tiles.x, gpu::kBoundsTiles), view_.size_tiles.y});
     }
     void findEdgeRois(bool hidden_tiles = false) {
-        dispatch("8c_edge_rois", {rectified(), hidden_tiles},
+        dispatch(EdgeRoisKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles},
                  gpu::EdgeRoisPass{.stereo = view(),
                                    .bins = words(bins_),
                                    .tile_kinds = words(tile_kinds_),
@@ -105,15 +105,15 @@ public:
                  tileGroups());
     }
     void reproject(bool hidden_tiles = false, bool forward = false) {
-        dispatch("8d_reproject", {rectified(), hidden_tiles, forward},
+        dispatch(ReprojectKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .forward = forward},
                  gpu::ReprojectPass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
                  pixelGroups());
     }
-    // Splats in `order` as `scene` holds them, with what the dominant eye's 4_project counted of each; eye 1 is the affiliated one.
+    // Splats in `order` as `scene` holds them, with what the dominant eye's project counted of each; eye 1 is the affiliated one.
     void addNewcomers(const SceneOnDevice& scene, const std::vector<std::uint32_t>& order, const std::vector<gpu::uint>& dominant_tiles) {
         const Buffer order_buffer = gpu_.upload("order", order), count_buffer = gpu_.upload("dominant counts", dominant_tiles);
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(order.size())});
-        dispatch("8f_newcomers", {scene.scene.splatKind()},
+        dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
                                     .stereo = view(),
@@ -130,7 +130,7 @@ public:
     }
     struct ResampleParts {
         bool errors = false, depths = false, classes = false, components = false, forward = false;
-        bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what 8d left
+        bool moves_row = false, hidden_tiles = false;  // of the dominant eye; its pixels are moved, instead of what reproject left
         glm::vec3 background{0.0f};
         bool odd = false;  // rows alone, of two dispatches: see takeRowsApart
     };
@@ -146,9 +146,15 @@ public:
         const std::uint32_t width = view_.size_px.x;
         const bool shares = row_source != gpu::kPlacesGiven && width <= longestSharedRow(gpu_.context());
         const std::uint32_t row_steps = shares ? (width + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
-        dispatch("8e_resample",
-                 {rectified(), parts.errors, parts.depths, parts.classes, parts.components, row_steps, areHalves(rows_), parts.forward,
-                  row_source},
+        dispatch(ResampleKernel{.rectified = rectified(),
+                                .predict_errors = parts.errors,
+                                .depth = parts.depths,
+                                .classes = parts.classes,
+                                .components = parts.components,
+                                .row_steps = row_steps,
+                                .half_colours = areHalves(rows_),
+                                .forward = parts.forward,
+                                .row_source = row_source},
                  gpu::ResamplePass{.stereo = view(),
                                    .dominant = colours_.address<gpu::vec4>(),
                                    .half_dominant = colours_.address<gpu::uvec2>(),
@@ -175,8 +181,10 @@ public:
                                        .tile_kinds = words(tile_kinds_),
                                        .counters = counters(),
                                        .box_capacity = box_capacity_};
-        for (std::uint32_t step = 0; step < 3; ++step) { dispatch("8g_components", {step, areHalves(rows_)}, pass, pixelGroups()); }
-        dispatch("8g_components", {3u, areHalves(rows_)}, pass, {3, 1});
+        for (std::uint32_t step = 0; step < 3; ++step) {
+            dispatch(ComponentsKernel{.step = step, .half_colours = areHalves(rows_)}, pass, pixelGroups());
+        }
+        dispatch(ComponentsKernel{.step = 3, .half_colours = areHalves(rows_)}, pass, {3, 1});
     }
     void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
         const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});
@@ -189,7 +197,7 @@ public:
                                   .masked_tiles = lists.address<gpu::ListState>(),
                                   .counters = counters(),
                                   .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
-        dispatch("8h_price", {gaze.has_value()}, pass, tileGroups());
+        dispatch(PriceKernel{.foveated = gaze.has_value()}, pass, tileGroups());
     }
     // `visible_count` splats are in the list that patching would go over; returns the lists it will go over instead, the tiles sorted.
     struct Selected {
@@ -199,7 +207,7 @@ public:
     Selected select(bool predicted, std::size_t visible_count) {
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
         const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
-        dispatch("8i_select", {predicted},
+        dispatch(SelectKernel{.predicted = predicted},
                  gpu::SelectPass{.stereo = view(),
                                  .tile_kinds = words(tile_kinds_),
                                  .tile_prices = words(tile_prices_),
@@ -329,9 +337,9 @@ private:
         return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
     }
 
-    template <typename Pass>
-    void dispatch(const char* shader, const std::vector<std::uint32_t>& constants, const Pass& pass, glm::uvec2 groups) {
-        const Kernel& kernel = gpu_.kernel(shader, sizeof(Pass), constants);
+    template <typename K>
+    void dispatch(const K& variant, const typename K::Pass& pass, glm::uvec2 groups) {
+        const Kernel& kernel = gpu_.kernel(variant);
         gpu_.run([&](Commands& commands) { commands.dispatch(kernel, pass, groups.x, groups.y); });
     }
     void fill(const Buffer& buffer, std::size_t count, gpu::uint value) { gpu_.upload(buffer, std::vector<gpu::uint>(count, value)); }

@@ -1,5 +1,5 @@
-// Facts about the paper's choice of tiles to render, 8b, 8c and 8g: against the twin, against examples worked out by hand, and against
-// plainer algorithms.
+// Facts about the paper's choice of tiles to render, depth_bounds, edge_rois and components: against the twin, against examples worked out
+// by hand, and against plainer algorithms.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -74,7 +74,7 @@ Mask drawSpiral(glm::uvec2 size_px) {
     return mask;
 }
 
-// 8g on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill.
+// components on a mask of holes, none of them in the tiles that are marked before; against the twin's flood fill.
 void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_px, std::uint32_t boxes, bool edges) {
     // Of half floats and of floats in turn.
     const test::Rows rows = margin_px % 2 == 0 ? test::Rows::kSharedHalves : test::Rows::kShared;
@@ -84,7 +84,7 @@ void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_
     std::vector<TileKind> kinds = reference::markEdges(edges ? Borders{17, 0, 1, 20} : Borders{}, size_px);
     std::vector<Resolved> resolved;
     std::vector<std::uint8_t> classes;
-    // As 8e leaves them: holes are their own parents, and the rest are colours.
+    // As resample leaves them: holes are their own parents, and the rest are colours.
     std::vector<gpu::uint> words(words_per_pixel * mask.size(), 0x3f000000u);
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const PixelClass pixel_class = mask[i] != 0 ? PixelClass::kHole : i % 5 == 0 ? PixelClass::kGap : PixelClass::kCovered;
@@ -117,7 +117,7 @@ void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8b_depth_bounds counts the twin's depths") {
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts the twin's depths") {
     std::uint32_t all_flips = 0;
     for (StereoCase c : test::makeStereoCases()) {
         for (const test::Rows rows : {test::Rows::kOwn, test::Rows::kShared, test::Rows::kSharedHalves}) {
@@ -139,7 +139,7 @@ TEST_CASE_FIXTURE(Gpu, "8b_depth_bounds counts the twin's depths") {
     CHECK(all_flips <= 4);  // measured: none
 }
 
-TEST_CASE_FIXTURE(Gpu, "8b_depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
+TEST_CASE_FIXTURE(Gpu, "depth_bounds counts depths beyond its range as the last, and pixels of little weight or no depth not at all") {
     StereoCase c = makePlainCase({20, 10});
     for (std::size_t i = 0; i < c.dominant.rgba.size(); ++i) { c.dominant.rgba[i].w = i % 2 == 0 ? 1.0 : 0.5; }
     const std::array<double, 5> inverse_depths{1.0, 1e-9, 1e9, 0.25, -1.0};
@@ -200,7 +200,7 @@ TEST_CASE("edge ROIs of parallel eyes, by hand") {
     CHECK(columns({0, 1, 0, 16}, {16, 64}) == "e..e");
 }
 
-TEST_CASE_FIXTURE(Gpu, "8c_edge_rois finds the twin's borders and tiles") {
+TEST_CASE_FIXTURE(Gpu, "edge_rois finds the twin's borders and tiles") {
     for (StereoCase c : test::makeStereoCases()) {
         const auto bins = reference::boundDepths(c.dominant, c.settings.depth_choice);
         for (const int margin_px : {0, 32}) {
@@ -228,8 +228,7 @@ TEST_CASE_FIXTURE(Gpu, "8c_edge_rois finds the twin's borders and tiles") {
     }
 }
 
-TEST_CASE_FIXTURE(Gpu,
-                  "8c_edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
+TEST_CASE_FIXTURE(Gpu, "edge_rois marks what the dominant lens hides and leaves hidden tiles as they are, over many workgroups of tiles") {
     for (const glm::uvec2 size_tiles : {glm::uvec2(8, 6), glm::uvec2(43, 3), glm::uvec2(33, 31)}) {
         for (const Side dominant : {kLeft, kRight}) {
             StereoCase c = makePlainCase(16u * size_tiles - 3u, dominant);
@@ -259,7 +258,7 @@ TEST_CASE_FIXTURE(Gpu,
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8g_components groups holes as a flood fill does, whatever their shape") {
+TEST_CASE_FIXTURE(Gpu, "components groups holes as a flood fill does, whatever their shape") {
     std::mt19937 random(1);
     for (const glm::uvec2 size_px : {glm::uvec2(1, 1), glm::uvec2(17, 33), glm::uvec2(128, 96)}) {
         CAPTURE(size_px.x);
@@ -288,7 +287,7 @@ TEST_CASE_FIXTURE(Gpu, "8g_components groups holes as a flood fill does, whateve
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "8g_components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
+TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles of each pixel, the same ones in every run") {
     std::mt19937 random(2);
     const glm::uvec2 size_px(128, 96);
     const Mask scattered = drawMask(size_px, [&](auto, auto) { return random() % 1000 < 4; });

@@ -1,4 +1,4 @@
-// Facts about the passes over tiles, 4_project and 5_bin to 7_rasterize, each started from what the twin's pass before it left.
+// Facts about the passes over tiles, project and bin to rasterize, each started from what the twin's pass before it left.
 #include "engine/passes/sort.h"
 #include "engine/picture/metrics.h"
 #include "engine/reference/splat.h"
@@ -36,14 +36,14 @@ std::vector<ViewedScene> allScenes() {
 
 bool inOrder(const TilePair& a, const TilePair& b) { return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile; }
 
-// Passes 4 and 5 from the twin's order: the pairs as 5_bin writes them; those in the tiles of a mask alone, if there is one.
+// Passes 4 and 5 from the twin's order: the pairs as bin writes them; those in the tiles of a mask alone, if there is one.
 std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const std::vector<gpu::uint>& mask = {}) {
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const Buffer mask_buffer = gpu.upload("tile mask", mask);
     const auto tile_mask = mask.empty() ? gpu::DeviceAddress<gpu::uint>{} : mask_buffer.address<gpu::uint>();
     const std::uint32_t masked = mask.empty() ? 0 : 1;
-    const Kernel& kernel = gpu.kernel("5_bin", sizeof(gpu::BinPass));
-    const Kernel& large_kernel = gpu.kernel("5_bin_large", sizeof(gpu::BinPass), {masked, device.scene.splatShape()});
+    const Kernel& kernel = gpu.kernel(BinKernel{});
+    const Kernel& large_kernel = gpu.kernel(BinLargeKernel{.masked = masked, .splat_kind = device.scene.splatShape()});
     const auto capacity = static_cast<std::uint32_t>(4 * twin.pairs.size() + 1000);
     const test::ProjectedOnDevice projected = test::projectOnDevice(gpu, device, twin.order, capacity, tile_mask);
     const Buffer tiles = gpu.allocate<gpu::uint>("tiles", capacity), ranks = gpu.allocate<gpu::uint>("ranks", capacity);
@@ -88,7 +88,7 @@ double greatestAlpha(const reference::ProjectedSplat& splat, std::uint32_t tile,
 }
 
 std::vector<glm::uvec2> rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, glm::uvec2 size_px) {
-    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass), {0, 0});
+    const Kernel& kernel = gpu.kernel(TileRangesKernel{});
     const Buffer tiles = gpu.upload("tiles", sorted_tiles), pairs = gpu.upload("pairs", std::vector{test::makeList(sorted_tiles.size())});
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
     const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
@@ -102,18 +102,18 @@ std::vector<glm::uvec2> rangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t
     return gpu.readBack<glm::uvec2>(ranges, tile_count);
 }
 
-// 6_tile_ranges under a mask, on pictures that hold 7 everywhere before.
+// tile_ranges under a mask, on pictures that hold 7 everywhere before.
 struct MaskedRanges {
     std::vector<glm::uvec2> ranges;
     std::vector<std::uint32_t> full;  // ascending
-    glm::uvec3 groups;                // of 7_rasterize
+    glm::uvec3 groups;                // of rasterize
     std::vector<glm::vec4> colours;   // unpacked, where they are half floats
     std::vector<float> depths;
     std::uint32_t groups_done;  // of the list of pairs, afterwards
 };
 MaskedRanges maskedRangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& sorted_tiles, const std::vector<std::uint32_t>& listed,
                                   glm::uvec2 size_px, glm::vec3 background, bool half_floats) {
-    const Kernel& kernel = gpu.kernel("6_tile_ranges", sizeof(gpu::TileRangesPass), {1, half_floats});
+    const Kernel& kernel = gpu.kernel(TileRangesKernel{.masked = 1, .half_colours = half_floats});
     const std::size_t pixels = std::size_t{size_px.x} * size_px.y;
     const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
     const std::size_t tile_count = std::size_t{size_tiles.x} * size_tiles.y;
@@ -160,7 +160,7 @@ MaskedRanges maskedRangesOnDevice(Gpu& gpu, const std::vector<std::uint32_t>& so
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "4_project and 5_bin make every pair of the twin and few more, front to back") {
+TEST_CASE_FIXTURE(Gpu, "project and bin make every pair of the twin and few more, front to back") {
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(Gpu, "4_project and 5_bin make every pair of the twin and few 
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "under a mask 4_project and 5_bin make the same pairs but for the tiles outside, whatever the mask") {
+TEST_CASE_FIXTURE(Gpu, "under a mask project and bin make the same pairs but for the tiles outside, whatever the mask") {
     std::mt19937 random(1);
     // More columns of tiles than a word of the mask has bits, a scene of which many splats have large boxes, and boxes of all widths.
     std::vector<test::Splat> wide_splats;
@@ -240,7 +240,7 @@ TEST_CASE_FIXTURE(Gpu, "sorting by tile keeps the depth order within each") {
     CHECK(wrong == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "6_tile_ranges finds the twin's ranges, and tiles without pairs have empty ones") {
+TEST_CASE_FIXTURE(Gpu, "tile_ranges finds the twin's ranges, and tiles without pairs have empty ones") {
     for (const ViewedScene& view : allScenes()) {
         CAPTURE(view.name);
         const TwinStages twin(view, kSettings);
@@ -256,7 +256,7 @@ TEST_CASE_FIXTURE(Gpu, "6_tile_ranges finds the twin's ranges, and tiles without
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "6_tile_ranges looks through any number of pairs, and past those of no tile") {
+TEST_CASE_FIXTURE(Gpu, "tile_ranges looks through any number of pairs, and past those of no tile") {
     const std::uint32_t count = 5000000;
     std::vector<std::uint32_t> tiles(count, 1);
     tiles[count - 2] = 2;
@@ -266,7 +266,7 @@ TEST_CASE_FIXTURE(Gpu, "6_tile_ranges looks through any number of pairs, and pas
     CHECK(rangesOnDevice(*this, {}, {32, 16}) == std::vector(2, glm::uvec2(0)));
 }
 
-TEST_CASE_FIXTURE(Gpu, "under a mask 6_tile_ranges lists the tiles with pairs, and clears those without and no others") {
+TEST_CASE_FIXTURE(Gpu, "under a mask tile_ranges lists the tiles with pairs, and clears those without and no others") {
     std::mt19937 random(3);
     for (const glm::uvec2 size_px : {glm::uvec2(300, 170), glm::uvec2(16, 16), glm::uvec2(1001, 7)}) {
         const glm::uvec2 size_tiles = (size_px + 15u) / 16u;
@@ -311,7 +311,7 @@ TEST_CASE_FIXTURE(Gpu, "under a mask 6_tile_ranges lists the tiles with pairs, a
 
 namespace {
 
-// What 7_rasterize reads, as the twin leaves it.
+// What rasterize reads, as the twin leaves it.
 struct RasterInputs {
     RasterInputs(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const reference::Settings& settings)
         : pixels(std::size_t{view.eye.size_px.x} * view.eye.size_px.y), eye_view(viewOf(view.eye, settings.near)) {
@@ -338,16 +338,19 @@ struct RasterInputs {
     gpu::RasterizePass pass{};
 };
 
-constexpr std::uint32_t kThreadsPerCell = 32;
+// `kernel` for a scene's splats, and 32 threads a cell.
+RasterizeKernel rasterizeKernel(RasterizeKernel kernel, const Scene& scene) {
+    kernel.threads_per_cell = 32;
+    kernel.local_size_x = gpu::kCellsPerTile * kernel.threads_per_cell;
+    kernel.splat_kind = test::shapeOf(scene);
+    return kernel;
+}
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "7_rasterize blends the twin's splats, pairs and ranges to the twin's picture") {
+TEST_CASE_FIXTURE(Gpu, "rasterize blends the twin's splats, pairs and ranges to the twin's picture") {
     for (const ViewedScene& view : allScenes()) {
-        const Kernel& kernel =
-            this->kernel("7_rasterize", sizeof(gpu::RasterizePass),
-                         {kThreadsPerCell, /*depth=*/1, /*moments=*/1, /*moving=*/0, /*spread=*/0, /*masked=*/0, gpu::kDepthInverse,
-                          /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
+        const Kernel& kernel = this->kernel(rasterizeKernel({.depth = 1, .moments = 1, .depth_choice = gpu::kDepthInverse}, view.scene));
         CAPTURE(view.name);
         reference::Settings settings = kSettings;
         settings.background = {0.2, 0.4, 0.1};
@@ -384,16 +387,14 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize blends the twin's splats, pairs and ranges t
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "7_rasterize rounds colours to half floats where these are wanted") {
+TEST_CASE_FIXTURE(Gpu, "rasterize rounds colours to half floats where these are wanted") {
     const ViewedScene view = test::viewBuiltin("builtin:fence", {250, 190});
     const TwinStages twin(view, kSettings);
     std::array<std::vector<gpu::uvec2>, 2> pictures;
     for (const bool halves : {false, true}) {
         RasterInputs inputs(*this, view, twin, kSettings);
         inputs.pass.half_colours = inputs.colours.address<gpu::uvec2>();
-        const Kernel& kernel = this->kernel("7_rasterize", sizeof(gpu::RasterizePass),
-                                            {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/0, /*spread=*/0, /*masked=*/0,
-                                             gpu::kDepthInverse, halves, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell});
+        const Kernel& kernel = this->kernel(rasterizeKernel({.depth_choice = gpu::kDepthInverse, .half_colours = halves}, view.scene));
         run([&](Commands& commands) {
             commands.dispatch(kernel, inputs.pass, inputs.eye_view.size_tiles.x, inputs.eye_view.size_tiles.y);
         });
@@ -417,7 +418,7 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize rounds colours to half floats where these ar
     CHECK(other == 0);
 }
 
-TEST_CASE_FIXTURE(Gpu, "7_rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
+TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and none where its depth is not one") {
     std::size_t pixels = 0, other = 0, other_spread = 0;
     for (const ViewedScene& view : allScenes()) {
         for (const reference::DepthChoice choice :
@@ -435,10 +436,8 @@ TEST_CASE_FIXTURE(Gpu, "7_rasterize leaves the word that each pixel moves by, an
                 // Rows of both, one after the other, as where they share memory with a picture.
                 const std::size_t width = view.eye.size_px.x;
                 const auto rasterize = [&](bool even_rows) {
-                    const Kernel& kernel = this->kernel(
-                        "7_rasterize", sizeof(gpu::RasterizePass),
-                        {kThreadsPerCell, /*depth=*/0, /*moments=*/0, /*moving=*/1, spreads, /*masked=*/0, test::depthChoiceOf(choice),
-                         /*half_colours=*/0, test::shapeOf(view.scene), gpu::kCellsPerTile * kThreadsPerCell, even_rows});
+                    const Kernel& kernel = this->kernel(rasterizeKernel(
+                        {.moving = 1, .spread = spreads, .depth_choice = test::depthChoiceOf(choice), .even_rows = even_rows}, view.scene));
                     const Buffer rows = upload("rows", std::vector<gpu::uint>(4 * inputs.pixels, 0xcdcdcdcdu));
                     inputs.pass.arrivals = rows.address<gpu::uint>();
                     inputs.pass.moving = rows.address<gpu::uint>(width * sizeof(gpu::uint));

@@ -325,7 +325,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     const std::filesystem::path sources = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders";
     const auto copyOf = [&](const std::string& name, const std::string& line, const std::string& replacement) {
         std::filesystem::copy(sources, work.path / name, std::filesystem::copy_options::recursive);
-        const std::filesystem::path file = work.path / name / "10_present.comp";
+        const std::filesystem::path file = work.path / name / "present/present.comp";
         std::ifstream in(file);
         const std::string text(std::istreambuf_iterator<char>(in), {});
         const std::size_t at = text.find(line);
@@ -356,20 +356,20 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     };
     const ViewRun good = click("good", sources.string());
     std::size_t count = 0;
-    for (const auto& file : std::filesystem::directory_iterator(sources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
+    for (const auto& file : std::filesystem::recursive_directory_iterator(sources)) { count += file.path().extension() == ".comp" ? 1 : 0; }
     CHECK(says(good, fmt::format("{} shaders reloaded in ", count)));
     CHECK(sameAfterwards(good));
     const ViewRun bad = click("bad", "broken");
-    CHECK(says(bad, "shaders stay as they were: broken/10_present.comp:"));
+    CHECK(says(bad, "shaders stay as they were: broken/present/present.comp:"));
     CHECK(says(bad, "nonsense"));
     CHECK(sameAfterwards(bad));
     const ViewRun black = click("black-run", "black");
     CHECK(says(black, " shaders reloaded in "));
     CHECK_FALSE(sameAfterwards(black));
-    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/1_cull.comp is not there"));
+    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/sort/cull.comp is not there"));
     // A pipe would keep the compiler, and the wearer, waiting.
-    REQUIRE(work.runCommand("rm broken/10_present.comp && mkfifo broken/10_present.comp").exit_code == 0);
-    CHECK(says(click("pipe", "broken"), "shaders stay as they were: broken/10_present.comp is not a file"));
+    REQUIRE(work.runCommand("rm broken/present/present.comp && mkfifo broken/present/present.comp").exit_code == 0);
+    CHECK(says(click("pipe", "broken"), "shaders stay as they were: broken/present/present.comp is not a file"));
 }
 
 TEST_CASE("nobody reloads shaders who was not told where they are") {
@@ -380,7 +380,7 @@ TEST_CASE("nobody reloads shaders who was not told where they are") {
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
     const ViewRun told = runView(work, "told", script, kWall + " --mode shared", kValidated + " BINOSPLAT_SHADERS=nowhere");
-    CHECK(says(told, "shaders stay as they were: nowhere/1_cull.comp is not there"));
+    CHECK(says(told, "shaders stay as they were: nowhere/sort/cull.comp is not there"));
 }
 
 TEST_CASE("the menu button hides the panel and brings it before the eyes") {

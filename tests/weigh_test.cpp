@@ -1,4 +1,4 @@
-// Facts about 8a: what a tile costs, which tiles are not worth moving, and whether anything is.
+// Facts about weigh: what a tile costs, which tiles are not worth moving, and whether anything is.
 #include "tests/stereo_cases.h"
 #include "tests/stereo_stages.h"
 
@@ -59,7 +59,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
         const bool same = hidden || costs[t] == expected.costs[t];
         other += same ? 0 : 1;
         wrong_depths += hidden || depths[t] == expected_depths[t] ? 0 : 1;
-        // Where nothing is worth moving, 8i says so of each tile.
+        // Where nothing is worth moving, select says so of each tile.
         const auto expected_kind = static_cast<gpu::uint>(expected.kinds[t]);
         wrong_kinds += !same || kinds[t] == expected_kind || (!expected.moves && kinds[t] == 0 && expected_kind == gpu::kTileCheap) ? 0 : 1;
         picture_cost += hidden ? 0 : costs[t];
@@ -105,7 +105,7 @@ StereoCase makeStill(glm::uvec2 size_px) {
 
 }  // namespace
 
-TEST_CASE_FIXTURE(Gpu, "8a_weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
+TEST_CASE_FIXTURE(Gpu, "weigh finds the twin's costs and kinds, for eyes of every kind and whatever moving costs") {
     std::size_t tiles = 0, other = 0;
     std::mt19937 random(5);
     for (StereoCase c : test::makeStereoCases()) {
@@ -133,7 +133,7 @@ TEST_CASE_FIXTURE(Gpu, "8a_weigh finds the twin's costs and kinds, for eyes of e
     CHECK(other <= 2);
 }
 
-TEST_CASE_FIXTURE(Gpu, "8a_weigh counts exactly over any number of tiles, from one to many workgroups") {
+TEST_CASE_FIXTURE(Gpu, "weigh counts exactly over any number of tiles, from one to many workgroups") {
     std::mt19937 random(6);
     for (const glm::uvec2 size_tiles :
          {glm::uvec2(1, 1), glm::uvec2(127, 1), glm::uvec2(1, 128), glm::uvec2(43, 3), glm::uvec2(33, 31), glm::uvec2(100, 50)}) {
@@ -152,7 +152,7 @@ TEST_CASE_FIXTURE(Gpu, "8a_weigh counts exactly over any number of tiles, from o
 }
 
 TEST_CASE_FIXTURE(Gpu,
-                  "8a_weigh moves nothing where that saves no more than the shared part of moving all, as the twin, and holds costs to "
+                  "weigh moves nothing where that saves no more than the shared part of moving all, as the twin, and holds costs to "
                   "what a word has room for") {
     // Four tiles that cost 40 each to move: more than a part of 160 must be saved.
     StereoCase c = makeStill({64, 16});
@@ -183,7 +183,7 @@ TEST_CASE_FIXTURE(Gpu,
     CHECK(device.readTileCosts() == std::vector<gpu::uint>{gpu::kMaxTileCost, gpu::kMaxTileCost, gpu::kMaxTileCost, 116});
 }
 
-TEST_CASE_FIXTURE(Gpu, "8a_weigh renders what the dominant eye cannot see, as a headset's outer columns") {
+TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a headset's outer columns") {
     // 10 degrees wider outwards than inwards, or canted by 8, or neither.
     const glm::uvec2 size_px(160, 96);
     const double inwards = std::tan(0.6), outwards = std::tan(0.6 + 10.0 * glm::pi<double>() / 180.0);

@@ -49,7 +49,7 @@ Json resultJson(const BenchResult& result) {
               {"method", result.method},
               {"mode", modeNameOf(result)},
               {"frames", result.frames},
-              {"gpu_ms", timesJson(result.pass_ms)},
+              {"gpu_ms", timesJson(byLabel(result.pass_ms))},
               {"stage_ms", timesJson(stagesOf(result.mode, result.pass_ms))},
               {"gpu_total_ms", result.total_ms},
               {"gpu_total_least_ms", result.least_ms},
@@ -141,9 +141,8 @@ std::vector<Column> allColumns(const BenchRun& run) {
     for (const std::string stage : kStages) {
         columns.push_back({stage + " ms", [stage](const BenchResult& r) { return timeCell(stagesOf(r.mode, r.pass_ms), stage); }});
     }
-    for (const std::string& pass : namesIn(
-             run, [](const BenchResult& r) -> const auto& { return r.pass_ms; })) {
-        columns.push_back({pass + " ms", [pass](const BenchResult& r) { return timeCell(r.pass_ms, pass); }});
+    for (const std::string& pass : namesIn(run, [](const BenchResult& r) { return byLabel(r.pass_ms); })) {
+        columns.push_back({pass + " ms", [pass](const BenchResult& r) { return timeCell(byLabel(r.pass_ms), pass); }});
     }
     for (const std::string& counter : namesIn(
              run, [](const BenchResult& r) -> const auto& { return r.counters; })) {

@@ -18,7 +18,7 @@ namespace {
 struct Runner {
     BenchMethod method;
     std::vector<double> total_ms;
-    std::map<std::string, std::vector<double>> pass_ms;
+    std::map<std::string, std::vector<double>> pass_ms;  // by the text of its label
     FrameResult last, compared;
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;
@@ -27,7 +27,7 @@ struct Runner {
     void count(const FrameResult& result) {
         last = result;
         total_ms.push_back(result.gpu_total_ms);
-        for (const auto& [name, ms] : addUp(result.gpu_ms)) { pass_ms[name].push_back(ms); }
+        for (const auto& [label, ms] : addUp(result.gpu_ms)) { pass_ms[label.text()].push_back(ms); }
     }
 };
 
@@ -44,7 +44,9 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     if (!runner.is_twin) { result.mode = runner.method.stereo.mode; }
     result.dominant = runner.method.stereo.dominant;
     result.frames = static_cast<std::uint32_t>(runner.total_ms.size());
-    for (const auto& [name, ms] : addUp(runner.last.gpu_ms)) { result.pass_ms.emplace_back(name, median(runner.pass_ms.at(name))); }
+    for (const auto& [label, ms] : addUp(runner.last.gpu_ms)) {
+        result.pass_ms.push_back({label, median(runner.pass_ms.at(label.text()))});
+    }
     result.total_ms = median(runner.total_ms);
     result.frame_ms = runner.total_ms;
     result.least_ms = std::ranges::min(runner.total_ms);
@@ -61,8 +63,13 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
 
 // The float64 twin of `mono` on the CPU, as a frame of its own; wall-clock time.
 FrameResult renderTwin(const BenchPoint& point) {
-    static constexpr std::array<const char*, reference::kPassCount> kNames{"1_cull", "2_compact",    "3_sort_depth", "4_project",
-                                                                           "5_bin",  "6_sort_tiles", "7_rasterize"};
+    const std::array<PassLabel, reference::kPassCount> labels{{{Role::kNone, FrameStage::kSort, "cull"},
+                                                               {Role::kNone, FrameStage::kSort, "compact"},
+                                                               {Role::kNone, FrameStage::kSort, "sort_depth"},
+                                                               {Role::kNone, FrameStage::kSplat, "project"},
+                                                               {Role::kNone, FrameStage::kSplat, "bin"},
+                                                               {Role::kNone, FrameStage::kSplat, "sort_tiles"},
+                                                               {Role::kNone, FrameStage::kSplat, "rasterize"}}};
     std::array<double, reference::kPassCount> seconds{};
     reference::Settings settings;
     settings.near = point.run.camera.near;
@@ -72,7 +79,7 @@ FrameResult renderTwin(const BenchPoint& point) {
     const reference::Picture picture = reference::render(point.scene, point.cameras.middle, settings);
     FrameResult result;
     result.gpu_total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    for (std::size_t pass = 0; pass < kNames.size(); ++pass) { result.gpu_ms.emplace_back(kNames[pass], 1000.0 * seconds[pass]); }
+    for (std::size_t pass = 0; pass < labels.size(); ++pass) { result.gpu_ms.push_back({labels[pass], 1000.0 * seconds[pass]}); }
     return result;
 }
 

@@ -31,7 +31,7 @@ struct BenchResult {
     std::uint64_t splats = 0;
     glm::uvec2 size_px{0, 0};  // per eye
     std::uint32_t frames = 0;
-    NamedTimes pass_ms;                                    // in frame order
+    PassTimes pass_ms;                                     // in frame order
     double total_ms = 0.0, least_ms = 0.0, most_ms = 0.0;  // the whole pair (one eye for mono)
     std::vector<double> frame_ms;                          // of each frame, in turn with those of the point's other methods
     std::map<std::string, std::uint64_t> counters;

@@ -1,39 +1,57 @@
 // Which pass belongs to which stage.
 #include "app/bench/bench_stages.h"
 
-#include <map>
+#include <algorithm>
 
 namespace binosplat {
 
 namespace {
 
-// Bare pass: without the eyes in front.
-std::string bareName(const std::string& pass) { return pass.substr(pass.rfind(' ') + 1); }
-
-std::string stageOf(std::optional<Mode> mode, const std::string& pass) {
-    const std::string bare = bareName(pass);
-    if (bare.starts_with("8d") || bare.starts_with("8e")) { return "reprojection"; }
-    if (bare.starts_with("8")) { return "ROI choice"; }
-    if (bare < "4") { return "cull+sort"; }
-    if (!pass.starts_with("affiliated ")) { return "dominant"; }
+std::string columnOf(std::optional<Mode> mode, const PassLabel& label) {
+    switch (label.stage) {
+        case FrameStage::kSort:
+            return "cull+sort";
+        case FrameStage::kWarp:
+            return "reprojection";
+        case FrameStage::kChoose:
+            return "ROI choice";
+        case FrameStage::kPresent:
+            return "present";
+        case FrameStage::kSplat:
+            break;
+    }
+    if (label.role != Role::kAffiliated) { return "dominant"; }
     return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
 }
 
 }  // namespace
 
-NamedTimes byPass(const NamedTimes& pass_ms) {
-    std::map<std::string, double> sums;  // by the number in front of a pass's name, nearly the order of the frame
-    for (const auto& [name, ms] : pass_ms) { sums[bareName(name)] += ms; }
-    return {sums.begin(), sums.end()};
+NamedTimes byLabel(const PassTimes& pass_ms) {
+    NamedTimes times;
+    for (const auto& [label, ms] : pass_ms) { times.emplace_back(label.text(), ms); }
+    return times;
 }
 
-NamedTimes stagesOf(std::optional<Mode> mode, const NamedTimes& pass_ms) {
+NamedTimes byPass(const PassTimes& pass_ms) {
+    NamedTimes sums;
+    for (const auto& [label, ms] : pass_ms) {
+        const auto found = std::ranges::find(sums, label.pass, &std::pair<std::string, double>::first);
+        if (found == sums.end()) {
+            sums.emplace_back(label.pass, ms);
+        } else {
+            found->second += ms;
+        }
+    }
+    return sums;
+}
+
+NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms) {
     NamedTimes stages;
     for (const char* stage : kStages) {
         double sum = 0.0;
         bool ran = false;
-        for (const auto& [pass, ms] : pass_ms) {
-            if (stageOf(mode, pass) != stage) { continue; }
+        for (const auto& [label, ms] : pass_ms) {
+            if (columnOf(mode, label) != stage) { continue; }
             sum += ms;
             ran = true;
         }

@@ -70,20 +70,22 @@ std::string find(const NamedTimes& times, const std::string& name) {
 }
 
 std::string timesTable(const std::vector<const BenchResult*>& point) {
-    std::map<std::string, bool> passes;
+    std::vector<std::string> passes;
     for (const BenchResult* r : point) {
-        for (const auto& [name, ms] : byPass(r->pass_ms)) { passes[name] = true; }
+        for (const auto& [name, ms] : byPass(r->pass_ms)) {
+            if (std::ranges::find(passes, name) == passes.end()) { passes.push_back(name); }
+        }
     }
     TextColumns columns;
     std::vector<std::string> head{"ms by stage, then by pass"};
     for (const char* stage : kStages) { head.emplace_back(stage); }
-    for (const auto& [name, there] : passes) { head.push_back(name); }
+    head.insert(head.end(), passes.begin(), passes.end());
     columns.addRow(head);
     for (const BenchResult* r : point) {
         std::vector<std::string> row{r->method};
         const NamedTimes stages = stagesOf(r->mode, r->pass_ms), times = byPass(r->pass_ms);
         for (const char* stage : kStages) { row.push_back(find(stages, stage)); }
-        for (const auto& [name, there] : passes) { row.push_back(find(times, name)); }
+        for (const std::string& name : passes) { row.push_back(find(times, name)); }
         columns.addRow(std::move(row));
     }
     return columns.text();

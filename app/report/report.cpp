@@ -69,7 +69,7 @@ Json eyesJson(const Cameras& cameras, bool mono) {
 // `json` and what a frame took.
 Json withCosts(Json json, const FrameResult& frame) {
     Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
-    for (const auto& [name, ms] : addUp(frame.gpu_ms)) { passes[name] = ms; }
+    for (const auto& [label, ms] : addUp(frame.gpu_ms)) { passes[label.text()] = ms; }
     for (const auto& [name, count] : frame.counters) { counters[name] = count; }
     for (const auto& [name, count] : frame.stereo_bytes_per_pixel) { bytes[name] = count; }
     json["gpu_ms"] = passes;
@@ -92,14 +92,14 @@ std::vector<double> sortedTotals(const PathReport& report) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times) {
-    std::vector<std::pair<std::string, double>> sums;
-    for (const auto& [name, ms] : times) {
-        const auto found = std::ranges::find(sums, name, &std::pair<std::string, double>::first);
+PassTimes addUp(const PassTimes& times) {
+    PassTimes sums;
+    for (const PassTime& time : times) {
+        const auto found = std::ranges::find(sums, time.label, &PassTime::label);
         if (found == sums.end()) {
-            sums.emplace_back(name, ms);
+            sums.push_back(time);
         } else {
-            found->second += ms;
+            found->ms += time.ms;
         }
     }
     return sums;
@@ -143,8 +143,8 @@ std::string reportTable(const FrameReport& report) {
     std::string table = fmt::format("{}, {}, {}x{} per eye, on {}\n", report.options.scene, nameOf(report.options.run.stereo.mode),
                                     report.cameras.middle.size_px.x, report.cameras.middle.size_px.y, report.device);
     const double percent = report.frame.gpu_total_ms > 0.0 ? 100.0 / report.frame.gpu_total_ms : 0.0;
-    for (const auto& [name, ms] : addUp(report.frame.gpu_ms)) {
-        table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", name, ms, ms * percent);
+    for (const auto& [label, ms] : addUp(report.frame.gpu_ms)) {
+        table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", label.text(), ms, ms * percent);
     }
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.frame.gpu_total_ms);
     for (const auto& [name, count] : report.frame.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }

@@ -33,7 +33,7 @@ struct PathReport {
 };
 
 // Times by name; entries of the same name are added up, in order of first appearance.
-std::vector<std::pair<std::string, double>> addUp(const std::vector<std::pair<std::string, double>>& times);
+PassTimes addUp(const PassTimes& times);
 
 std::string reportJson(const FrameReport& report);
 

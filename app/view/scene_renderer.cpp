@@ -20,11 +20,11 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
 double losslessMs(const FrameResult& result) {
     double once_ms = 0.0, dominant_ms = 0.0;
     bool culls_both = false;
-    for (const auto& [pass, ms] : result.gpu_ms) {
-        culls_both = culls_both || pass.starts_with("both ");
-        if (pass.starts_with("dominant ")) {
+    for (const auto& [label, ms] : result.gpu_ms) {
+        culls_both = culls_both || label.role == Role::kBoth;
+        if (label.role == Role::kDominant) {
             dominant_ms += ms;
-        } else if (!pass.starts_with("affiliated ")) {
+        } else if (label.role != Role::kAffiliated) {
             once_ms += ms;  // for both, or after them: the way to the headset, the panel
         }
     }

@@ -54,8 +54,9 @@ std::string firstError(const fs::path& log, const fs::path& source) {
     return source.string() + " does not compile";
 }
 
-std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& name, const fs::path& workshop) {
-    const fs::path source = folder / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
+std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& stage, const std::string& name,
+                                         const fs::path& workshop) {
+    const fs::path source = folder / stage / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
     std::error_code ignored;
     check(fs::exists(source, ignored), "{} is not there", source.string());
     check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
@@ -74,8 +75,9 @@ fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path
 ShaderWords compileShaders(const fs::path& folder) {
     const Workshop workshop;
     std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
-    for (const std::string_view name : embeddedShaderNames()) {
-        results.emplace_back(name, std::async(std::launch::async, compileShader, folder, std::string(name), workshop.path));
+    for (const auto& [stage, name] : embeddedShaderNames()) {
+        results.emplace_back(name,
+                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), workshop.path));
     }
     ShaderWords shaders;
     for (auto& [name, words] : results) { shaders[name] = words.get(); }

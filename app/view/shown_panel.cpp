@@ -69,7 +69,7 @@ OverlayActions ShownPanel::layOut(HeadsetStay* hung, const WindowInput& window, 
 
 void ShownPanel::record(Commands& commands, HeadsetStay* stay, MirrorWindow* window) {
     if (!image_ && window == nullptr) { return; }
-    commands.beginPass("panel");
+    commands.beginPass({Role::kNone, FrameStage::kPresent, "panel"});
     canvas_.record(commands);
     if (image_) {
         canvas_.copyTo(commands, image_);

@@ -14,6 +14,11 @@ constexpr std::uint32_t kMaxTimestamps = 256;
 
 }  // namespace
 
+std::string PassLabel::text() const {
+    constexpr std::array<const char*, 4> kRoles{"", "both ", "dominant ", "affiliated "};
+    return kRoles[static_cast<std::size_t>(role)] + pass;
+}
+
 Commands::Commands(const Context& context) : context_(context) {
     pool_ = context.device().createCommandPool({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, context.queueFamily()});
     vk::raii::CommandBuffers buffers(context.device(), vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1));
@@ -35,7 +40,7 @@ Commands::~Commands() {
 void Commands::begin() {
     assert(!under_way_);
     in_pass_ = false;  // of what was dropped
-    pass_names_.clear();
+    passes_.clear();
     timestamp_count_ = 0;
     count_ = 0;
     command_buffer_.reset();
@@ -49,10 +54,10 @@ void Commands::writeTimestamp() {
     ++timestamp_count_;
 }
 
-void Commands::beginPass(const std::string& name) {
+void Commands::beginPass(const PassLabel& label) {
     endPass();
-    if (context_.hasLabels()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name.c_str())); }
-    pass_names_.push_back(name);
+    if (context_.hasLabels()) { command_buffer_.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(label.text().c_str())); }
+    passes_.push_back(label);
     writeTimestamp();
     in_pass_ = true;
 }
@@ -224,8 +229,8 @@ void Commands::wait() {
     check(status == vk::Result::eSuccess, "{}: no timestamps: {}", context_.deviceName(), vk::to_string(status));
     const std::uint64_t mask = context_.timestampMask();
     const double ms_per_tick = context_.timestampPeriodNs() * 1e-6;
-    for (std::size_t i = 0; i < pass_names_.size(); ++i) {
-        times_.emplace_back(pass_names_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick);
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+        times_.push_back({passes_[i], static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * ms_per_tick});
     }
     total_ms_ = static_cast<double>((ticks.back() - ticks.front()) & mask) * ms_per_tick;
 }

@@ -12,8 +12,27 @@
 
 namespace binosplat {
 
-// Milliseconds by pass, in the order of the frame; a pass that ran for both eyes has an entry for each.
-using PassTimes = std::vector<std::pair<std::string, double>>;
+// Whom a pass is for.
+enum class Role { kNone, kBoth, kDominant, kAffiliated };
+
+// What a pass is called in reports and in captures of a frame.
+struct PassLabel {
+    Role role = Role::kNone;
+    FrameStage stage = FrameStage::kSplat;
+    std::string pass;
+
+    [[nodiscard]] std::string text() const;  // "dominant rasterize"
+    bool operator==(const PassLabel&) const = default;
+};
+
+struct PassTime {
+    PassLabel label;
+    double ms = 0.0;
+    bool operator==(const PassTime&) const = default;
+};
+
+// In the order of the frame; a pass that ran for both eyes has an entry for each.
+using PassTimes = std::vector<PassTime>;
 
 class Commands {
 public:
@@ -25,8 +44,8 @@ public:
 
     // begin, any of the recording calls, submit, wait; then times() may be asked for, and begin again.
     void begin();
-    // Everything up to the next beginPass counts as the pass `name`.
-    void beginPass(const std::string& name);
+    // Everything up to the next beginPass counts as this pass.
+    void beginPass(const PassLabel& label);
     void endPass();
 
     // Each waits for all that was recorded before it.
@@ -99,7 +118,7 @@ private:
     vk::raii::CommandBuffer command_buffer_{nullptr};
     vk::raii::Fence fence_{nullptr};
     vk::raii::QueryPool timestamps_{nullptr};
-    std::vector<std::string> pass_names_;
+    std::vector<PassLabel> passes_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;
     bool in_pass_ = false, under_way_ = false;

@@ -14,20 +14,15 @@ std::vector<std::uint32_t> KernelVariant::values() const {
     return values;
 }
 
-KernelTable everyVariant(const std::string& shader, std::uint32_t push_bytes,
-                         std::initializer_list<std::pair<const char*, std::uint32_t>> counts) {
-    KernelTable table{{shader, push_bytes, {}}};
-    for (const auto& [name, count] : counts) {
-        KernelTable longer;
-        for (const KernelVariant& shorter : table) {
-            for (std::uint32_t value = 0; value < count; ++value) {
-                longer.push_back(shorter);
-                longer.back().constants.emplace_back(name, value);
-            }
-        }
-        table = std::move(longer);
+std::string nameInShader(std::string_view field) {
+    if (field == "local_size_x") { return std::string(field); }
+    std::string name = "k";
+    bool begins_word = true;
+    for (const char c : field) {
+        if (c != '_') { name += begins_word ? static_cast<char>(c - 'a' + 'A') : c; }
+        begins_word = c == '_';
     }
-    return table;
+    return name;
 }
 
 void append(KernelTable& table, const KernelTable& more) { table.insert(table.end(), more.begin(), more.end()); }
@@ -84,15 +79,14 @@ KernelStatistics Kernel::statistics(const Context& context) const {
     return statistics;
 }
 
-const Kernel& KernelCache::get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants) {
-    auto key = std::make_pair(std::string(shader), std::vector<std::uint32_t>(constants));
+const Kernel& KernelCache::find(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants) {
+    auto key = std::make_pair(shader, constants);
     auto found = kernels_.find(key);
     if (found == kernels_.end()) {
         assert(std::ranges::any_of(table_, [&](const KernelVariant& variant) {
-            return variant.shader == key.first && variant.push_bytes == push_bytes && variant.values() == key.second;
+            return variant.shader == shader && variant.push_bytes == push_bytes && variant.values() == constants;
         }));
-        Kernel kernel(context_, key.first, push_bytes, key.second);
-        found = kernels_.emplace(std::move(key), std::move(kernel)).first;
+        found = kernels_.emplace(std::move(key), Kernel(context_, shader, push_bytes, constants)).first;
     }
     return found->second;
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/gpu/context.h"
+#include "engine/gpu/variants.h"
 
 #include <cstdint>
-#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
@@ -12,23 +12,6 @@
 #include <vector>
 
 namespace binosplat {
-
-// A kernel before it is made.
-struct KernelVariant {
-    std::string shader;                                            // names shaders/NAME.comp
-    std::uint32_t push_bytes;                                      // the size of the pass struct it takes
-    std::vector<std::pair<std::string, std::uint32_t>> constants;  // constant_id 0, 1, 2 ... by their names there
-
-    [[nodiscard]] std::vector<std::uint32_t> values() const;
-};
-
-// All kernels that somebody takes in any mode: each group of passes states its own, and `binosplat kernels` makes all of them.
-using KernelTable = std::vector<KernelVariant>;
-
-// A shader in every combination of its constants, each from 0 to one less than its count.
-KernelTable everyVariant(const std::string& shader, std::uint32_t push_bytes,
-                         std::initializer_list<std::pair<const char*, std::uint32_t>> counts = {});
-void append(KernelTable& table, const KernelTable& more);
 
 // What a driver says of a kernel, by its own names; see VK_KHR_pipeline_executable_properties.
 using KernelStatistics = std::vector<std::pair<std::string, std::variant<bool, std::int64_t, std::uint64_t, double>>>;
@@ -62,8 +45,11 @@ class KernelCache {
 public:
     // `table`: all that will ever be asked for.
     KernelCache(const Context& context, KernelTable table) : context_(context), table_(std::move(table)) {}
-    // The kernel of a shader and its specialization constants, one of the table; the reference stays valid until rebuild() or take().
-    const Kernel& get(const char* shader, std::uint32_t push_bytes, std::initializer_list<std::uint32_t> constants = {});
+    // One of the table; the reference stays valid until rebuild() or take().
+    template <typename K>
+    const Kernel& get(const K& kernel) {
+        return find(K::kShader, sizeof(typename K::Pass), valuesOf(kernel));
+    }
     [[nodiscard]] std::size_t size() const { return kernels_.size(); }
     // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and keeps the old ones then.
     void rebuild();
@@ -74,6 +60,8 @@ public:
     }
 
 private:
+    const Kernel& find(const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants);
+
     const Context& context_;
     KernelTable table_;
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, Kernel> kernels_;

@@ -56,7 +56,7 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCounts() const { return at<gpu::uint>(0); }
     [[nodiscard]] gpu::DeviceAddress<gpu::ProjectedSplat> splats() const { return at<gpu::ProjectedSplat>(16); }
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
-    // Of the sums of tiles that 4_project leaves for 5_bin.
+    // Of the sums of tiles that project leaves for bin.
     static std::uint64_t groupSumBytes(std::uint64_t capacity) {
         return (capacity + gpu::kListBlock - 1) / gpu::kListBlock * sizeof(gpu::uint);
     }

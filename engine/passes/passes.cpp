@@ -19,51 +19,48 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
 }
 
+RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked) {
+    return {.threads_per_cell = threads_per_cell,
+            .depth = kept.depth,
+            .moments = kept.moments,
+            .moving = kept.moving,
+            .spread = kept.spread,
+            .masked = masked,
+            .depth_choice = kept.depth_choice,
+            .half_colours = kept.half_floats,
+            .splat_kind = splat_shape,
+            .local_size_x = gpu::kCellsPerTile * threads_per_cell,
+            .even_rows = kept.even_rows};
+}
+
 }  // namespace
 
 KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per_cell) {
-    KernelTable table = everyVariant("1_cull", sizeof(gpu::CullPass), {{"kSplatKind", 2}});
-    append(table, everyVariant("2_compact", sizeof(gpu::CompactPass), {{"kByDistance", 2}}));
+    KernelTable table = everyVariant<CullKernel>();
+    append(table, everyVariant<CompactKernel>());
     append(table, sortKernels(context));
-    for (const KernelVariant& variant :
-         everyVariant("4_project", sizeof(gpu::ProjectPass),
-                      {{"kShDegree", kMaxShDegree + 1}, {"kMasked", 2}, {"kSplatKind", 3}, {"kSquareBoxes", 2}})) {
-        const std::vector<std::uint32_t> values = variant.values();
-        if (values[1] == 0 || values[3] == 0) { table.push_back(variant); }
-    }
-    append(table, everyVariant("5_bin", sizeof(gpu::BinPass)));
-    append(table, everyVariant("5_bin_large", sizeof(gpu::BinPass), {{"kMasked", 2}, {"kSplatKind", 2}}));
-    for (const KernelVariant& variant : everyVariant("6_tile_ranges", sizeof(gpu::TileRangesPass), {{"kMasked", 2}, {"kHalfColours", 2}})) {
-        if (variant.values()[0] == 1 || variant.values()[1] == 0) { table.push_back(variant); }
-    }
+    append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.masked == 0 || k.square_boxes == 0; }));
+    append(table, everyVariant<BinKernel>());
+    append(table, everyVariant<BinLargeKernel>());
+    append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
-    const auto rasterize = [&](const Kept& kept, std::uint32_t masked) {
+    const auto rasterize = [&](const Kept& kept, bool masked) {
         for (std::uint32_t choices = 0; choices < 8; ++choices) {
-            const std::uint32_t depth = choices & 1, half_floats = choices >> 1 & 1, kind = choices >> 2;
-            table.push_back({"7_rasterize",
-                             sizeof(gpu::RasterizePass),
-                             {{"kThreadsPerCell", threads},
-                              {"kDepth", depth},
-                              {"kMoments", kept.moments},
-                              {"kMoving", kept.moving},
-                              {"kSpread", kept.spread},
-                              {"kMasked", masked},
-                              {"kDepthChoice", kept.depth_choice},
-                              {"kHalfColours", half_floats},
-                              {"kSplatKind", kind},
-                              {"local_size_x", gpu::kCellsPerTile * threads},
-                              {"kEvenRows", kept.even_rows}}});
+            Kept own = kept;
+            own.depth = (choices & 1) != 0;
+            own.half_floats = (choices & 2) != 0;
+            table.push_back(variantOf(rasterizeKernel(threads, own, choices >> 2, masked)));
         }
     };
-    rasterize({}, 1);
+    rasterize({}, true);
     for (const bool moments : {false, true}) {
-        rasterize({.moments = moments}, 0);
+        rasterize({.moments = moments}, false);
         for (const gpu::uint choice : {gpu::kDepthSum, gpu::kDepthMean, gpu::kDepthInverse}) {
-            rasterize({.moments = moments, .moving = true, .depth_choice = choice}, 0);
-            rasterize({.moments = moments, .moving = true, .spread = true, .depth_choice = choice}, 0);
+            rasterize({.moments = moments, .moving = true, .depth_choice = choice}, false);
+            rasterize({.moments = moments, .moving = true, .spread = true, .depth_choice = choice}, false);
         }
     }
-    rasterize({.moving = true, .spread = true, .even_rows = true}, 0);
+    rasterize({.moving = true, .spread = true, .even_rows = true}, false);
     return table;
 }
 
@@ -89,11 +86,10 @@ const Sort& Passes::sort() {
     return *sort_;
 }
 
-void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                        const std::string& role) {
-    commands.beginPass(role + "1_cull");
+void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
+    commands.beginPass({role, FrameStage::kSort, "cull"});
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get("1_cull", sizeof(gpu::CullPass), {scene.splatShape()}),
+    commands.dispatchOver(kernels_.get(CullKernel{.splat_kind = scene.splatShape()}),
                           gpu::CullPass{.chunks = scene.chunks(),
                                         .eyes = buffers.eyes(),
                                         .visible_bits = buffers.visibleBits(),
@@ -107,17 +103,15 @@ void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBu
                           scene.splatCount(), gpu::kCullBlock);
 }
 
-void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                           const std::string& role) {
+void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
     recordCull(commands, scene, buffers, eyes, role);
     recordOrder(commands, scene, buffers, eyes, role);
 }
 
-void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                         const std::string& role) {
-    commands.beginPass(role + "2_compact");
+void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
+    commands.beginPass({role, FrameStage::kSort, "compact"});
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get("2_compact", sizeof(gpu::CompactPass), {eyes.middle ? 1u : 0u}),
+    commands.dispatchOver(kernels_.get(CompactKernel{.by_distance = eyes.middle.has_value()}),
                           gpu::CompactPass{.chunks = scene.chunks(),
                                            .eyes = buffers.eyes(),
                                            .visible_bits = buffers.visibleBits(),
@@ -130,19 +124,13 @@ void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameB
                                            .order_eye = static_cast<gpu::uint>(eyes.order_eye),
                                            .middle = eyes.middle.value_or(gpu::Place{})},
                           scene.splatCount(), gpu::kCullBlock);
-    commands.beginPass(role + "3_sort_depth");
+    commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     // Four rounds: the result is where the input was.
     sort().record(commands, buffers.visible.order(), buffers.visible.spare(), buffers.scratch.address<gpu::uint>(), buffers.state,
                   FrameBuffers::visibleList(eyes.list), 32);
 }
 
-const Kernel& Passes::rasterizeKernel(const GpuScene& scene, Kept kept, bool masked) {
-    return kernels_.get("7_rasterize", sizeof(gpu::RasterizePass),
-                        {threads_per_cell_, kept.depth, kept.moments, kept.moving, kept.spread, masked, kept.depth_choice, kept.half_floats,
-                         scene.splatShape(), gpu::kCellsPerTile * threads_per_cell_, kept.even_rows});
-}
-
-// One eye's part of a recording: passes 4 to 7.
+// One eye's part of a recording: project to rasterize.
 struct Passes::EyePart {
     Commands& commands;
     const GpuScene& scene;
@@ -150,10 +138,10 @@ struct Passes::EyePart {
     const EyeTarget& target;
     TileMask tiles;  // those that are rendered
     bool lists_tiles;
-    const std::string& role;
+    Role role;
 
     [[nodiscard]] gpu::uint eye() const { return static_cast<gpu::uint>(target.eye); }
-    [[nodiscard]] std::uint32_t masked() const { return tiles.mask.value != 0 ? 1 : 0; }
+    [[nodiscard]] bool masked() const { return tiles.mask.value != 0; }
     // Where the lists' states lie in the frame's.
     [[nodiscard]] std::uint64_t visibleList() const {
         return lists_tiles ? offsetof(FrameState, masked_visible) : FrameBuffers::visibleList(target.list);
@@ -167,8 +155,7 @@ struct Passes::EyePart {
     [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
 };
 
-void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
-                       const std::string& role) {
+void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, Role role) {
     record({.commands = commands,
             .scene = scene,
             .buffers = buffers,
@@ -179,20 +166,20 @@ void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuf
 }
 
 void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
-                         const TileMask& mask, const std::string& role) {
+                         const TileMask& mask, Role role) {
     record({.commands = commands, .scene = scene, .buffers = buffers, .target = target, .tiles = mask, .lists_tiles = true, .role = role});
 }
 
 void Passes::record(const EyePart& part) {
-    part.commands.beginPass(part.role + "4_project");
+    part.commands.beginPass({part.role, FrameStage::kSplat, "project"});
     recordProjected(part);
-    part.commands.beginPass(part.role + "5_bin");
+    part.commands.beginPass({part.role, FrameStage::kSplat, "bin"});
     recordBinned(part);
-    part.commands.beginPass(part.role + "6_sort_tiles");
+    part.commands.beginPass({part.role, FrameStage::kSplat, "sort_tiles"});
     const KeyValues sorted = sort().record(part.commands, part.target.pairs.pairs, part.target.pairs.spare, part.scratch(),
                                            part.buffers.state, part.pairList(), tileBits(part.target.size_tiles));
     recordTileRanges(part, sorted);
-    part.commands.beginPass(part.role + "7_rasterize");
+    part.commands.beginPass({part.role, FrameStage::kSplat, "rasterize"});
     recordRasterized(part, sorted);
 }
 
@@ -211,9 +198,10 @@ void Passes::recordProjected(const EyePart& part) {
                                    .chunk_bits = part.scene.chunkBits(),
                                    .eye = part.eye(),
                                    .capacity = part.target.pairs.capacity};
-    part.commands.dispatchIndirect(kernels_.get("4_project", sizeof(project),
-                                                {static_cast<std::uint32_t>(part.scene.shDegree()), part.masked(), part.scene.splatKind(),
-                                                 part.masked() == 0 && part.target.square_boxes ? 1u : 0u}),
+    part.commands.dispatchIndirect(kernels_.get(ProjectKernel{.sh_degree = static_cast<std::uint32_t>(part.scene.shDegree()),
+                                                              .masked = part.masked(),
+                                                              .splat_kind = part.scene.splatKind(),
+                                                              .square_boxes = !part.masked() && part.target.square_boxes}),
                                    project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
 }
 
@@ -231,9 +219,10 @@ void Passes::recordBinned(const EyePart& part) {
                            .counters = part.counters(),
                            .tile_mask = part.tiles.mask,
                            .size_tiles = part.target.size_tiles};
-    part.commands.dispatchIndirect(kernels_.get("5_bin", sizeof(bin)), bin, part.buffers.state,
+    part.commands.dispatchIndirect(kernels_.get(BinKernel{}), bin, part.buffers.state,
                                    part.visibleList() + offsetof(gpu::ListState, per_block));
-    part.commands.dispatch(kernels_.get("5_bin_large", sizeof(bin), {part.masked(), part.scene.splatShape()}), bin, gpu::kBinLargeGroups);
+    part.commands.dispatch(kernels_.get(BinLargeKernel{.masked = part.masked(), .splat_kind = part.scene.splatShape()}), bin,
+                           gpu::kBinLargeGroups);
 }
 
 void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
@@ -251,11 +240,10 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .background = target.background,
                                      .size_px = target.size_px};
     if (part.lists_tiles) {
-        part.commands.dispatchIndirect(kernels_.get("6_tile_ranges", sizeof(ranges), {1, target.kept.half_floats}), ranges,
+        part.commands.dispatchIndirect(kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats}), ranges,
                                        part.buffers.state, offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_item));
     } else {
-        part.commands.dispatchOver(kernels_.get("6_tile_ranges", sizeof(ranges), {0, 0}), ranges,
-                                   std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
+        part.commands.dispatchOver(kernels_.get(TileRangesKernel{}), ranges, std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
     }
 }
 
@@ -278,7 +266,7 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .eye = part.eye(),
                                        .row_words = target.row_words,
                                        .is_light = is_light};
-    const Kernel& kernel = rasterizeKernel(part.scene, target.kept, part.lists_tiles);
+    const Kernel& kernel = kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.lists_tiles));
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,
                                        part.counterBytes() + offsetof(gpu::EyeCounters, per_full_tile));

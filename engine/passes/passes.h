@@ -1,13 +1,13 @@
-// The passes of a frame: what `ls shaders` shows, as functions that record them.
+// The passes of a frame: those of shaders/sort and shaders/splat, as functions that record them.
 //
-//   1_cull        which splats may touch a pixel of any eye
-//   2_compact     those in the scene's order, with the depth or the distance of their centres
-//   3_sort_depth  front to back
-//   4_project     as one eye sees them, and how many tiles each meets
-//   5_bin         a (tile, splat) pair for each tile a splat meets
-//   6_sort_tiles  the pairs by tile, front to back within
-//   7_rasterize   blending: colour, alpha and depth
-//   8a to 8i      the other eye from this one: see stereo_passes.h
+//   cull        which splats may touch a pixel of any eye
+//   compact     those in the scene's order, with the depth or the distance of their centres
+//   sort_depth  front to back
+//   project     as one eye sees them, and how many tiles each meets
+//   bin         a (tile, splat) pair for each tile a splat meets
+//   sort_tiles  the pairs by tile, front to back within
+//   rasterize   blending: colour, alpha and depth
+// What makes the other eye from this one is in stereo_passes.h.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -15,7 +15,6 @@
 #include "shaders/shared/passes.h"
 
 #include <optional>
-#include <string>
 
 namespace binosplat {
 
@@ -65,7 +64,7 @@ struct EyesOfList {
     std::optional<gpu::Place> middle = {};
 };
 
-// All kernels of the passes 1 to 7, sorting included. `threads_per_cell`: see Passes.
+// All kernels of cull to rasterize, sorting included. `threads_per_cell`: see Passes.
 KernelTable passKernels(const Context& context, std::uint32_t threads_per_cell = 0);
 
 class Passes {
@@ -80,21 +79,17 @@ public:
     // those lack.
     void takeKernels(Passes& from);
 
-    // Pass 1 alone: how many splats are visible.
-    void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                    const std::string& role);
-    // Passes 1 to 3: a list of visible splats. `role` goes before the passes' names.
-    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                       const std::string& role);
-    // Passes 2 and 3 alone, also once more by the depths of another eye; which eyes see the splats is not asked again.
-    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes,
-                     const std::string& role);
-    // Passes 4 to 7: the picture of an eye.
-    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
-                   const std::string& role);
+    // How many splats are visible: cull alone.
+    void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
+    // A list of visible splats: cull to sort_depth.
+    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
+    // Of these compact and sort_depth alone, also once more by the depths of another eye; which eyes see the splats is not asked again.
+    void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
+    // The picture of an eye: project to rasterize.
+    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, Role role);
     // The same for some tiles alone: the others stay as they are.
     void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
-                     const std::string& role);
+                     Role role);
 
 private:
     struct EyePart;
@@ -103,7 +98,6 @@ private:
     void recordBinned(const EyePart& part);
     void recordTileRanges(const EyePart& part, const KeyValues& sorted);
     void recordRasterized(const EyePart& part, const KeyValues& sorted);
-    const Kernel& rasterizeKernel(const GpuScene& scene, Kept kept, bool masked);
     const Sort& sort();
 
     const Context& context_;

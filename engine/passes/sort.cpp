@@ -26,21 +26,22 @@ bool Sort::hasNarrowSubgroups(const Context& context) {
     return context.maxSubgroupSize() <= 8 && context.minSubgroupSize() == context.maxSubgroupSize();
 }
 
-KernelTable sortKernels(const Context& context, DigitMatch match) {
+namespace {
+
+SortScatterKernel scatterKernel(const Context& context, DigitMatch match) {
     const gpu::uint threads = threadsOf(context);
-    return {{"sort_count", sizeof(gpu::SortCountPass), {{"kThreads", threads}}},
-            {"sort_scatter",
-             sizeof(gpu::SortScatterPass),
-             {{"kThreads", threads},
-              {"kMaxSubgroups", threads / context.minSubgroupSize()},
-              {"kComparedLanes", comparedLanes(context, match)}}}};
+    return {.threads = threads, .max_subgroups = threads / context.minSubgroupSize(), .compared_lanes = comparedLanes(context, match)};
 }
 
-Sort::Sort(const Context& context, DigitMatch match) {
-    const KernelTable table = sortKernels(context, match);
-    count_ = Kernel(context, table[0]);
-    scatter_ = Kernel(context, table[1]);
+}  // namespace
+
+KernelTable sortKernels(const Context& context) {
+    return {variantOf(SortCountKernel{.threads = threadsOf(context)}), variantOf(scatterKernel(context, DigitMatch::kAuto))};
 }
+
+Sort::Sort(const Context& context, DigitMatch match)
+    : count_(context, variantOf(SortCountKernel{.threads = threadsOf(context)})),
+      scatter_(context, variantOf(scatterKernel(context, match))) {}
 
 std::uint64_t Sort::histogramBytes(std::uint64_t items) {
     const std::uint64_t blocks = std::min<std::uint64_t>((items + gpu::kSortBlock - 1) / gpu::kSortBlock, gpu::kMaxSortBlocks);

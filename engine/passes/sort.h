@@ -1,4 +1,4 @@
-// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort_*.comp): reduce then scan, 8 bits and two
+// A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 8 bits and two
 // commands a round.
 #pragma once
 
@@ -16,8 +16,8 @@ struct KeyValues {
 // are at most eight.
 enum class DigitMatch { kAuto, kBallots, kComparisons };
 
-// sort_count and sort_scatter, in this order.
-KernelTable sortKernels(const Context& context, DigitMatch match = DigitMatch::kAuto);
+// Its kernels.
+KernelTable sortKernels(const Context& context);
 
 class Sort {
 public:

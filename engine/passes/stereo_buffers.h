@@ -5,7 +5,7 @@
 
 namespace binosplat {
 
-// Of the rows that 8e keeps in shared memory, in kArrivalsStep.
+// Of the rows that resample keeps in shared memory, in kArrivalsStep.
 std::uint32_t mostRowSteps(const Context& context);
 
 // What a frame wants of them.
@@ -18,7 +18,7 @@ struct StereoBufferNeeds {
 };
 
 // Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the affiliated
-// eye's colours come to lie, row by row, as long as 8e can keep a row of arrivals in shared memory; otherwise here.
+// eye's colours come to lie, row by row, as long as resample can keep a row of arrivals in shared memory; otherwise here.
 class StereoBuffers {
 public:
     StereoBuffers() = default;
@@ -56,7 +56,7 @@ public:
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
-    // How many kArrivalsStep a row takes in shared memory, see 8e; 0: rows are not kept there.
+    // How many kArrivalsStep a row takes in shared memory, see resample; 0: rows are not kept there.
     [[nodiscard]] std::uint32_t rowSteps() const {
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }

@@ -48,43 +48,32 @@ gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
 }
 
 KernelTable stereoKernels(const Context& context) {
-    KernelTable table =
-        everyVariant("8a_weigh", sizeof(gpu::WeighPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kKindsGiven", 2}, {"kMayMove", 2}});
-    append(table, everyVariant("8b_depth_bounds", sizeof(gpu::DepthBoundsPass), {{"kHalfColours", 2}}));
-    append(table, everyVariant("8c_edge_rois", sizeof(gpu::EdgeRoisPass), {{"kRectified", 2}, {"kHiddenTiles", 2}}));
-    append(table, everyVariant("8d_reproject", sizeof(gpu::ReprojectPass), {{"kRectified", 2}, {"kHiddenTiles", 2}, {"kForward", 2}}));
-    for (const KernelVariant& variant : everyVariant("8e_resample", sizeof(gpu::ResamplePass),
-                                                     {{"kRectified", 2},
-                                                      {"kPredictErrors", 2},
-                                                      {"kDepth", 2},
-                                                      {"kClasses", 2},
-                                                      {"kComponents", 2},
-                                                      {"kRowSteps", mostRowSteps(context) + 1},
-                                                      {"kHalfColours", 2},
-                                                      {"kForward", 2},
-                                                      {"kRowSource", 4}})) {
-        // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they can be,
-        // and odd ones of predicted are moved like even ones.
-        const std::vector<std::uint32_t> values = variant.values();
-        const bool groups = values[4] == 0 || (values[1] == 0 && values[3] == 1);
-        const bool can_move = values[0] == 1 && values[5] > 0;
-        bool fits = (values[8] != gpu::kArrivalsGiven) == can_move;
-        if (values[8] == gpu::kWholeRowMoved) { fits = fits && values[1] == 1 && values[3] == 0; }
-        if (values[8] == gpu::kPlacesGiven) {
-            fits = values[0] == 1 && values[1] == 0 && values[4] == 0 && values[5] == 0 && values[7] == 0;
-        }
-        if (groups && (values[1] == 0 || values[7] == 0) && fits) { table.push_back(variant); }
-    }
-    append(table, everyVariant("8f_newcomers", sizeof(gpu::NewcomersPass), {{"kSplatKind", 3}}));
-    append(table, everyVariant("8g_components", sizeof(gpu::ComponentsPass), {{"kStep", 4}, {"kHalfColours", 2}}));
-    append(table, everyVariant("8h_price", sizeof(gpu::PricePass), {{"kFoveated", 2}}));
-    append(table, everyVariant("8i_select", sizeof(gpu::SelectPass), {{"kPredicted", 2}}));
+    KernelTable table = everyVariant<WeighKernel>();
+    append(table, everyVariant<DepthBoundsKernel>());
+    append(table, everyVariant<EdgeRoisKernel>());
+    append(table, everyVariant<ReprojectKernel>());
+    append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
+               // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they
+               // can be, and odd ones of predicted are moved like even ones.
+               if (k.row_steps > most_steps || (k.components && (k.predict_errors || !k.classes)) || (k.predict_errors && k.forward)) {
+                   return false;
+               }
+               if (k.row_source == gpu::kPlacesGiven) {
+                   return k.rectified && !k.predict_errors && !k.components && k.row_steps == 0 && !k.forward;
+               }
+               if (k.row_source == gpu::kWholeRowMoved && (!k.predict_errors || k.classes)) { return false; }
+               return (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0);
+           }));
+    append(table, everyVariant<NewcomersKernel>());
+    append(table, everyVariant<ComponentsKernel>());
+    append(table, everyVariant<PriceKernel>());
+    append(table, everyVariant<SelectKernel>());
     return table;
 }
 
 namespace {
 
-// A frame's passes 8, one function each, and what several of them want to know.
+// Those of one frame, one function each, and what several of them want to know.
 class StereoRecorder {
 public:
     StereoRecorder(KernelCache& kernels, Commands& commands, const StereoPassInputs& in)
@@ -110,13 +99,17 @@ public:
 
 private:
     void resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors);
-    template <typename Pass>
-    const Kernel& kernel(const char* name, const Pass&, std::initializer_list<std::uint32_t> constants) {
-        return kernels_.get(name, sizeof(Pass), constants);
+    template <typename K>
+    void begin() {
+        commands_.beginPass({Role::kAffiliated, K::kStage, K::kShader});
     }
-    template <typename Pass>
-    void dispatchByCounter(const Kernel& of, const Pass& pass, std::uint64_t field) {
-        commands_.dispatchIndirect(of, pass, in_.buffers.state, offsetof(FrameState, stereo_counters) + field);
+    template <typename K>
+    void dispatch(const K& kernel, const typename K::Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1) {
+        commands_.dispatch(kernels_.get(kernel), pass, groups_x, groups_y);
+    }
+    template <typename K>
+    void dispatchByCounter(const K& kernel, const typename K::Pass& pass, std::uint64_t field) {
+        commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, offsetof(FrameState, stereo_counters) + field);
     }
     [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)); }
     [[nodiscard]] auto counters() const { return in_.buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters)); }
@@ -124,12 +117,11 @@ private:
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
     [[nodiscard]] auto moving() const { return in_.stereo.moving(in_.affiliated); }
     [[nodiscard]] auto arrivals() const { return in_.stereo.arrivals(in_.affiliated); }
-    [[nodiscard]] std::uint32_t alongRows() const { return in_.rectified ? 1 : 0; }
-    [[nodiscard]] std::uint32_t hidesDominant() const { return in_.dominant_shown.hideAny() ? 1 : 0; }
-    [[nodiscard]] std::uint32_t halfFloats() const { return in_.dominant.half_floats ? 1 : 0; }
-    // Whether 8e moves the dominant eye's pixels itself.
-    [[nodiscard]] std::uint32_t movesRows() const { return binosplat::movesRows(in_.rectified, in_.stereo) ? 1 : 0; }
-    [[nodiscard]] std::uint32_t copiesColours() const { return in_.settings.forward && !predicts() ? 1 : 0; }
+    [[nodiscard]] bool hidesDominant() const { return in_.dominant_shown.hideAny(); }
+    [[nodiscard]] bool halfFloats() const { return in_.dominant.half_floats; }
+    // Whether resample moves the dominant eye's pixels itself.
+    [[nodiscard]] bool movesRows() const { return binosplat::movesRows(in_.rectified, in_.stereo); }
+    [[nodiscard]] bool copiesColours() const { return in_.settings.forward && !predicts(); }
     [[nodiscard]] gpu::uint tileGroups() const { return (in_.stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup; }
 
     KernelCache& kernels_;
@@ -138,7 +130,7 @@ private:
 };
 
 void StereoRecorder::weigh() {
-    commands_.beginPass("affiliated 8a_weigh");
+    begin<WeighKernel>();
     in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
     const gpu::WeighPass pass{.stereo = view(),
                               .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
@@ -153,15 +145,22 @@ void StereoRecorder::weigh() {
                               .visible = visible(),
                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                               .counters = counters()};
-    commands_.dispatch(kernel("8a_weigh", pass, {alongRows(), hidesDominant(), in_.affiliated_shown.hideAny(), in_.may_move}), pass,
-                       tileGroups());
+    dispatch(WeighKernel{.rectified = in_.rectified,
+                         .hidden_tiles = hidesDominant(),
+                         .kinds_given = in_.affiliated_shown.hideAny(),
+                         .may_move = in_.may_move},
+             pass, tileGroups());
 }
 
 // Timed with the pass that comes next.
 void StereoRecorder::clearTiles() {
-    commands_.beginPass(followsPaper()     ? "affiliated 8b_depth_bounds"
-                        : movesRows() != 0 ? "affiliated 8e_resample"
-                                           : "affiliated 8d_reproject");
+    if (followsPaper()) {
+        begin<DepthBoundsKernel>();
+    } else if (movesRows()) {
+        begin<ResampleKernel>();
+    } else {
+        begin<ReprojectKernel>();
+    }
     commands_.fillZero(in_.stereo.tiles());
     in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
 }
@@ -173,42 +172,41 @@ void StereoRecorder::findDepthBounds() {
                                       .moving = moving(),
                                       .bins = in_.stereo.bins()};
     const glm::uvec2 tiles = in_.stereo.sizeTiles();
-    commands_.dispatch(kernel("8b_depth_bounds", bounds, {halfFloats()}), bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles,
-                       tiles.y);
+    dispatch(DepthBoundsKernel{.half_colours = halfFloats()}, bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
 }
 
 void StereoRecorder::findEdgeRois() {
-    commands_.beginPass("affiliated 8c_edge_rois");
+    begin<EdgeRoisKernel>();
     const gpu::EdgeRoisPass edges{.stereo = view(),
                                   .bins = in_.stereo.bins(),
                                   .tile_kinds = in_.stereo.tileKinds(),
                                   .shown_mask = in_.dominant_shown.mask(),
                                   .counters = counters()};
-    commands_.dispatch(kernel("8c_edge_rois", edges, {alongRows(), hidesDominant()}), edges, tileGroups());
+    dispatch(EdgeRoisKernel{.rectified = in_.rectified, .hidden_tiles = hidesDominant()}, edges, tileGroups());
 }
 
 void StereoRecorder::reproject() {
-    if (movesRows() != 0) { return; }
-    commands_.beginPass("affiliated 8d_reproject");
+    if (movesRows()) { return; }
+    begin<ReprojectKernel>();
     const gpu::ReprojectPass pass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.dominant_shown.mask()};
-    dispatchByCounter(kernel("8d_reproject", pass, {alongRows(), hidesDominant(), copiesColours()}), pass,
+    dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesDominant(), .forward = copiesColours()}, pass,
                       offsetof(gpu::StereoCounters, per_pixel_block));
 }
 
 void StereoRecorder::resample() {
     const bool whole = predicts() && !in_.dominant_shown.hideAny() && !keepsClasses();
-    resampleFrom(0, movesRows() == 0 ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
+    resampleFrom(0, !movesRows() ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
 }
 
 void StereoRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
 
 void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
-    commands_.beginPass("affiliated 8e_resample");
+    begin<ResampleKernel>();
     const bool knows_errors = predict_errors || in_.affiliated_gaze;
     const gpu::ResamplePass pass{.stereo = view(),
                                  .dominant = in_.dominant.colours.address<gpu::vec4>(),
                                  .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
-                                 .moving = movesRows() != 0 ? moving() : arrivals(),
+                                 .moving = movesRows() ? moving() : arrivals(),
                                  .affiliated = in_.affiliated.colours.address<gpu::vec4>(),
                                  .half_affiliated = in_.affiliated.colours.address<gpu::uvec2>(),
                                  .depths = in_.affiliated.depths.address<float>(),
@@ -220,16 +218,20 @@ void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, boo
                                  .shown_mask = in_.dominant_shown.mask(),
                                  .background = in_.background,
                                  .first_row = first_row};
-    const std::uint32_t with_depth = in_.affiliated.depths.bytes() > 0 ? 1 : 0;
-    const std::uint32_t row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.stereo.rowSteps();
-    const Kernel& resample_kernel = kernel(
-        "8e_resample", pass,
-        {alongRows(), predict_errors, with_depth, keepsClasses(), groupsHoles(), row_steps, halfFloats(), copiesColours(), row_source});
+    const ResampleKernel resample_kernel{.rectified = in_.rectified,
+                                         .predict_errors = predict_errors,
+                                         .depth = in_.affiliated.depths.bytes() > 0,
+                                         .classes = keepsClasses(),
+                                         .components = groupsHoles(),
+                                         .row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.stereo.rowSteps(),
+                                         .half_colours = halfFloats(),
+                                         .forward = copiesColours(),
+                                         .row_source = row_source};
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
 }
 
 void StereoRecorder::findNewcomers() {
-    commands_.beginPass("affiliated 8f_newcomers");
+    begin<NewcomersKernel>();
     const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
                                   .eyes = in_.buffers.eyes(),
                                   .stereo = view(),
@@ -242,11 +244,11 @@ void StereoRecorder::findNewcomers() {
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
                                   .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
-    dispatchByCounter(kernel("8f_newcomers", pass, {in_.scene.splatKind()}), pass, offsetof(gpu::StereoCounters, per_visible));
+    dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::StereoCounters, per_visible));
 }
 
 void StereoRecorder::groupHoles() {
-    commands_.beginPass("affiliated 8g_components");
+    begin<ComponentsKernel>();
     const gpu::ComponentsPass pass{.stereo = view(),
                                    .pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
                                    .pixel_classes = in_.stereo.pixelClasses(),
@@ -255,13 +257,14 @@ void StereoRecorder::groupHoles() {
                                    .counters = counters(),
                                    .box_capacity = in_.stereo.needs().boxes};
     for (std::uint32_t step = 0; step < 3; ++step) {
-        dispatchByCounter(kernel("8g_components", pass, {step, halfFloats()}), pass, offsetof(gpu::StereoCounters, component_groups));
+        dispatchByCounter(ComponentsKernel{.step = step, .half_colours = halfFloats()}, pass,
+                          offsetof(gpu::StereoCounters, component_groups));
     }
-    commands_.dispatch(kernel("8g_components", pass, {3u, halfFloats()}), pass, kMarkGroups);
+    dispatch(ComponentsKernel{.step = 3, .half_colours = halfFloats()}, pass, kMarkGroups);
 }
 
 void StereoRecorder::price() {
-    commands_.beginPass("affiliated 8h_price");
+    begin<PriceKernel>();
     const gpu::PricePass pass{.stereo = view(),
                               .tile_kinds = in_.stereo.tileKinds(),
                               .tile_costs = in_.stereo.tileCosts(),
@@ -271,11 +274,11 @@ void StereoRecorder::price() {
                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                               .counters = counters(),
                               .gaze = in_.affiliated_gaze ? eyeGazeOf(*in_.affiliated_gaze, in_.affiliated_lens) : gpu::EyeGaze{}};
-    commands_.dispatch(kernel("8h_price", pass, {in_.affiliated_gaze.has_value()}), pass, tileGroups());
+    dispatch(PriceKernel{.foveated = in_.affiliated_gaze.has_value()}, pass, tileGroups());
 }
 
 void StereoRecorder::select() {
-    commands_.beginPass("affiliated 8i_select");
+    begin<SelectKernel>();
     const gpu::SelectPass pass{.stereo = view(),
                                .tile_kinds = in_.stereo.tileKinds(),
                                .tile_prices = in_.stereo.tilePrices(),
@@ -286,7 +289,7 @@ void StereoRecorder::select() {
                                .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                                .masked_visible = listAt(offsetof(FrameState, masked_visible)),
                                .counters = counters()};
-    commands_.dispatch(kernel("8i_select", pass, {predicts()}), pass, tileGroups());
+    dispatch(SelectKernel{.predicted = predicts()}, pass, tileGroups());
 }
 
 }  // namespace

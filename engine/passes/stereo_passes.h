@@ -1,14 +1,14 @@
 // One eye from the other: reprojection, and the tiles that must be rendered.
 //
-//   8a_weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
-//   8b_depth_bounds  paper: how deep the picture is
-//   8c_edge_rois     paper: the borders that the dominant eye does not see
-//   8d_reproject     the dominant eye's pixels go to where the affiliated eye sees them; 8e does so itself where that is in their row
-//   8e_resample      every pixel's place in the dominant picture, its colour, and the error to expect
-//   8f_newcomers     predicted: splats that only the affiliated eye sees, nearer than the middle of their tile
-//   8g_components    paper, on request: connected holes inside the picture
-//   8h_price         predicted: what it costs to mend each tile's error
-//   8i_select        the tiles that are rendered
+//   weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
+//   depth_bounds  paper: how deep the picture is
+//   edge_rois     paper: the borders that the dominant eye does not see
+//   reproject     the dominant eye's pixels go to where the affiliated eye sees them; resample does so itself where that is in their row
+//   resample      every pixel's place in the dominant picture, its colour, and the error to expect
+//   newcomers     predicted: splats that only the affiliated eye sees, nearer than the middle of their tile
+//   components    paper, on request: connected holes inside the picture
+//   price         predicted: what it costs to mend each tile's error
+//   select        the tiles that are rendered
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -64,7 +64,7 @@ struct StereoPassInputs {
     const StereoBuffers& stereo;
     const StereoSettings& settings;
     bool rectified;
-    bool may_move;  // otherwise only 8a runs, for the next frame's sake
+    bool may_move;  // otherwise only weigh runs, for the next frame's sake
     int list;       // of visible splats, the affiliated eye's
     int dominant_eye;
     const EyeImage& dominant;
@@ -76,13 +76,13 @@ struct StereoPassInputs {
     std::optional<Gaze> affiliated_gaze;  // empty: all tiles are seen alike
 };
 
-// Whether 8e moves the dominant eye's pixels itself, row by row: then there is no 8d, and no arrivals in memory.
+// Whether resample moves the dominant eye's pixels itself, row by row: then there is no reproject, and no arrivals in memory.
 inline bool movesRows(bool rectified, const StereoBuffers& stereo) { return rectified && stereo.sharesRows(); }
 
 // How `gaze` looks to the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
-// All kernels of the passes 8.
+// Their kernels.
 KernelTable stereoKernels(const Context& context);
 
 class StereoPasses {
@@ -94,7 +94,7 @@ public:
     // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
     void takeKernels(StereoPasses& from) { kernels_.take(from.kernels_); }
 
-    // All of the passes 8: the affiliated eye's colours, except in the tiles that are listed in the end; its depths, too, where it has room
+    // All of them: the affiliated eye's colours, except in the tiles that are listed in the end; its depths, too, where it has room
     // for them. Tiles that are hidden become background.
     void record(Commands& commands, const StereoPassInputs& in);
 

@@ -24,33 +24,33 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
     const double summed = (facts.sums_even_rows ? 0.5 : 1.0) * kWord;  // and as many arrivals cleared
-    Traffic traffic{{"dominant 7_rasterize, for moving", !facts.may_move ? 0.0 : facts.moves_rows ? summed : 2 * summed}};
+    Traffic traffic{{"dominant rasterize, for moving", !facts.may_move ? 0.0 : facts.moves_rows ? summed : 2 * summed}};
     if (predict) {
         // moving, ranges; kinds (in and out), costs, errors, depths, a bit of the mask
-        traffic.emplace_back("8a_weigh", perTile(1 + 2 + 2 + 1 + 1 + 1 + 1.0 / 32));
+        traffic.emplace_back("weigh", perTile(1 + 2 + 2 + 1 + 1 + 1 + 1.0 / 32));
     }
     if (paper) {
-        traffic.emplace_back("8b_depth_bounds", (colour + moving) / 2);  // of every other row
-        traffic.emplace_back("8c_edge_rois", perTile(2));
+        traffic.emplace_back("depth_bounds", (colour + moving) / 2);  // of every other row
+        traffic.emplace_back("edge_rois", perTile(2));
     }
-    if (!facts.moves_rows) { traffic.emplace_back("8d_reproject", any_moved * (moving + 2 * arrival)); }
+    if (!facts.moves_rows) { traffic.emplace_back("reproject", any_moved * (moving + 2 * arrival)); }
     // A row of pixels reads its tiles' kinds; every other row adds to their errors.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 2 : 1));
     // What even rows leave for odd ones is written and read.
     const double place = facts.even_rows ? kWord + (depth > 0.0 ? kWord : 0.0) : 0.0;
-    traffic.emplace_back("8e_resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
-                                            moved * (2 * colour + depth + place));
+    traffic.emplace_back("resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
+                                         moved * (2 * colour + depth + place));
     if (predict) {
         // counts of tiles; what newcomers read besides is nothing beside it
-        traffic.emplace_back("8f_newcomers", any_moved * kWord * facts.visible / pixels);
+        traffic.emplace_back("newcomers", any_moved * kWord * facts.visible / pixels);
     }
-    if (components) { traffic.emplace_back("8g_components", 3 * pixel_class); }
+    if (components) { traffic.emplace_back("components", 3 * pixel_class); }
     if (predict) {
-        traffic.emplace_back("8h_price", perTile(4));  // kinds, costs, errors; prices
+        traffic.emplace_back("price", perTile(4));  // kinds, costs, errors; prices
     }
     if (paper || predict) {
         // kinds (in and out), prices, costs; the list and the mask. And a workgroup sums up the prices of half of the tiles, at most.
-        traffic.emplace_back("8i_select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kStereoGroup) : 0.0));
+        traffic.emplace_back("select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kStereoGroup) : 0.0));
     }
     double sum = 0.0;
     for (const auto& [pass, bytes] : traffic) { sum += bytes; }

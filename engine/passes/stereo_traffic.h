@@ -17,7 +17,7 @@ using Traffic = std::vector<std::pair<std::string, double>>;
 struct StereoFrameFacts {
     StereoSettings settings;
     bool may_move = true;            // the dominant picture came with what moving needs
-    bool moves_rows = false;         // 8e does what 8d does otherwise
+    bool moves_rows = false;         // resample does what reproject does otherwise
     bool even_rows = false;          // odd rows are moved like even ones
     bool sums_even_rows = false;     // and so the dominant eye writes nothing for these
     bool half_floats = false;        // what pictures consist of

@@ -1,4 +1,4 @@
-// 5: the tiles in which a splat meets a pixel centre.
+// bin: the tiles in which a splat meets a pixel centre.
 #include "engine/parallel.h"
 #include "engine/reference/reach.h"
 

@@ -1,4 +1,4 @@
-// 2: the visible splats without gaps, and the camera z of their centres or their distance.
+// compact: the visible splats without gaps, and the camera z of their centres or their distance.
 #include "engine/parallel.h"
 #include "engine/reference/splat.h"
 

@@ -1,4 +1,4 @@
-// 8g: connected holes and the tiles of their boxes (paper, section 3.5, step 2), by flood fill.
+// components: connected holes and the tiles of their boxes (paper, section 3.5, step 2), by flood fill.
 #include "engine/reference/splat.h"
 #include "engine/reference/stereo.h"
 

@@ -1,4 +1,4 @@
-// 1: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside a half-space
+// cull: which splats may touch a pixel. A disc with support function h(n) = n.c + r |(n.a, n.b)| lies outside a half-space
 // n.p >= d of the frustum if h(n) < d; r = sqrt(cut) is as far as its opacity lets it reach. A 3D Gaussian has a box on the screen.
 #include "engine/parallel.h"
 #include "engine/reference/splat.h"

@@ -1,4 +1,4 @@
-// 8b: how often each depth occurs in every other row of a picture.
+// depth_bounds: how often each depth occurs in every other row of a picture.
 #include "engine/reference/stereo.h"
 
 #include <algorithm>

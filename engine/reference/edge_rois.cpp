@@ -1,4 +1,4 @@
-// 8c: the borders of the target that the source does not see (paper, section 3.5, step 1).
+// edge_rois: the borders of the target that the source does not see (paper, section 3.5, step 1).
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

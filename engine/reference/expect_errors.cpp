@@ -1,4 +1,4 @@
-// 8e: the error to expect of a tile whose pixels are moved.
+// resample: the error to expect of a tile whose pixels are moved.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

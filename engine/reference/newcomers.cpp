@@ -1,4 +1,4 @@
-// 8f: splats that the target sees and the source does not, by the tiles they stand in.
+// newcomers: splats that the target sees and the source does not, by the tiles they stand in.
 #include "engine/reference/splat.h"
 #include "engine/reference/stereo.h"
 

@@ -1,4 +1,4 @@
-// 10: pictures in bytes.
+// present: pictures in bytes.
 #include "engine/reference/present.h"
 
 #include "engine/srgb.h"

@@ -1,4 +1,4 @@
-// The float64 twin of 10_present: an eye's picture as the headset takes it.
+// The float64 twin of present: an eye's picture as the headset takes it.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,4 +1,4 @@
-// 8h: what a tile's error is worth, for what the tile costs.
+// price: what a tile's error is worth, for what the tile costs.
 #include "engine/reference/splat.h"
 #include "engine/reference/stereo.h"
 

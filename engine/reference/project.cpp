@@ -1,4 +1,4 @@
-// 4: a splat as one eye sees it: pixel rows, their reduced form, colour and box.
+// project: a splat as one eye sees it: pixel rows, their reduced form, colour and box.
 #include "engine/parallel.h"
 #include "engine/reference/harmonics.h"
 #include "engine/reference/reach.h"

@@ -1,4 +1,4 @@
-// 7: blending, front to back, one tile at a time.
+// rasterize: blending, front to back, one tile at a time.
 #include "engine/parallel.h"
 #include "engine/reference/blend.h"
 #include "engine/reference/reach.h"

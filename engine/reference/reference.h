@@ -1,5 +1,5 @@
 // The float64 twins of the GPU passes: same names, same order, no shared arithmetic. They are the truth tests compare with.
-// Each function is one pass of shaders/N_name.comp; `render` runs them all. The equations: docs/how-it-works.md
+// Each function is one pass of shaders/sort and shaders/splat; `render` runs them all. The equations: docs/how-it-works.md
 // (2DGS, Huang et al. 2024, section 4; 3DGS, Kerbl et al. 2023, section 4).
 #pragma once
 
@@ -79,10 +79,10 @@ struct TileRange {
     std::uint32_t begin, end;
 };
 
-// 1: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
+// cull: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
 
-// 2: indices of the visible splats, ascending, and what each goes by: the camera z of its centre in `order_eye`, or the square of its
+// compact: indices of the visible splats, ascending, and what each goes by: the camera z of its centre in `order_eye`, or the square of its
 // distance from Settings::order_from.
 struct Visible {
     std::vector<std::uint32_t> splats;
@@ -90,13 +90,13 @@ struct Visible {
 };
 Visible compact(const Scene& scene, std::span<const std::uint8_t> visible, const Eye& order_eye, const Settings& settings = {});
 
-// 3: the same splats, front to back, ties by index.
+// sort_depth: the same splats, front to back, ties by index.
 std::vector<std::uint32_t> sortDepth(const Visible& visible, const Settings& settings = {});
 
-// 4: one eye's view of each splat, in the given order.
+// project: one eye's view of each splat, in the given order.
 std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uint32_t> order, const Eye& eye, const Settings& settings);
 
-// 5: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer than near, in
+// bin: exactly the (tile, splat) pairs in which at least one pixel centre has rho < cut with a hit not nearer than near, in
 // depth order and tiles ascending within a splat. Where the disc's own hit lies nearer than near, or behind the eye, the
 // low-pass is what remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
@@ -104,11 +104,11 @@ std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 siz
 // Likewise 5: takes out the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
 
-// 6: pairs by tile, depth order kept within; and where each tile's pairs lie.
+// sort_tiles: pairs by tile, depth order kept within; and where each tile's pairs lie.
 void sortTiles(std::vector<TilePair>& pairs, const Settings& settings = {});
 std::vector<TileRange> tileRanges(std::span<const TilePair> pairs, glm::uvec2 size_px);
 
-// 7: blending, front to back.
+// rasterize: blending, front to back.
 Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePair> pairs, std::span<const TileRange> ranges,
                   const Eye& eye, const Settings& settings);
 

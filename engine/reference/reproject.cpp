@@ -1,4 +1,4 @@
-// 8d: each pixel of the source goes to where the target sees it; the nearest stays.
+// reproject: each pixel of the source goes to where the target sees it; the nearest stays.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

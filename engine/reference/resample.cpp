@@ -1,4 +1,4 @@
-// 8e: colours of the target, read from the source's picture where each pixel came from.
+// resample: colours of the target, read from the source's picture where each pixel came from.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

@@ -1,4 +1,4 @@
-// 8e: a place in the source's picture for every pixel of the target.
+// resample: a place in the source's picture for every pixel of the target.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

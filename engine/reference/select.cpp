@@ -1,4 +1,4 @@
-// 8i: the tiles whose errors are mended at the least cost.
+// select: the tiles whose errors are mended at the least cost.
 #include "engine/reference/stereo.h"
 
 #include <functional>

@@ -1,4 +1,4 @@
-// 3: front to back, ties by index: a radix sort of the depths' bits, stable over splats that come in ascending.
+// sort_depth: front to back, ties by index: a radix sort of the depths' bits, stable over splats that come in ascending.
 #include "engine/parallel.h"
 #include "engine/reference/reference.h"
 

@@ -1,4 +1,4 @@
-// 6: pairs by tile, the order of depth kept within, and where each tile's pairs lie.
+// sort_tiles: pairs by tile, the order of depth kept within, and where each tile's pairs lie.
 #include "engine/parallel.h"
 #include "engine/reference/splat.h"
 

@@ -1,5 +1,5 @@
 // The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
-// shaders/8*.comp or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4 and 3.5.
+// shaders/warp and shaders/choose or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4 and 3.5.
 // Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
 #pragma once
 
@@ -43,20 +43,20 @@ struct EyePair {
     Eye source, target;
 };
 
-// 7: what the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
+// rasterize: what the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
 double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice);
-// Likewise 7: how much the depths differ that a pixel blends, as a share of the one that is chosen, in steps of half an octave: 0 for
+// Likewise rasterize: how much the depths differ that a pixel blends, as a share of the one that is chosen, in steps of half an octave: 0 for
 // none, 1 for 2^-13, up to 31 for 2^2.
 std::uint32_t spreadCode(double spread);
 double spreadOf(std::uint32_t code);
-// Likewise 7: a pixel as it is moved; nothing if its depth is not one.
+// Likewise rasterize: a pixel as it is moved; nothing if its depth is not one.
 struct MovingPixel {
     double inverse_depth;
     std::uint32_t spread;  // a code; 0 where errors are not predicted
 };
 std::optional<MovingPixel> movingPixel(const Picture& dominant, std::size_t pixel, const StereoSettings& settings);
 
-// 8a: which tiles are rendered before anything is known of errors, and what each costs, in pairs of the source's.
+// weigh: which tiles are rendered before anything is known of errors, and what each costs, in pairs of the source's.
 struct Weighed {
     std::vector<TileKind> kinds;
     std::vector<std::uint64_t> costs;
@@ -64,20 +64,20 @@ struct Weighed {
     bool moves;                              // whether any tile is moved
 };
 Weighed weigh(const Picture& dominant, std::span<const TileRange> dominant_ranges, const EyePair& eyes, const StereoSettings& settings);
-// Likewise 8a: what the source sees in the middle of this tile.
+// Likewise weigh: what the source sees in the middle of this tile.
 std::optional<MovingPixel> movingAtMiddle(const Picture& dominant, std::size_t tile, const StereoSettings& settings);
-// Likewise 8a: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge).
+// Likewise weigh: the tiles that reach out of the source's view by more than a gap even where all is infinitely far (kEdge).
 std::vector<TileKind> markUnseen(const EyePair& eyes, int gap_px);
-// Likewise 8a: hidden tiles of the target, whatever they were.
+// Likewise weigh: hidden tiles of the target, whatever they were.
 void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
-// Likewise 8a, and 8c: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
+// Likewise weigh, and edge_rois: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
 void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// 8b: how many pixels of every other row with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023;
+// depth_bounds: how many pixels of every other row with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023;
 // what is nearer or farther counts as the first or the last.
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
-// 8c: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
+// edge_rois: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
 // see; and the tiles that meet them.
 struct InverseDepthBounds {
     double far, near;
@@ -90,7 +90,7 @@ struct Borders {
 Borders findBorders(const InverseDepthBounds& bounds, const EyePair& eyes, const StereoSettings& settings);
 std::vector<TileKind> markEdges(const Borders& borders, glm::uvec2 size_px);
 
-// 8d: what reached a pixel of the target: the nearest; of equals one that landed there before one that lies between two that did
+// reproject: what reached a pixel of the target: the nearest; of equals one that landed there before one that lies between two that did
 // not part far, and the one of the greater spread. Depths are equal where they round to the same, see roundedDepth.
 struct Arrival {
     enum Way : std::uint8_t { kNone, kBetween, kLanded };
@@ -104,7 +104,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
 // To 19 bits, which is how far the device tells inverse depths apart.
 double roundedDepth(double inverse_depth);
 
-// 8e: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
+// resample: the place of each pixel of the target in the source's picture: that of the pixel at `column` of its row, at that depth.
 struct Resolved {
     PixelClass pixel_class;
     std::uint32_t column;
@@ -113,51 +113,51 @@ struct Resolved {
     std::uint32_t rows_up = 0;  // of the source, above its own
 };
 std::vector<Resolved> resolve(std::span<const Arrival> arrivals, const EyePair& eyes, const StereoSettings& settings);
-// Likewise 8e, where errors are predicted and pixels keep their rows: those of an odd row are those of the even one above it, seen in
+// Likewise resample, where errors are predicted and pixels keep their rows: those of an odd row are those of the even one above it, seen in
 // their own row of the source; what repeats another column's pixel does so from the even row.
 void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px);
-// Likewise 8e: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
+// Likewise resample: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise 8e where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
+// Likewise resample where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
 // between two of a row what is linear between these.
 std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
                                     const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise 8e: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
+// Likewise resample: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
 std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                    glm::uvec2 size_px);
-// Likewise 8e: the expected squared error of each unmarked tile: of holes, of pixels whose depth is uncertain, and of sampling.
+// Likewise resample: the expected squared error of each unmarked tile: of holes, of pixels whose depth is uncertain, and of sampling.
 std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
                                  std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// 8f: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what the source
+// newcomers: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what the source
 // sees in the middle of its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
                          std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
                          const StereoSettings& settings);
 
-// 8g: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
+// components: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
 // With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.
 std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
                            std::size_t most_boxes = SIZE_MAX);
 
-// 8h: which sixteenth of an octave of error a pair the unmarked tiles are in, from 2^-43 upwards; nothing for tiles without an error.
+// price: which sixteenth of an octave of error a pair the unmarked tiles are in, from 2^-43 upwards; nothing for tiles without an error.
 // `seen_shares`: of each tile's squared error, what the eye sees; empty: all. Nothing for a tile that is not seen whole and whose rest
 // nobody notices.
 std::vector<std::optional<std::uint32_t>> price(std::span<const TileKind> kinds, std::span<const double> errors,
                                                 std::span<const std::uint64_t> costs, std::span<const double> seen_shares = {});
-// Likewise 8h: the finest cycle that an eye resolves is w0 + m e, with w0 = 1/48 degree and m = 0.022, at an angle e from where it looks
+// Likewise price: the finest cycle that an eye resolves is w0 + m e, with w0 = 1/48 degree and m = 0.022, at an angle e from where it looks
 // (Guenter, Finch, Drucker, Tan, Snyder, Foveated 3D Graphics, 2012); a picture has cycles of two pixels and longer. The share of an
 // error that is spread over all of these and that the eye sees: the square of their quotient, for each tile's middle.
 std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 
-// 8i: from the greatest price down, the first of equals first, the tiles that together cost no more than `budget_cost`.
+// select: from the greatest price down, the first of equals first, the tiles that together cost no more than `budget_cost`.
 // `whole_prices`: what they would be if all errors were seen whole; empty: as they are. The budget ends where it would among these, and
 // what is worth less than that is not rendered.
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
             std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
-// 8e once more, where the tiles' `seen_shares` are known: where the eye sees no more than a quarter of an error, so that its finest cycle
+// resample once more, where the tiles' `seen_shares` are known: where the eye sees no more than a quarter of an error, so that its finest cycle
 // has four pixels, an odd row of an unmarked tile is the mean of those above and below, with the upper one's classes. The last row of a
 // tile or of the picture stays as it is.
 void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,

@@ -1,4 +1,4 @@
-// 8a: the tiles that the source does not see, those that nobody sees, and those that cost less to render than to move.
+// weigh: the tiles that the source does not see, those that nobody sees, and those that cost less to render than to move.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 

@@ -1,4 +1,4 @@
-// A dominant pixel on its way to where the affiliated eye sees it: 8d, and 8e where it moves pixels itself. For shaders that know
+// A dominant pixel on its way to where the affiliated eye sees it: reproject, and resample where it moves pixels itself. For shaders that know
 // pass.moving, pass.shown_mask and kForward, include lib/stereo.glsl, lib/moving_pixel.glsl and lib/unseen.glsl, and say
 // whether parts of the dominant picture were not rendered, and where pixels arrive.
 

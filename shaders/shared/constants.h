@@ -32,11 +32,11 @@ BINOSPLAT_CONSTANT uint kSortRun = 16;
 BINOSPLAT_CONSTANT uint kMaxSortRuns = kMaxSortBlocks / kSortRun;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 
-// 5_bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
+// bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 
-// 8f_newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
+// newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
 BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;
 
 // A list holds no more: SPIR-V takes the index of an array as a signed number.
@@ -102,13 +102,13 @@ BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
 // What a tile costs to render in addition to its pairs, in pairs: a workgroup starts and 256 pixels are written.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
-// Moving costs something even where tiles are not moved, since 7 and 8e, or 8d and 8e, go over all pixels: this part of what moving all
+// Moving costs something even where tiles are not moved, since rasterize and resample, or reproject and resample, go over all pixels: this part of what moving all
 // tiles costs.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
 // Where nothing was moved in the frame before, this part of what moving saves is not counted on.
 BINOSPLAT_CONSTANT uint kResumePart = 8;
 
-// The price list of 8h: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
+// The price list of price: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
 // What a tile costs in the price list at most, in pairs: ten bits of the word say the bin, and one that the tile would be in a higher one
 // if its error were seen whole.
@@ -122,20 +122,20 @@ BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
 // A tile outside where the eye looks is never rendered for its error if the eye sees less than this of its square: a hundredth of what lies
 // between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
-// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and 8e makes a row of
-// those above and below. 8h writes this in place of the tile's error: it is more than any error.
+// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and resample makes a row of
+// those above and below. price writes this in place of the tile's error: it is more than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 // The spread of a moving pixel's inverse depth is kept in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// 8e keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where a
-// device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. 8d brings pixels there, as it
+// resample keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where a
+// device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. reproject brings pixels there, as it
 // does for canted eyes whatever the length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 2304;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
-// What 8e makes a row from: arrivals in memory; the dominant eye's pixels; these where none of its tiles is hidden, as is most often so
+// What resample makes a row from: arrivals in memory; the dominant eye's pixels; these where none of its tiles is hidden, as is most often so
 // where errors are predicted; or the places that the row above was sampled at.
 BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
 BINOSPLAT_CONSTANT uint kRowMoved = 1;
@@ -167,7 +167,7 @@ BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;
-// Tiles that a workgroup of 8b counts: 16 pixels an invocation, which clears eight bins and adds eight up.
+// Tiles that a workgroup of depth_bounds counts: 16 pixels an invocation, which clears eight bins and adds eight up.
 BINOSPLAT_CONSTANT uint kBoundsTiles = 16;
 
 BINOSPLAT_END_SHARED

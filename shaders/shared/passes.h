@@ -6,7 +6,7 @@
 
 BINOSPLAT_BEGIN_SHARED
 
-// 1_cull: which splats may touch a pixel of any eye.
+// cull: which splats may touch a pixel of any eye.
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -20,7 +20,7 @@ struct CullPass {
     uint capacity;  // of the list
 };
 
-// 2_compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
+// compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
 struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -35,7 +35,7 @@ struct CompactPass {
     Place middle;    // between the eyes, where distances are wanted
 };
 
-// 4_project: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
+// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
 struct ProjectPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -53,7 +53,7 @@ struct ProjectPass {
     uint capacity;  // of the pairs
 };
 
-// 5_bin and 5_bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
+// bin and bin_large: a (tile, splat) pair for each tile a splat meets, front to back.
 struct BinPass {
     ProjectedSplats splats;
     UVec2s tile_sets;
@@ -63,14 +63,14 @@ struct BinPass {
     ListStates pairs;
     Uints tiles;         // out
     Uints ranks;         // out: indices into `splats`
-    Uints large_splats;  // out of 5_bin, in no order: what is left to 5_bin_large
+    Uints large_splats;  // out of bin, in no order: what is left to bin_large
     Uints large_begins;  // likewise: where the pairs of each begin
     EyeCounterss counters;
     Uints tile_mask;  // under a mask, as in ProjectPass
     uvec2 size_tiles;
 };
 
-// 6_tile_ranges: where each tile's pairs lie once they are sorted by tile. Under a mask also which tiles have any; the others become
+// tile_ranges: where each tile's pairs lie once they are sorted by tile. Under a mask also which tiles have any; the others become
 // background.
 struct TileRangesPass {
     Uints tiles;
@@ -87,7 +87,7 @@ struct TileRangesPass {
     uvec2 size_px;
 };
 
-// 7_rasterize: blending, a workgroup a tile.
+// rasterize: blending, a workgroup a tile.
 struct RasterizePass {
     EyeViews eyes;
     ProjectedSplats splats;
@@ -107,7 +107,7 @@ struct RasterizePass {
     uint is_light;   // 1: colours and background are light, to be encoded once they are blended
 };
 
-// 8a_weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
+// weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
 struct WeighPass {
     StereoViews stereo;
     UVec2s ranges;  // of the dominant eye's pairs
@@ -124,7 +124,7 @@ struct WeighPass {
     StereoCounterss counters;
 };
 
-// 8b_depth_bounds: paper: how often each depth occurs in the dominant picture.
+// depth_bounds: paper: how often each depth occurs in the dominant picture.
 struct DepthBoundsPass {
     StereoViews stereo;
     FloatColours colours;
@@ -133,7 +133,7 @@ struct DepthBoundsPass {
     Uints bins;  // out: kDepthBins counts
 };
 
-// 8c_edge_rois: paper: the borders that the dominant eye does not see (section 3.5, step 1).
+// edge_rois: paper: the borders that the dominant eye does not see (section 3.5, step 1).
 struct EdgeRoisPass {
     StereoViews stereo;
     Uints bins;
@@ -142,7 +142,7 @@ struct EdgeRoisPass {
     StereoCounterss counters;
 };
 
-// 8d_reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
+// reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
 struct ReprojectPass {
     StereoViews stereo;
     Uints moving;
@@ -150,17 +150,17 @@ struct ReprojectPass {
     Uints shown_mask;  // where the dominant eye has hidden tiles: the others
 };
 
-// 8e_resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
+// resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
 struct ResamplePass {
     StereoViews stereo;
     FloatColours dominant;
     HalfColours half_dominant;
-    Uints moving;             // the dominant eye's pixels or, where 8d ran, the arrivals that it left
+    Uints moving;             // the dominant eye's pixels or, where reproject ran, the arrivals that it left
     FloatColours affiliated;  // out; `moving` may lie in the same row
     HalfColours half_affiliated;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
-    Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where 8h says kSeenCoarsely
+    Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where price says kSeenCoarsely
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
     StereoCounterss counters;
@@ -169,7 +169,7 @@ struct ResamplePass {
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
-// 8f_newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
+// newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
@@ -185,7 +185,7 @@ struct NewcomersPass {
     uint eye;
 };
 
-// 8g_components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
+// components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
 struct ComponentsPass {
     StereoViews stereo;
     ComponentPixels pixels;  // in and out, of holes
@@ -196,7 +196,7 @@ struct ComponentsPass {
     uint box_capacity;
 };
 
-// 8h_price: predicted: what each tile's error costs to mend, and how much there is of each price.
+// price: predicted: what each tile's error costs to mend, and how much there is of each price.
 struct PricePass {
     StereoViews stereo;
     Uints tile_kinds;
@@ -209,7 +209,7 @@ struct PricePass {
     EyeGaze gaze;  // where it is known where the affiliated eye looks
 };
 
-// 8i_select: the tiles that are rendered, as a list and as a mask.
+// select: the tiles that are rendered, as a list and as a mask.
 struct SelectPass {
     StereoViews stereo;
     Uints tile_kinds;  // in and, where errors are predicted, out
@@ -245,7 +245,7 @@ struct SortScatterPass {
     uint digits;
 };
 
-// 10_present: an eye's picture as the headset takes it.
+// present: an eye's picture as the headset takes it.
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;

@@ -113,7 +113,7 @@ struct StereoView {
     uvec2 size_px;  // of both eyes
     uvec2 size_tiles;
     uint row_words;        // from a row of moving pixels or of arrivals to the next
-    uint rows_apart;       // 2: 8e takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
+    uint rows_apart;       // 2: resample takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
     uint gap_px;           // runs of uncovered pixels up to this long are gaps; longer ones are holes
     uint margin_px;        // paper: around what needs rendering
     uint edge_samples;     // paper: N, along each edge
@@ -180,7 +180,7 @@ BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 struct EyeCounters {
     uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
     uint square_box_pairs_high;
-    uint large_splats;  // splats that 5_bin left to 5_bin_large
+    uint large_splats;  // splats that bin left to bin_large
     uint full_tiles;    // under a mask: tiles with pairs
     DispatchSize per_full_tile;
 };

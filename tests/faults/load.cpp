@@ -64,9 +64,9 @@ VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUti
     {
         const std::lock_guard lock(g_load_mutex);
         Recording& recording = g_recordings[commands];
-        recording.is_in_present = std::strcmp(label->pLabelName, "10_present") == 0;
+        recording.is_in_present = std::strcmp(label->pLabelName, "present") == 0;
         const std::string name = label->pLabelName;
-        recording.reprojects = recording.reprojects || name.find("8e_resample") != std::string::npos;
+        recording.reprojects = recording.reprojects || name.find("resample") != std::string::npos;
         if (name.starts_with("both ")) { ++recording.both_passes; }
         if (name.starts_with("dominant ")) { ++recording.dominant_passes; }
     }

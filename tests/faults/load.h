@@ -1,7 +1,7 @@
 // Frames that take as long as a test says, whatever the device makes of them.
 // BINOSPLAT_FAULT_LOAD=FRAME:MS/MS[,FRAME:MS/MS...], by FRAME from 0: from that frame on, a frame of as many pixels as the first one takes
 // the first time if both eyes are rendered and the second if one is made from the other; fewer pixels take their share of it. Frames are
-// what has a pass "10_present". Where one eye is made from the other, the dominant eye takes half of what rendering both does.
+// what has a pass "present". Where one eye is made from the other, the dominant eye takes half of what rendering both does.
 #pragma once
 
 #include <vulkan/vulkan.h>

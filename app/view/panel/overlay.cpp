@@ -154,8 +154,8 @@ void drawStages(const FrameResult& frame) {
     }
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);
-    for (const auto& [name, ms] : addUp(frame.gpu_ms)) {
-        text(fmt::format("{:>6.2f} {}", ms, name));
+    for (const auto& [label, ms] : addUp(frame.gpu_ms)) {
+        text(fmt::format("{:>6.2f} {}", ms, label.text()));
         ImGui::NextColumn();
     }
     ImGui::Columns(1);

@@ -24,7 +24,7 @@ std::array<Eye, 2> smallEyes(std::uint32_t width_px, bool canted) {
     return eyes;
 }
 
-// Of widths with the same steps one is enough, see 8e.
+// Of widths with the same steps one is enough, see resample.
 std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     std::vector<std::uint32_t> widths, steps;
     for (const double share : kShares) {

@@ -1,4 +1,4 @@
-// 8c: the borders of the affiliated picture that the dominant eye does not see (paper, section 3.5, step 1). Samples along the
+// edge_rois: the borders of the affiliated picture that the dominant eye does not see (paper, section 3.5, step 1). Samples along the
 // edges of the dominant picture are moved at the least and the greatest depth; where they land bounds what is covered. A thread a tile:
 // every workgroup finds the bounds for itself, since that takes it less than waiting for another dispatch.
 #version 460

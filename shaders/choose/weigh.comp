@@ -1,4 +1,4 @@
-// 8a: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows. Rendering it costs in proportion to its
+// weigh: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows. Rendering it costs in proportion to its
 // pairs of tile and splat, and the dominant eye's ranges show about how many these are. A thread per tile. The last workgroup decides
 // whether moving pays at all: if not, the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did
 // not pay in the frame before, the dominant picture comes without what moving needs, and the decision is only for the next frame.

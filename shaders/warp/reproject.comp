@@ -1,5 +1,5 @@
-// 8d: the dominant eye's pixels go to where the affiliated eye sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
-// greatest inverse depth stays, whatever the order of threads. 8e finds the source from it again, so that 32-bit atomics suffice.
+// reproject: the dominant eye's pixels go to where the affiliated eye sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
+// greatest inverse depth stays, whatever the order of threads. resample finds the source from it again, so that 32-bit atomics suffice.
 // A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here already,
 // since what lies behind would otherwise show through the cracks. Where colours are copied, they are not: in the paper only pixels move
 // (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 4).

@@ -1,4 +1,4 @@
-// 8i: the tiles that are rendered, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
+// select: the tiles that are rendered, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
 // with the greatest error per pair, as many as the budget allows. Of equal ones the first are taken. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -15,14 +15,14 @@ layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds 
 
 const uint kTilesPerStep = 8;  // loaded at a time, since each load takes as long as all of them
 
-// Where the budget ends (8h).
+// Where the budget ends (price).
 struct End {
     uint bin;
     uint left;  // of the budget, for its tiles
 };
 
 // Whether what is left of the budget in the last bin is for this tile. One that the list counted in a higher bin, as if it were seen whole
-// (8h), has had its turn there, unless the budget is enough for all.
+// (price), has had its turn there, unless the budget is enough for all.
 bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
 // What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.

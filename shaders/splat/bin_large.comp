@@ -1,4 +1,4 @@
-// 5, second step: the pairs of the splats that 5_bin listed. A subgroup a splat and a lane a row of tiles.
+// bin, second step: the pairs of the splats that bin listed. A subgroup a splat and a lane a row of tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -65,7 +65,7 @@ void putLarge(uint i, uint lanes) {
         pairs.x += subgroupAdd(tiles);
         first_row += int(lanes);
     } while (first_row < box.w);
-    // 4_project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
+    // project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
         pass.tiles.at[pair] = pass.size_tiles.x * pass.size_tiles.y;
         pass.ranks.at[pair] = rank;

@@ -1,5 +1,5 @@
-// 8e: every affiliated pixel that no tile renders gets a place in the dominant picture and is sampled there. A workgroup per row.
-// Where pixels stay in their rows and a row fits into shared memory, this pass moves them there itself; otherwise 8d has done so.
+// resample: every affiliated pixel that no tile renders gets a place in the dominant picture and is sampled there. A workgroup per row.
+// Where pixels stay in their rows and a row fits into shared memory, this pass moves them there itself; otherwise reproject has done so.
 // A pixel that something reached keeps its depth. The others form runs between two such pixels. A short run across a slanted surface
 // interpolates its depth; any other repeats the farther neighbour, since what was hidden lies behind. Few tiles have runs: they are listed
 // and gone through once more, so that all other pixels do without the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
@@ -8,7 +8,7 @@
 // Only even rows have errors, which count for two. They come first, and the odd ones once tiles are chosen: of a tile that is going to be
 // rendered only half of the pixels are then sampled in vain. Where pixels stay in their rows, an odd row is sampled at the places of the
 // even one above it, so that only half of the rows are moved. Its colours are its own, except where it repeats a neighbour. Where an eye
-// does not resolve two rows (8h), an odd row is the mean of those above and below.
+// does not resolve two rows (price), an odd row is the mean of those above and below.
 // Where colours are copied (kForward), this is the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// 4: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes how long the list of
+// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes how long the list of
 // pairs is.
 #version 460
 #extension GL_GOOGLE_include_directive : require

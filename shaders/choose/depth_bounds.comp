@@ -1,4 +1,4 @@
-// 8b: how often each depth occurs in the dominant picture, for the robust extremes that the edge ROIs start from. Every other row is as
+// depth_bounds: how often each depth occurs in the dominant picture, for the robust extremes that the edge ROIs start from. Every other row is as
 // good as all. A workgroup counts kBoundsTiles tiles side by side before it adds its bins to everybody's.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// 8f: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
+// newcomers: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
 // so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require

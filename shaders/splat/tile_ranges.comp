@@ -1,4 +1,4 @@
-// 6: where each tile's pairs lie, once they are sorted by tile: a thread a tile looks for the first of its own and the first of the next.
+// tile_ranges: where each tile's pairs lie, once they are sorted by tile: a thread a tile looks for the first of its own and the first of the next.
 // Under a mask tiles with pairs are listed for 7; those without become background here, which takes less than a workgroup each.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// 2: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the depth of their centres,
+// compact: the visible splats in the scene's order, so that a stable sort breaks ties by index, with the depth of their centres,
 // or with their distance from the middle between the eyes.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// 8h: the price of each tile, which is its expected error per pair, and how much there is to render at each price. A thread per tile. Where
+// price: the price of each tile, which is its expected error per pair, and how much there is to render at each price. A thread per tile. Where
 // it is known where the eye looks, only what the eye sees of an error counts, and tiles in which it does not resolve two rows are marked.
 // The last workgroup finds the price at which the budget ends.
 #version 460
@@ -30,7 +30,7 @@ float seenShare(uvec2 at) {
 
 // What a tile's error is worth, and its cost; its cost to the list.
 uint priceOf(uint tile, uvec2 size_tiles) {
-    // Sums stop growing there (8f); 8e adds far less than that.
+    // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float share = kFoveated ? seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }

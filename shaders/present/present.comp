@@ -1,4 +1,4 @@
-// 10: an eye's picture as the headset's swapchain image wants it: 8 bits a channel and, on request, its depth. Trained values are
+// present: an eye's picture as the headset's swapchain image wants it: 8 bits a channel and, on request, its depth. Trained values are
 // display-encoded already, which is what the bytes of an sRGB image are.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,5 +1,5 @@
-// 5: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are a bit each; the few
-// larger splats are listed for 5_bin_large, so that one over the whole screen stalls nothing.
+// bin: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are a bit each; the few
+// larger splats are listed for bin_large, so that one over the whole screen stalls nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -1,4 +1,4 @@
-// 8g: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2). Union-find with links towards the
+// components: connected holes inside the picture become boxes of tiles (paper, section 3.5, step 2). Union-find with links towards the
 // smaller index (Jaiganesh and Burtscher 2018): whatever the order of threads, a component's root is its first pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -7,7 +7,7 @@
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ComponentsPass pass; };
 
-// The steps, each a dispatch over the pixels except the last, which strides over the boxes. 8e has made every hole its own parent.
+// The steps, each a dispatch over the pixels except the last, which strides over the boxes. resample has made every hole its own parent.
 const uint kStepUnite = 0, kStepCount = 1, kStepBound = 2, kStepMark = 3;
 layout(constant_id = 0) const uint kStep = kStepUnite;
 

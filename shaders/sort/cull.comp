@@ -1,4 +1,4 @@
-// 1: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
+// cull: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
 // the planes of the view by its support function, and its low-pass by the projected centre; a 3D Gaussian by its box on the screen.
 // The last workgroup writes how long their list is.
 #version 460

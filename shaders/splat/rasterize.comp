@@ -1,4 +1,4 @@
-// 7: blending, front to back, a workgroup a tile. A tile's splats come to shared memory a batch at a time, and with each a bit
+// rasterize: blending, front to back, a workgroup a tile. A tile's splats come to shared memory a batch at a time, and with each a bit
 // for every cell of 8x8 pixels that it meets; the threads of a cell (one subgroup, where its width allows) then walk over
 // their own splats alone. A thread blends several pixels of a column, so that what it reads from shared memory serves them all.
 #version 460
