@@ -5,7 +5,7 @@
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
-#include "engine/passes/stereo_passes.h"
+#include "engine/passes/warp_passes.h"
 #include "engine/present.h"
 #include "engine/setup/output_files.h"
 
@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
-    append(table, stereoKernels(context));
+    append(table, warpKernels(context));
     append(table, presentKernels());
     return table;
 }

@@ -21,7 +21,7 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const EyesOfList both{.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle};
     const auto alone = [&](int eye) { return EyesOfList{.first = eye, .count = 1, .order_eye = eye, .list = eye, .middle = middle}; };
-    EyeTarget dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : EyeTarget{};
+    Target dominant = targetOf(eyes, settings, first), affiliated = eyes.size() == 2 ? targetOf(eyes, settings, second) : Target{};
 
     commands.begin();
     commands.update(buffers_.state, &state, sizeof(state));
@@ -65,52 +65,52 @@ void StereoFrame::recordFrame(Commands& commands, std::span<const Eye> eyes, con
 }
 
 void StereoFrame::recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
-                               const EyeTarget& affiliated) {
+                               const Target& affiliated) {
     const int first = dominant_, second = 1 - dominant_;
-    stereo_passes_.record(commands, {.scene = *scene_,
-                                     .buffers = buffers_,
-                                     .stereo = stereo_buffers_,
-                                     .settings = stereo,
-                                     .rectified = relation_.rectified,
-                                     .may_move = may_move_,
-                                     .list = affiliated.list,
-                                     .dominant_eye = first,
-                                     .dominant = images_[first],
-                                     .affiliated = images_[second],
-                                     .dominant_shown = shown_[first],
-                                     .affiliated_shown = shown_[second],
-                                     .background = affiliated.background,
-                                     .affiliated_lens = eyes[static_cast<std::size_t>(second)].intrinsics,
-                                     .affiliated_gaze = settings.gazes[static_cast<std::size_t>(second)]});
+    warp_passes_.record(commands, {.scene = *scene_,
+                                   .buffers = buffers_,
+                                   .warp = stereo_buffers_,
+                                   .settings = stereo,
+                                   .rectified = relation_.rectified,
+                                   .may_move = may_move_,
+                                   .list = affiliated.list,
+                                   .target_view = second,
+                                   .source = images_[first],
+                                   .target = images_[second],
+                                   .source_shown = shown_[first],
+                                   .target_shown = shown_[second],
+                                   .background = affiliated.background,
+                                   .target_lens = eyes[static_cast<std::size_t>(second)].intrinsics,
+                                   .target_gaze = settings.gazes[static_cast<std::size_t>(second)]});
 }
 
 FrameState StereoFrame::firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const {
     FrameState state{};
     for (std::size_t e = 0; e < eyes.size(); ++e) { state.eyes[e] = viewOf(eyes[e], settings.near); }
     if (reprojects(settings.mode)) {
-        state.stereo = stereoViewOf(relation_, eyes[0].size_px, stereo_buffers_.rowWords(), stereo);
-        state.stereo_counters = firstCountersOf(stereo, eyes[0].size_px);
+        state.warp = warpViewOf(relation_, eyes[0].size_px, stereo_buffers_.rowWords(), stereo);
+        state.warp_counters = firstCountersOf(stereo, eyes[0].size_px);
     }
     return state;
 }
 
-EyeTarget StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const {
-    const EyeImage& image = images_[eye];
-    EyeTarget target{.eye = eye,
-                     .list = listOf(eye),
-                     .size_px = eyes[eye].size_px,
-                     .size_tiles = tilesOf(eyes[eye].size_px),
-                     .pairs = buffers_.pairs.arrays(),
-                     .image = &image,
-                     .background = glm::vec3(settings.background),
-                     .kept = {.depth = image.depths.bytes() > 0, .half_floats = settings.half_floats},
-                     .square_boxes = settings.square_boxes,
-                     .shown = shown_[eye].mask()};
+Target StereoFrame::targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const {
+    const Picture& image = images_[eye];
+    Target target{.eye = eye,
+                  .list = listOf(eye),
+                  .size_px = eyes[eye].size_px,
+                  .size_tiles = tilesOf(eyes[eye].size_px),
+                  .pairs = buffers_.pairs.arrays(),
+                  .image = &image,
+                  .background = glm::vec3(settings.background),
+                  .kept = {.depth = image.depths.bytes() > 0, .half_floats = settings.half_floats},
+                  .square_boxes = settings.square_boxes,
+                  .shown = shown_[eye].mask()};
     if (eye != dominant_) { return target; }
     target.kept.moments = settings.keep_moments;
     target.moments = moments_.address<gpu::vec2>();
     if (!reprojects(settings.mode)) { return target; }
-    const EyeImage& other = images_[1 - eye];
+    const Picture& other = images_[1 - eye];
     if (may_move_) {
         target.kept.moving = true;
         target.kept.spread = settings.mode == Mode::kPredicted;

@@ -4,8 +4,8 @@
 #include "engine/geometry.h"
 #include "engine/mode.h"
 #include "engine/passes/passes.h"
-#include "engine/passes/stereo_passes.h"
-#include "engine/passes/stereo_traffic.h"
+#include "engine/passes/warp_passes.h"
+#include "engine/passes/warp_traffic.h"
 #include "engine/picture/image.h"
 
 #include <array>
@@ -98,7 +98,7 @@ public:
     // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
     // How many it has, but those of sorting.
-    [[nodiscard]] std::size_t kernelCount() const { return passes_.kernelCount() + stereo_passes_.kernelCount(); }
+    [[nodiscard]] std::size_t kernelCount() const { return passes_.kernelCount() + warp_passes_.kernelCount(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
@@ -117,8 +117,8 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for whoever shows them.
-    [[nodiscard]] const EyeImage& image(int eye) const { return images_[eye]; }
-    [[nodiscard]] const StereoBuffers& stereoBuffers() const { return stereo_buffers_; }
+    [[nodiscard]] const Picture& image(int eye) const { return images_[eye]; }
+    [[nodiscard]] const WarpBuffers& warpBuffers() const { return stereo_buffers_; }
 
 private:
     struct MovesAsked {
@@ -177,7 +177,7 @@ private:
     void recordOrderOfAffiliated(Commands& commands, Order order);
     // Passes weigh to select: the dominant eye's picture goes where the affiliated eye sees it.
     void recordMoving(Commands& commands, std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo,
-                      const EyeTarget& affiliated);
+                      const Target& affiliated);
     // Whether rasterize leaves odd rows out of what moves: they will be moved like even ones, and nobody asks for their moments.
     [[nodiscard]] static bool sumsEvenRows(const FrameSettings& settings, const EyeRelation& relation) {
         return settings.mode == Mode::kPredicted && relation.rectified && !settings.keep_moments &&
@@ -188,7 +188,7 @@ private:
     // Of visible splats, an eye's: both eyes' unless each has its own.
     [[nodiscard]] int listOf(int eye) const { return per_eye_ ? eye : 0; }
     [[nodiscard]] FrameState firstStateOf(std::span<const Eye> eyes, const FrameSettings& settings, const StereoSettings& stereo) const;
-    [[nodiscard]] EyeTarget targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const;
+    [[nodiscard]] Target targetOf(std::span<const Eye> eyes, const FrameSettings& settings, int eye) const;
     void prepareLists();
     // Pairs that the dominant eye's sort finds room for in the picture of the other eye, while nothing is in it.
     [[nodiscard]] std::uint32_t mostLentPairs() const;
@@ -216,11 +216,11 @@ private:
     const Context& context_;
     const GpuScene* scene_;
     Passes passes_;
-    StereoPasses stereo_passes_;
+    WarpPasses warp_passes_;
     FrameBuffers buffers_;
-    StereoBuffers stereo_buffers_;
+    WarpBuffers stereo_buffers_;
     std::array<ShownTiles, 2> shown_;
-    std::array<EyeImage, 2> images_;
+    std::array<Picture, 2> images_;
     Buffer moments_;  // I and J of the dominant eye, where keep_moments asks for them
     std::array<glm::uvec2, 2> sizes_px_{};
     FrameState state_{};

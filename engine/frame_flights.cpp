@@ -21,7 +21,7 @@ constexpr double kJumpZoom = 0.1;
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       passes_(context, options.threads_per_cell),
-      stereo_passes_(context),
+      warp_passes_(context),
       shown_{ShownTiles(context), ShownTiles(context)},
       first_capacity_(options.first_capacity),
       flights_{Flight(context), Flight(context)} {
@@ -40,14 +40,14 @@ void StereoFrame::show(const GpuScene& scene) {
 void StereoFrame::rebuildKernels() {
     finish();
     passes_.rebuildKernels();
-    stereo_passes_.rebuildKernels();
+    warp_passes_.rebuildKernels();
 }
 
 void StereoFrame::takeKernels(StereoFrame& from) {
     finish();
     from.finish();
     passes_.takeKernels(from.passes_);
-    stereo_passes_.takeKernels(from.stereo_passes_);
+    warp_passes_.takeKernels(from.warp_passes_);
 }
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
@@ -72,7 +72,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
     prepare(eyes, settings);
     renderUntilComplete(eyes, settings, append);
     FrameResult result = collect(flights_[turn_]);
-    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
+    may_move_ = settings.mode != Mode::kPredicted || state_.warp_counters.pays != 0;
     return result;
 }
 
@@ -109,7 +109,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     result = collect(flights_[turn_]);
     result->counters["frames_cut_short"] = cut_short_;
     result->counters["frames_done_again"] = done_again_;
-    may_move_ = settings.mode != Mode::kPredicted || state_.stereo_counters.pays != 0;
+    may_move_ = settings.mode != Mode::kPredicted || state_.warp_counters.pays != 0;
     makeRoomAhead();
     if (signals) {
         const std::lock_guard lock(context_.queueMutex());
@@ -131,7 +131,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     FrameResult result = collect(flight);
     result.counters["frames_cut_short"] = cut_short_;
     result.counters["frames_done_again"] = done_again_;
-    if (flight.settings.mode == Mode::kPredicted && flight.moves_asked == moves_asked_) { may_move_ = state_.stereo_counters.pays != 0; }
+    if (flight.settings.mode == Mode::kPredicted && flight.moves_asked == moves_asked_) { may_move_ = state_.warp_counters.pays != 0; }
     return result;
 }
 

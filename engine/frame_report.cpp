@@ -44,7 +44,7 @@ FrameResult StereoFrame::collect(const Flight& flight) const {
 void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const {
     const FrameSettings& settings = flight.settings;
     auto& counters = result.counters;
-    const gpu::StereoCounters& stereo = state_.stereo_counters;
+    const gpu::WarpCounters& stereo = state_.warp_counters;
     if (stereo_buffers_.classesBuffer().bytes() > 0) {
         counters["pixels_covered"] = stereo.covered_pixels;
         counters["pixels_gap"] = stereo.gap_pixels;
@@ -64,17 +64,17 @@ void StereoFrame::collectStereo(const Flight& flight, FrameResult& result) const
     counters["hole_components"] = stereo.components;
     counters["splats_newcomers"] = stereo.newcomers;
     counters["stereo_bytes"] = stereo_buffers_.bytes();
-    result.stereo_bytes_per_pixel = stereoTraffic({.settings = stereoSettingsOf(settings),
-                                                   .may_move = flight.may_move,
-                                                   .moves_rows = movesRows(flight.relation.rectified, stereo_buffers_),
-                                                   .even_rows = settings.mode == Mode::kPredicted && flight.relation.rectified,
-                                                   .sums_even_rows = sumsEvenRows(settings, flight.relation),
-                                                   .half_floats = settings.half_floats,
-                                                   .affiliated_depth = images_[1 - dominant_].depths.bytes() > 0,
-                                                   .classes = stereo_buffers_.classesBuffer().bytes() > 0,
-                                                   .size_px = flight.eyes[0].size_px,
-                                                   .counters = stereo,
-                                                   .visible = state_.visible[0].count});
+    result.stereo_bytes_per_pixel = warpTraffic({.settings = stereoSettingsOf(settings),
+                                                 .may_move = flight.may_move,
+                                                 .moves_rows = movesRows(flight.relation.rectified, stereo_buffers_),
+                                                 .even_rows = settings.mode == Mode::kPredicted && flight.relation.rectified,
+                                                 .sums_even_rows = sumsEvenRows(settings, flight.relation),
+                                                 .half_floats = settings.half_floats,
+                                                 .target_depth = images_[1 - dominant_].depths.bytes() > 0,
+                                                 .classes = stereo_buffers_.classesBuffer().bytes() > 0,
+                                                 .size_px = flight.eyes[0].size_px,
+                                                 .counters = stereo,
+                                                 .visible = state_.visible[0].count});
     const std::uint32_t shown = stereo_buffers_.tileCount() - shown_[1 - dominant_].hiddenCount();
     result.tiles_rendered = shown > 0 ? static_cast<double>(state_.masked_tiles.count) / shown : 0.0;
     if (stereo.picture_cost > 0) { result.work_rendered = static_cast<double>(stereo.chosen_cost) / stereo.picture_cost; }
@@ -89,7 +89,7 @@ void StereoFrame::explainLeftOut(const Flight& flight, FrameResult& result) cons
     const bool patched = settings.mode == Mode::kPaper || settings.mode == Mode::kPredicted;
     const bool inverse = reprojects(settings.mode) && settings.stereo.depth_choice == gpu::kDepthInverse;
     const bool moments = settings.keep_moments || settings.mode == Mode::kPredicted || inverse;
-    const gpu::StereoCounters& stereo = state_.stereo_counters;
+    const gpu::WarpCounters& stereo = state_.warp_counters;
     leaveOut(scene_->shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", scene_->shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(eyes.size() == 2 && images_[1 - dominant_].depths.bytes() == 0, "depth of the affiliated eye: nothing reads it");

@@ -40,14 +40,14 @@ void StereoFrame::prepareImages(std::span<const Eye> eyes, const FrameSettings& 
         if (dominant) { resize(moments_, "inverse depth moments", settings.keep_moments ? pixels * sizeof(gpu::vec2) : 0); }
     }
     resize(buffers_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));
-    StereoBufferNeeds needs;
+    WarpBufferNeeds needs;
     if (reprojects(settings.mode)) {
         const bool components = settings.mode == Mode::kPaper && settings.stereo.center_rois;
         needs = {sizes_px_[0], settings.keep_classes || components, settings.half_floats, components ? kHoleBoxes : 0};
     }
     if (stereo_buffers_.needs() != needs) {
         stereo_buffers_ = {};
-        stereo_buffers_ = StereoBuffers(context_, needs);
+        stereo_buffers_ = WarpBuffers(context_, needs);
     }
 }
 

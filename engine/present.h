@@ -7,12 +7,12 @@ namespace binosplat {
 
 // An eye's picture and what else goes with it.
 struct PresentedEye {
-    const EyeImage* image = nullptr;
+    const Picture* image = nullptr;
     glm::uvec2 size_px{0, 0};
-    const StereoBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
-    vk::Image colour;                          // where the picture goes; 8-bit RGBA or BGRA
-    vk::Image depth;                           // where its depth goes, D32: near / depth, 0 where nothing is; or null
-    bool see_through = false;                  // its alpha goes along, multiplied in as headsets blend: as light
+    const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
+    vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA
+    vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where nothing is; or null
+    bool see_through = false;                // its alpha goes along, multiplied in as headsets blend: as light
 };
 
 // All kernels of `present`.

@@ -83,7 +83,7 @@ bool isChosen(const AffiliatedFrame& made, std::size_t tile) { return made.tile_
 
 TEST_CASE_FIXTURE(Gpu, "price counts of an error what the twin's eye sees, wherever it looks") {
     const Eye eye{Pose{}, intrinsicsFromAngles({-0.9, 0.7, 0.8, -0.85}, {531, 777}), {531, 777}};
-    gpu::StereoView view{};
+    gpu::WarpView view{};
     view.size_px = eye.size_px;
     view.size_tiles = tilesOf(eye.size_px);
     const Errors tiles(std::size_t{view.size_tiles.x} * view.size_tiles.y);

@@ -1,7 +1,7 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
 #include "engine/passes/passes.h"
-#include "engine/passes/stereo_passes.h"
+#include "engine/passes/warp_passes.h"
 #include "engine/present.h"
 #include "shaders/embedded_shaders.h"
 #include "shaders/shared/passes.h"
@@ -61,11 +61,11 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ListState, FIELD(needed), FIELD(count), FIELD(groups_done), FIELD(run_groups_done), FIELD(per_item), FIELD(per_block),
                FIELD(per_sort_block)),
         LAYOUT(PixelMap, FIELD(excess_x), FIELD(excess_y), FIELD(excess_z), FIELD(shift)),
-        LAYOUT(StereoView, FIELD(affiliated_from_dominant), FIELD(dominant_from_affiliated), FIELD(size_px), FIELD(size_tiles),
-               FIELD(row_words), FIELD(rows_apart), FIELD(gap_px), FIELD(margin_px), FIELD(edge_samples), FIELD(tight_edges),
-               FIELD(move_cost), FIELD(budget), FIELD(hole_error), FIELD(newcomer_error)),
+        LAYOUT(WarpView, FIELD(target_from_source), FIELD(source_from_target), FIELD(size_px), FIELD(size_tiles), FIELD(row_words),
+               FIELD(rows_apart), FIELD(gap_px), FIELD(margin_px), FIELD(edge_samples), FIELD(tight_edges), FIELD(move_cost), FIELD(budget),
+               FIELD(hole_error), FIELD(newcomer_error)),
         LAYOUT(ComponentPixel, FIELD(parent), FIELD(component)),
-        LAYOUT(StereoCounters, FIELD(covered_pixels), FIELD(gap_pixels), FIELD(hole_pixels), FIELD(components), FIELD(edge_tiles),
+        LAYOUT(WarpCounters, FIELD(covered_pixels), FIELD(gap_pixels), FIELD(hole_pixels), FIELD(components), FIELD(edge_tiles),
                FIELD(center_tiles), FIELD(predicted_tiles), FIELD(cheap_tiles), FIELD(newcomers), FIELD(moved_tiles), FIELD(picture_cost),
                FIELD(shown_tiles), FIELD(saved_cost), FIELD(chosen_cost), FIELD(moves), FIELD(pays), FIELD(last_bin), FIELD(left_for_last),
                FIELD(borders_px), FIELD(per_pixel_block), FIELD(per_row), FIELD(per_visible), FIELD(component_groups)),
@@ -86,22 +86,22 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(half_colours), FIELD(depths),
                FIELD(moments), FIELD(moving), FIELD(arrivals), FIELD(full_tiles), FIELD(counters), FIELD(background), FIELD(eye),
                FIELD(row_words), FIELD(is_light)),
-        LAYOUT(WeighPass, FIELD(stereo), FIELD(ranges), FIELD(moving), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors),
+        LAYOUT(WeighPass, FIELD(warp), FIELD(ranges), FIELD(moving), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors),
                FIELD(tile_depths), FIELD(tile_mask), FIELD(price_bins), FIELD(shown_mask), FIELD(visible), FIELD(masked_tiles),
                FIELD(counters)),
-        LAYOUT(DepthBoundsPass, FIELD(stereo), FIELD(colours), FIELD(half_colours), FIELD(moving), FIELD(bins)),
-        LAYOUT(EdgeRoisPass, FIELD(stereo), FIELD(bins), FIELD(tile_kinds), FIELD(shown_mask), FIELD(counters)),
-        LAYOUT(ReprojectPass, FIELD(stereo), FIELD(moving), FIELD(arrivals), FIELD(shown_mask)),
-        LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(stereo), FIELD(tile_depths), FIELD(order), FIELD(visible),
-               FIELD(dominant_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
-        LAYOUT(ResamplePass, FIELD(stereo), FIELD(dominant), FIELD(half_dominant), FIELD(moving), FIELD(affiliated), FIELD(half_affiliated),
+        LAYOUT(DepthBoundsPass, FIELD(warp), FIELD(colours), FIELD(half_colours), FIELD(moving), FIELD(bins)),
+        LAYOUT(EdgeRoisPass, FIELD(warp), FIELD(bins), FIELD(tile_kinds), FIELD(shown_mask), FIELD(counters)),
+        LAYOUT(ReprojectPass, FIELD(warp), FIELD(moving), FIELD(arrivals), FIELD(shown_mask)),
+        LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(warp), FIELD(tile_depths), FIELD(order), FIELD(visible),
+               FIELD(source_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
+        LAYOUT(ResamplePass, FIELD(warp), FIELD(source), FIELD(half_source), FIELD(moving), FIELD(target), FIELD(half_target),
                FIELD(depths), FIELD(tile_kinds), FIELD(tile_errors), FIELD(pixel_classes), FIELD(component_pixels), FIELD(counters),
                FIELD(shown_mask), FIELD(background), FIELD(first_row)),
-        LAYOUT(ComponentsPass, FIELD(stereo), FIELD(pixels), FIELD(pixel_classes), FIELD(boxes), FIELD(tile_kinds), FIELD(counters),
+        LAYOUT(ComponentsPass, FIELD(warp), FIELD(pixels), FIELD(pixel_classes), FIELD(boxes), FIELD(tile_kinds), FIELD(counters),
                FIELD(box_capacity)),
-        LAYOUT(PricePass, FIELD(stereo), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors), FIELD(tile_prices), FIELD(price_bins),
+        LAYOUT(PricePass, FIELD(warp), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors), FIELD(tile_prices), FIELD(price_bins),
                FIELD(masked_tiles), FIELD(counters), FIELD(gaze)),
-        LAYOUT(SelectPass, FIELD(stereo), FIELD(tile_kinds), FIELD(tile_prices), FIELD(tile_list), FIELD(tile_mask), FIELD(tile_costs),
+        LAYOUT(SelectPass, FIELD(warp), FIELD(tile_kinds), FIELD(tile_prices), FIELD(tile_list), FIELD(tile_mask), FIELD(tile_costs),
                FIELD(visible), FIELD(masked_tiles), FIELD(masked_visible), FIELD(counters)),
         LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(run_sums), FIELD(digit_begins), FIELD(list), FIELD(shift),
                FIELD(digits)),
@@ -271,7 +271,7 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
 
 TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = passKernels(context());
-    append(table, stereoKernels(context()));
+    append(table, warpKernels(context()));
     append(table, presentKernels());
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }

@@ -34,11 +34,11 @@ StereoPair loadPair(const std::filesystem::path& folder) {
 }
 
 // Eyes side by side with fx b = 1 px, so that the inverse depth is the disparity in pixels.
-gpu::StereoView makeView(glm::uvec2 size_px, gpu::uint gap_px) {
-    gpu::StereoView view{};
+gpu::WarpView makeView(glm::uvec2 size_px, gpu::uint gap_px) {
+    gpu::WarpView view{};
     view.rows_apart = 1;
-    view.affiliated_from_dominant.shift = {-1.0f, 0.0f, 0.0f};
-    view.dominant_from_affiliated.shift = {1.0f, 0.0f, 0.0f};
+    view.target_from_source.shift = {-1.0f, 0.0f, 0.0f};
+    view.source_from_target.shift = {1.0f, 0.0f, 0.0f};
     view.size_px = size_px;
     view.size_tiles = tilesOf(size_px);
     view.gap_px = gap_px;

@@ -179,7 +179,7 @@ TEST_CASE_FIXTURE(Gpu, "the bytes reach an image, rows top to bottom") {
     image.bindMemory(*memory, 0);
 
     const std::vector<glm::vec4> colours = makeColours(size_px);
-    const EyeImage eye{.colours = upload("colours", colours), .depths = {}};
+    const Picture eye{.colours = upload("colours", colours), .depths = {}};
     Presenter presenter(context(), vk::Format::eR8G8B8A8Srgb);
     const Buffer readback(context(), "read-back", colours.size() * 4, MemoryKind::kReadback);
     run([&](Commands& commands) {

@@ -93,7 +93,7 @@ TEST_CASE_FIXTURE(Gpu, "resample finds the twin's colours, depths and classes in
                 CHECK(touched == 0);
                 CHECK(other_class == 0);
                 CHECK(other_depth == 0);
-                const gpu::StereoCounters counters = device.readCounters();
+                const gpu::WarpCounters counters = device.readCounters();
                 CHECK(counters.covered_pixels == counts[0]);
                 CHECK(counters.gap_pixels == counts[1]);
                 CHECK(counters.hole_pixels == counts[2]);
@@ -338,7 +338,7 @@ TEST_CASE_FIXTURE(Gpu, "resample makes holes their own parents where they are go
                 wrong += (hole ? parent : beyondRounding(colours[i], expected[i], 0, rows) <= 1e-5) ? 0 : 1;
             }
             CHECK(wrong == 0);
-            const gpu::StereoCounters counters = device.readCounters();
+            const gpu::WarpCounters counters = device.readCounters();
             CHECK(counters.hole_pixels == holes);
             const gpu::DispatchSize groups = counters.component_groups;
             const glm::uvec2 tiles = (c.sizePx() + 15u) / 16u;

@@ -67,7 +67,7 @@ Tiles drawTiles(glm::uvec2 size, std::mt19937& random, unsigned marked_percent =
 }
 
 StereoOnDevice toDevice(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost, gpu::uint picture_cost = kPictureCost) {
-    gpu::StereoView view{};
+    gpu::WarpView view{};
     view.size_px = {16 * tiles.size.x, 1};
     view.size_tiles = tiles.size;
     view.budget = static_cast<float>(static_cast<double>(budget_cost) / kPictureCost);
@@ -75,7 +75,7 @@ StereoOnDevice toDevice(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost,
     device.writeTileKinds(tiles.kinds);
     device.writeTileErrors(tiles.errors);
     device.writeTileCosts(tiles.costs);
-    gpu::StereoCounters counters{};
+    gpu::WarpCounters counters{};
     counters.moves = 1;
     counters.picture_cost = picture_cost;
     device.writeCounters(counters);
@@ -135,7 +135,7 @@ void checkSelection(Gpu& gpu, const Tiles& tiles, std::uint64_t budget_cost) {
     }
     CHECK(device.readTileKinds() == expected);
     checkLists(selected, expected, tiles.size);
-    const gpu::StereoCounters counters = device.readCounters();
+    const gpu::WarpCounters counters = device.readCounters();
     CHECK(counters.predicted_tiles == std::ranges::count(expected, gpu::kTilePredicted));
     CHECK(counters.edge_tiles == std::ranges::count(expected, gpu::kTileEdge));
     CHECK(counters.cheap_tiles == std::ranges::count(expected, gpu::kTileCheap));
@@ -222,7 +222,7 @@ TEST_CASE_FIXTURE(Gpu, "select pays from a share of the picture's cost, rounded 
         CAPTURE(picture_cost);
         // 0.15 in single precision is a little more than that.
         StereoOnDevice device = toDevice(*this, tiles, 0, picture_cost);
-        gpu::StereoView view{};
+        gpu::WarpView view{};
         view.size_px = {160, 1};
         view.size_tiles = {10, 1};
         view.budget = static_cast<float>(share);

@@ -1,7 +1,7 @@
 // Dominant pictures and pairs of eyes that the stereo passes are tested on, and the twin's arrays as the device holds them.
 #pragma once
 
-#include "engine/passes/stereo_passes.h"
+#include "engine/passes/warp_passes.h"
 #include "engine/reference/stereo.h"
 #include "tests/affiliated_frames.h"
 

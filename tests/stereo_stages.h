@@ -1,7 +1,7 @@
 // The stereo passes on the device, one at a time, over arrays that come from the host and go back to it.
 #pragma once
 
-#include "engine/passes/stereo_passes.h"
+#include "engine/passes/warp_passes.h"
 #include "tests/gpu_fixture.h"
 #include "tests/pass_stages.h"
 #include "tests/stereo_cases.h"
@@ -29,7 +29,7 @@ class StereoOnDevice {
 public:
     static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;
 
-    StereoOnDevice(Gpu& gpu, const gpu::StereoView& view, const std::vector<gpu::vec4>& colours, const std::vector<gpu::uint>& moving,
+    StereoOnDevice(Gpu& gpu, const gpu::WarpView& view, const std::vector<gpu::vec4>& colours, const std::vector<gpu::uint>& moving,
                    Rows rows = Rows::kOwn, std::uint32_t boxes = 64)
         : gpu_(gpu),
           rows_(rows),
@@ -65,13 +65,13 @@ public:
     void weigh(const std::vector<glm::uvec2>& ranges, bool hidden_tiles, std::size_t visible_count = 0, bool may_move = true) {
         const Buffer range_buffer = gpu_.upload("ranges", ranges),
                      lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}});
-        gpu_.upload(counters_, std::vector{gpu::StereoCounters{}});
+        gpu_.upload(counters_, std::vector{gpu::WarpCounters{}});
         fill(tile_errors_, tileCount(), kUnwritten);
         fill(tile_depths_, tileCount(), kUnwritten);
         fill(tile_mask_, maskWords(), kUnwritten);
         fill(bins_, gpu::kPriceBins, kUnwritten);
         dispatch(WeighKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .kinds_given = 1, .may_move = may_move},
-                 gpu::WeighPass{.stereo = view(),
+                 gpu::WeighPass{.warp = view(),
                                 .ranges = range_buffer.address<gpu::uvec2>(),
                                 .moving = moving(),
                                 .tile_kinds = words(tile_kinds_),
@@ -88,7 +88,7 @@ public:
     }
     void boundDepths() {
         dispatch(DepthBoundsKernel{.half_colours = areHalves(rows_)},
-                 gpu::DepthBoundsPass{.stereo = view(),
+                 gpu::DepthBoundsPass{.warp = view(),
                                       .colours = colours_.address<gpu::vec4>(),
                                       .half_colours = colours_.address<gpu::uvec2>(),
                                       .moving = moving(),
@@ -97,7 +97,7 @@ public:
     }
     void findEdgeRois(bool hidden_tiles = false) {
         dispatch(EdgeRoisKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles},
-                 gpu::EdgeRoisPass{.stereo = view(),
+                 gpu::EdgeRoisPass{.warp = view(),
                                    .bins = words(bins_),
                                    .tile_kinds = words(tile_kinds_),
                                    .shown_mask = words(shown_mask_),
@@ -106,7 +106,7 @@ public:
     }
     void reproject(bool hidden_tiles = false, bool forward = false) {
         dispatch(ReprojectKernel{.rectified = rectified(), .hidden_tiles = hidden_tiles, .forward = forward},
-                 gpu::ReprojectPass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
+                 gpu::ReprojectPass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = words(shown_mask_)},
                  pixelGroups());
     }
     // Splats in `order` as `scene` holds them, with what the dominant eye's project counted of each; eye 1 is the affiliated one.
@@ -116,11 +116,11 @@ public:
         dispatch(NewcomersKernel{.splat_kind = scene.scene.splatKind()},
                  gpu::NewcomersPass{.chunks = scene.scene.chunks(),
                                     .eyes = scene.eyeViews(),
-                                    .stereo = view(),
+                                    .warp = view(),
                                     .tile_depths = words(tile_depths_),
                                     .order = order_buffer.address<gpu::uint>(),
                                     .visible = lists.address<gpu::ListState>(),
-                                    .dominant_counts = count_buffer.address<gpu::uint>(),
+                                    .source_counts = count_buffer.address<gpu::uint>(),
                                     .tile_kinds = words(tile_kinds_),
                                     .tile_errors = words(tile_errors_),
                                     .counters = counters(),
@@ -155,12 +155,12 @@ public:
                                 .half_colours = areHalves(rows_),
                                 .forward = parts.forward,
                                 .row_source = row_source},
-                 gpu::ResamplePass{.stereo = view(),
-                                   .dominant = colours_.address<gpu::vec4>(),
-                                   .half_dominant = colours_.address<gpu::uvec2>(),
+                 gpu::ResamplePass{.warp = view(),
+                                   .source = colours_.address<gpu::vec4>(),
+                                   .half_source = colours_.address<gpu::uvec2>(),
                                    .moving = parts.moves_row ? moving() : arrivals(),
-                                   .affiliated = affiliated_.address<gpu::vec4>(),
-                                   .half_affiliated = affiliated_.address<gpu::uvec2>(),
+                                   .target = affiliated_.address<gpu::vec4>(),
+                                   .half_target = affiliated_.address<gpu::uvec2>(),
                                    .depths = depths_.address<float>(),
                                    .tile_kinds = words(tile_kinds_),
                                    .tile_errors = words(tile_errors_),
@@ -174,7 +174,7 @@ public:
     }
     // All steps of the pass, whatever the counters say of holes.
     void findComponents() {
-        const gpu::ComponentsPass pass{.stereo = view(),
+        const gpu::ComponentsPass pass{.warp = view(),
                                        .pixels = affiliated_.address<gpu::ComponentPixel>(),
                                        .pixel_classes = words(classes_),
                                        .boxes = boxes_.address<gpu::PixelBox>(),
@@ -188,7 +188,7 @@ public:
     }
     void price(const Eye& eye = {}, const std::optional<Gaze>& gaze = {}) {
         const Buffer lists = gpu_.upload("lists", std::vector{gpu::ListState{}});
-        const gpu::PricePass pass{.stereo = view(),
+        const gpu::PricePass pass{.warp = view(),
                                   .tile_kinds = words(tile_kinds_),
                                   .tile_costs = words(tile_costs_),
                                   .tile_errors = words(tile_errors_),
@@ -208,7 +208,7 @@ public:
         const Buffer lists = gpu_.upload("lists", std::vector{makeList(visible_count), gpu::ListState{}, gpu::ListState{}});
         const auto list = [&](std::uint64_t i) { return lists.address<gpu::ListState>(i * sizeof(gpu::ListState)); };
         dispatch(SelectKernel{.predicted = predicted},
-                 gpu::SelectPass{.stereo = view(),
+                 gpu::SelectPass{.warp = view(),
                                  .tile_kinds = words(tile_kinds_),
                                  .tile_prices = words(tile_prices_),
                                  .tile_list = words(tile_list_),
@@ -243,7 +243,7 @@ public:
     // Of a pixel's colour.
     [[nodiscard]] std::size_t wordsPerPixel() const { return areHalves(rows_) ? 2 : 4; }
     [[nodiscard]] std::vector<float> readDepths() { return gpu_.readBack<float>(depths_, pixelCount()); }
-    [[nodiscard]] gpu::StereoCounters readCounters() { return gpu_.readBack<gpu::StereoCounters>(counters_, 1)[0]; }
+    [[nodiscard]] gpu::WarpCounters readCounters() { return gpu_.readBack<gpu::WarpCounters>(counters_, 1)[0]; }
     [[nodiscard]] std::vector<gpu::uint> readTileErrors() { return gpu_.readBack<gpu::uint>(tile_errors_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileDepths() { return gpu_.readBack<gpu::uint>(tile_depths_, tileCount()); }
     [[nodiscard]] std::vector<gpu::uint> readTileKinds() { return gpu_.readBack<gpu::uint>(tile_kinds_, tileCount()); }
@@ -264,7 +264,7 @@ public:
         return classes;
     }
 
-    void writeView(const gpu::StereoView& view) { gpu_.upload(view_buffer_, std::vector{withRows(view, rows_)}); }
+    void writeView(const gpu::WarpView& view) { gpu_.upload(view_buffer_, std::vector{withRows(view, rows_)}); }
     void writeArrivals(const std::vector<gpu::uint>& arrivals) {
         if (!isShared(rows_)) {
             gpu_.upload(arrivals_, arrivals);
@@ -282,7 +282,7 @@ public:
         gpu_.upload(classes_, packed);
     }
     void writeAffiliatedWords(const std::vector<gpu::uint>& values) { gpu_.upload(affiliated_, values); }
-    void writeCounters(const gpu::StereoCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
+    void writeCounters(const gpu::WarpCounters& counters) { gpu_.upload(counters_, std::vector{counters}); }
     void writeTileKinds(const std::vector<gpu::uint>& kinds) { gpu_.upload(tile_kinds_, kinds); }
     void writeTileCosts(const std::vector<gpu::uint>& costs) { gpu_.upload(tile_costs_, costs); }
     void writeTileErrors(const std::vector<gpu::uint>& errors) { gpu_.upload(tile_errors_, errors); }
@@ -301,7 +301,7 @@ public:
         const auto alongRows = [&](const gpu::PixelMap& map) {
             return map.excess_y == zero && map.excess_z == zero && map.shift.y == 0.0f && map.shift.z == 0.0f;
         };
-        return alongRows(view_.affiliated_from_dominant) && alongRows(view_.dominant_from_affiliated) ? 1 : 0;
+        return alongRows(view_.target_from_source) && alongRows(view_.source_from_target) ? 1 : 0;
     }
     [[nodiscard]] std::size_t pixelCount() const { return std::size_t{view_.size_px.x} * view_.size_px.y; }
     [[nodiscard]] std::size_t tileCount() const { return std::size_t{view_.size_tiles.x} * view_.size_tiles.y; }
@@ -313,25 +313,25 @@ private:
         for (const gpu::vec4& c : colours) { halves.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
         return halves;
     }
-    static gpu::StereoView withRows(gpu::StereoView view, Rows rows) {
+    static gpu::WarpView withRows(gpu::WarpView view, Rows rows) {
         view.row_words = (!isShared(rows) ? 1 : areHalves(rows) ? 2 : 4) * view.size_px.x;
         return view;
     }
-    static gpu::StereoCounters movingAll() {
-        gpu::StereoCounters counters{};
+    static gpu::WarpCounters movingAll() {
+        gpu::WarpCounters counters{};
         counters.moves = 1;
         return counters;
     }
     [[nodiscard]] std::size_t maskWords() const { return std::size_t{(view_.size_tiles.x + 31) / 32} * view_.size_tiles.y; }
-    static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kStereoGroup) {
+    static std::uint32_t groupsOver(std::size_t items, std::uint32_t group_items = gpu::kWarpGroup) {
         return static_cast<std::uint32_t>((items + group_items - 1) / group_items);
     }
     [[nodiscard]] glm::uvec2 tileGroups() const { return {groupsOver(tileCount()), 1}; }
     [[nodiscard]] glm::uvec2 pixelGroups() const { return {view_.size_tiles.x, 2 * view_.size_tiles.y}; }
 
     [[nodiscard]] static gpu::DeviceAddress<gpu::uint> words(const Buffer& buffer) { return buffer.address<gpu::uint>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::StereoView> view() const { return view_buffer_.address<gpu::StereoView>(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::StereoCounters> counters() const { return counters_.address<gpu::StereoCounters>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpView> view() const { return view_buffer_.address<gpu::WarpView>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::WarpCounters> counters() const { return counters_.address<gpu::WarpCounters>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals() const { return !isShared(rows_) ? words(arrivals_) : words(affiliated_); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving() const {
         return !isShared(rows_) ? words(moving_) : words(affiliated_).at(view_.size_px.x);
@@ -363,15 +363,15 @@ private:
 
     Gpu& gpu_;
     Rows rows_;
-    gpu::StereoView view_;
+    gpu::WarpView view_;
     Buffer view_buffer_, counters_, colours_, affiliated_, depths_, classes_;
     Buffer tile_kinds_, tile_costs_, tile_errors_, tile_depths_, tile_prices_, tile_list_, tile_mask_, shown_mask_, bins_, boxes_;
     Buffer moving_, arrivals_;  // where rows are their own
     std::uint32_t box_capacity_;
 };
 
-inline gpu::StereoView viewOfCase(const StereoCase& c) {
-    gpu::StereoView view = stereoViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
+inline gpu::WarpView viewOfCase(const StereoCase& c) {
+    gpu::WarpView view = warpViewOf(relate(c.eyes.source, c.eyes.target), c.sizePx(), c.sizePx().x, settingsOf(c.settings));
     view.rows_apart = 1;  // until takeRowsApart
     return view;
 }

@@ -99,7 +99,7 @@ void checkComponents(Gpu& gpu, glm::uvec2 size_px, const Mask& mask, int margin_
     device.writeAffiliatedWords(words);
     device.findComponents();
     const std::size_t components = reference::markComponents(resolved, kinds, size_px, margin_px, boxes);
-    const gpu::StereoCounters counters = device.readCounters();
+    const gpu::WarpCounters counters = device.readCounters();
     CHECK(counters.components == components);
     CHECK(device.readTileKinds() == test::kindsOf(kinds));
     CHECK(counters.center_tiles == std::count(kinds.begin(), kinds.end(), TileKind::kCenter));
@@ -218,7 +218,7 @@ TEST_CASE_FIXTURE(Gpu, "edge_rois finds the twin's borders and tiles") {
                     device.findEdgeRois();
                     const Borders expected = reference::findBorders(reference::findInverseDepthBounds(bins), c.eyes, c.settings);
                     const auto kinds = test::kindsOf(reference::markEdges(expected, c.sizePx()));
-                    const gpu::StereoCounters counters = device.readCounters();
+                    const gpu::WarpCounters counters = device.readCounters();
                     CHECK(counters.borders_px == glm::uvec4(expected.left, expected.top, expected.right, expected.bottom));
                     CHECK(device.readTileKinds() == kinds);
                     CHECK(counters.edge_tiles == std::count(kinds.begin(), kinds.end(), gpu::kTileEdge));

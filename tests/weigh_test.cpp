@@ -50,7 +50,7 @@ std::size_t checkWeighing(Gpu& gpu, const StereoCase& c, const std::vector<TileR
     device.weigh(rangesOf(ranges), !c.settings.source_hidden.empty(), kVisible);
     const reference::Weighed expected = reference::weigh(c.dominant, ranges, c.eyes, c.settings);
     const auto costs = device.readTileCosts(), kinds = device.readTileKinds();
-    const gpu::StereoCounters counters = device.readCounters();
+    const gpu::WarpCounters counters = device.readCounters();
     const auto depths = device.readTileDepths(), expected_depths = test::depthsOfTiles(c);
     std::size_t other = 0, wrong_kinds = 0, wrong_depths = 0;
     std::uint64_t picture_cost = 0, saved_cost = 0, moved = 0;

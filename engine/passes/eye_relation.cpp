@@ -45,7 +45,7 @@ bool keepsRows(const gpu::PixelMap& map) { return keepsDepths(map) && map.excess
 
 EyeRelation relate(const Eye& dominant, const Eye& affiliated) {
     EyeRelation relation{mapPixels(affiliated, dominant), mapPixels(dominant, affiliated)};
-    const gpu::PixelMap &there = relation.affiliated_from_dominant, &back = relation.dominant_from_affiliated;
+    const gpu::PixelMap &there = relation.target_from_source, &back = relation.source_from_target;
     relation.same_depths = keepsDepths(there) && keepsDepths(back);
     relation.rectified = keepsRows(there) && keepsRows(back);
     return relation;

@@ -9,7 +9,7 @@ namespace binosplat {
 // Computed once a frame, of the eyes as they are; everything that asks whether two eyes are alike asks here. Eyes that are rectified have
 // the same depths.
 struct EyeRelation {
-    gpu::PixelMap affiliated_from_dominant, dominant_from_affiliated;
+    gpu::PixelMap target_from_source, source_from_target;
     // Every point is as deep for one eye as for the other: one depth order serves both. Canted eyes differ.
     bool same_depths = false;
     // Pixels keep their row as well: the eyes stand side by side and share fy and cy.

@@ -18,9 +18,9 @@ struct FrameState {
     std::array<gpu::ListState, 2> visible;  // [0] is both eyes' where they share it
     std::array<gpu::ListState, 2> pairs;
     std::array<gpu::EyeCounters, 2> counters;
-    gpu::StereoView stereo;
-    gpu::StereoCounters stereo_counters;
-    gpu::ListState masked_tiles;    // those of the affiliated eye that are rendered again
+    gpu::WarpView warp;
+    gpu::WarpCounters warp_counters;
+    gpu::ListState masked_tiles;    // those of the target that are rendered again
     gpu::ListState masked_visible;  // visible[0], or empty if there is no such tile
 };
 
@@ -35,7 +35,7 @@ struct FrameCapacity {
 };
 
 // An eye's picture in device memory, rows top to bottom.
-struct EyeImage {
+struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
     Buffer depths = {};        // D, a float a pixel, where it is wanted

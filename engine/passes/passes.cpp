@@ -135,7 +135,7 @@ struct Passes::EyePart {
     Commands& commands;
     const GpuScene& scene;
     const FrameBuffers& buffers;
-    const EyeTarget& target;
+    const Target& target;
     TileMask tiles;  // those that are rendered
     bool lists_tiles;
     Role role;
@@ -155,7 +155,7 @@ struct Passes::EyePart {
     [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
 };
 
-void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, Role role) {
+void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role) {
     record({.commands = commands,
             .scene = scene,
             .buffers = buffers,
@@ -165,8 +165,8 @@ void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuf
             .role = role});
 }
 
-void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target,
-                         const TileMask& mask, Role role) {
+void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, const TileMask& mask,
+                         Role role) {
     record({.commands = commands, .scene = scene, .buffers = buffers, .target = target, .tiles = mask, .lists_tiles = true, .role = role});
 }
 
@@ -226,7 +226,7 @@ void Passes::recordBinned(const EyePart& part) {
 }
 
 void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
-    const EyeTarget& target = part.target;
+    const Target& target = part.target;
     const gpu::TileRangesPass ranges{.tiles = sorted.keys,
                                      .pairs = part.pairs(),
                                      .ranges = part.ranges(),
@@ -248,7 +248,7 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
 }
 
 void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
-    const EyeTarget& target = part.target;
+    const Target& target = part.target;
     const bool is_light = part.scene.isLight();
     const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
                                        .splats = part.buffers.visible.splats(),

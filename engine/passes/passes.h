@@ -7,7 +7,7 @@
 //   bin         a (tile, splat) pair for each tile a splat meets
 //   sort_tiles  the pairs by tile, front to back within
 //   rasterize   blending: colour, alpha and depth
-// What makes the other eye from this one is in stereo_passes.h.
+// What makes the other eye from this one is in warp_passes.h.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -20,7 +20,7 @@ namespace binosplat {
 
 // What the rasterizer writes in addition to the colour.
 struct Kept {
-    bool depth = false;                           // D, to EyeImage::depths
+    bool depth = false;                           // D, to Picture::depths
     bool moments = false;                         // I and J
     bool moving = false;                          // the picture is going to be moved into the other eye
     bool spread = false;                          // and how far its pixels' depths spread
@@ -36,12 +36,12 @@ struct TileMask {
 };
 
 // One eye's part of a frame.
-struct EyeTarget {
+struct Target {
     int eye = 0;   // index into FrameState::eyes
     int list = 0;  // of the visible splats
     glm::uvec2 size_px{0, 0}, size_tiles{0, 0};
     PairArrays pairs;
-    const EyeImage* image = nullptr;
+    const Picture* image = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
     bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, where all tiles are shown
@@ -86,9 +86,9 @@ public:
     // Of these compact and sort_depth alone, also once more by the depths of another eye; which eyes see the splats is not asked again.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
     // The picture of an eye: project to rasterize.
-    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, Role role);
+    void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role);
     // The same for some tiles alone: the others stay as they are.
-    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyeTarget& target, const TileMask& mask,
+    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, const TileMask& mask,
                      Role role);
 
 private:

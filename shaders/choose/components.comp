@@ -16,8 +16,8 @@ layout(constant_id = 1) const bool kHalfColours = false;
 // Where a pixel's colour would lie.
 uint slotOf(uint pixel) { return kHalfColours ? pixel : 2 * pixel; }
 
-bool isHole(StereoView stereo, uvec2 at) {
-    return ((pass.pixel_classes.at[at.y * stereo.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;
+bool isHole(WarpView warp, uvec2 at) {
+    return ((pass.pixel_classes.at[at.y * warp.size_tiles.x + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3) == kHole;
 }
 
 // Other threads change parents meanwhile; every value one may see leads to the same root.
@@ -51,37 +51,37 @@ void unite(uint a, uint b) {
 bool haveBoxes() { return pass.counters.at[0].components <= pass.box_capacity; }
 
 // Marks the tiles that [low, high) meets, grown by the margin.
-void markTiles(StereoView stereo, uvec2 low, uvec2 high, uint first, uint stride) {
-    const uvec2 begin = uvec2(max(ivec2(low) - int(stereo.margin_px), ivec2(0))) / kTileSize;
-    const uvec2 end = min((high + stereo.margin_px + kTileSize - 1) / kTileSize, stereo.size_tiles);
+void markTiles(WarpView warp, uvec2 low, uvec2 high, uint first, uint stride) {
+    const uvec2 begin = uvec2(max(ivec2(low) - int(warp.margin_px), ivec2(0))) / kTileSize;
+    const uvec2 end = min((high + warp.margin_px + kTileSize - 1) / kTileSize, warp.size_tiles);
     const uvec2 size = end - begin;
     for (uint i = first; i < size.x * size.y; i += stride) {
-        const uint tile = (begin.y + i / size.x) * stereo.size_tiles.x + begin.x + i % size.x;
+        const uint tile = (begin.y + i / size.x) * warp.size_tiles.x + begin.x + i % size.x;
         if (atomicCompSwap(pass.tile_kinds.at[tile], 0, kTileCenter) == 0) { atomicAdd(pass.counters.at[0].center_tiles, 1); }
     }
 }
 
 void main() {
-    const StereoView stereo = pass.stereo.at[0];
+    const WarpView warp = pass.warp.at[0];
     if (kStep == kStepMark) {
         const uint boxes = haveBoxes() ? pass.counters.at[0].components : 0;
         const uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
         for (uint b = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; b < boxes; b += groups) {
             const PixelBox box = pass.boxes.at[b];
-            markTiles(stereo, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex, kStereoGroup);
+            markTiles(warp, uvec2(box.x0, box.y0), uvec2(box.x1, box.y1), gl_LocalInvocationIndex, kWarpGroup);
         }
         return;
     }
     const uvec2 at = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(at, stereo.size_px))) { return; }
-    const uint pixel = at.y * stereo.size_px.x + at.x;
-    if (!isHole(stereo, at)) { return; }
+    if (any(greaterThanEqual(at, warp.size_px))) { return; }
+    const uint pixel = at.y * warp.size_px.x + at.x;
+    if (!isHole(warp, at)) { return; }
     if (kStep == kStepUnite) {
         // The four neighbours that come before; the others find this pixel.
         for (uint n = 0; n < 4; ++n) {
             const ivec2 other = ivec2(at) + (n == 0 ? ivec2(-1, 0) : ivec2(int(n) - 2, -1));
-            if (other.x < 0 || other.y < 0 || other.x >= int(stereo.size_px.x)) { continue; }
-            if (isHole(stereo, uvec2(other))) { unite(pixel, uint(other.y) * stereo.size_px.x + uint(other.x)); }
+            if (other.x < 0 || other.y < 0 || other.x >= int(warp.size_px.x)) { continue; }
+            if (isHole(warp, uvec2(other))) { unite(pixel, uint(other.y) * warp.size_px.x + uint(other.x)); }
         }
     } else if (kStep == kStepCount) {
         if (parentOf(pixel) == pixel) {
@@ -97,7 +97,7 @@ void main() {
             atomicMax(pass.boxes.at[component].x1, at.x + 1);
             atomicMax(pass.boxes.at[component].y1, at.y + 1);
         } else {  // this pixel stands for itself
-            markTiles(stereo, at, at + 1, 0, 1);
+            markTiles(warp, at, at + 1, 0, 1);
         }
     }
 }

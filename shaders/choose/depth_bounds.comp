@@ -1,11 +1,11 @@
-// depth_bounds: how often each depth occurs in the dominant picture, for the robust extremes that the edge ROIs start from. Every other row is as
+// depth_bounds: how often each depth occurs in the source, for the robust extremes that the edge ROIs start from. Every other row is as
 // good as all. A workgroup counts kBoundsTiles tiles side by side before it adds its bins to everybody's.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/moving_pixel.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(constant_id = 0) const bool kHalfColours = false;
 
 #include "lib/picture.glsl"
@@ -22,17 +22,17 @@ void count(uvec2 pixel, uvec2 size_px, uint row_words) {
 }
 
 void main() {
-    const uvec2 size_px = pass.stereo.at[0].size_px;
-    const uint row_words = pass.stereo.at[0].row_words;
-    for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kStereoGroup) { group_bins[bin] = 0; }
+    const uvec2 size_px = pass.warp.at[0].size_px;
+    const uint row_words = pass.warp.at[0].row_words;
+    for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kWarpGroup) { group_bins[bin] = 0; }
     barrier();
     const uvec2 first = gl_WorkGroupID.xy * uvec2(kBoundsTiles * kTileSize, kTileSize);
     const uvec2 end = min(first + uvec2(kBoundsTiles * kTileSize, kTileSize), size_px);
     for (uint y = first.y; y < end.y; y += 2) {
-        for (uint x = first.x + gl_LocalInvocationIndex; x < end.x; x += kStereoGroup) { count(uvec2(x, y), size_px, row_words); }
+        for (uint x = first.x + gl_LocalInvocationIndex; x < end.x; x += kWarpGroup) { count(uvec2(x, y), size_px, row_words); }
     }
     barrier();
-    for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kStereoGroup) {
+    for (uint bin = gl_LocalInvocationIndex; bin < kDepthBins; bin += kWarpGroup) {
         if (group_bins[bin] > 0) { atomicAdd(pass.bins.at[bin], group_bins[bin]); }
     }
 }

@@ -1,5 +1,5 @@
-// edge_rois: the borders of the affiliated picture that the dominant eye does not see (paper, section 3.5, step 1). Samples along the
-// edges of the dominant picture are moved at the least and the greatest depth; where they land bounds what is covered. A thread a tile:
+// edge_rois: the borders of the target that the source does not see (paper, section 3.5, step 1). Samples along the
+// edges of the source are moved at the least and the greatest depth; where they land bounds what is covered. A thread a tile:
 // every workgroup finds the bounds for itself, since that takes it less than waiting for another dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -7,20 +7,20 @@
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 #include "lib/tile_mask.glsl"
-#include "lib/stereo.glsl"
+#include "lib/warp.glsl"
 #include "lib/unseen.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { EdgeRoisPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
 
-const uint kBinsPerThread = kDepthBins / kStereoGroup;
+const uint kBinsPerThread = kDepthBins / kWarpGroup;
 // One pixel in two hundred may be nearer, and one farther, than the bounds: specks and fringes of mixed depth are no surface.
 const uint kOutliers = 200;
 
 shared float inverse_depth_bounds[2];  // far, near
-shared vec4 group_low[kStereoGroup];     // least x and y of all samples; greatest of the left and of the top edge's
-shared vec4 group_high[kStereoGroup];    // greatest x and y of all; least of the right and of the bottom edge's
+shared vec4 group_low[kWarpGroup];     // least x and y of all samples; greatest of the left and of the top edge's
+shared vec4 group_high[kWarpGroup];    // greatest x and y of all; least of the right and of the bottom edge's
 
 void findDepthBounds() {
     const uint thread = threadIndex();
@@ -44,16 +44,16 @@ void findDepthBounds() {
     barrier();
 }
 
-void sampleEdges(StereoView stereo) {
-    const vec2 size = vec2(stereo.size_px);
+void sampleEdges(WarpView warp) {
+    const vec2 size = vec2(warp.size_px);
     vec4 low = vec4(1e9, 1e9, -1e9, -1e9), high = vec4(-1e9, -1e9, 1e9, 1e9);
-    for (uint sample_index = gl_LocalInvocationIndex; sample_index < 8 * stereo.edge_samples; sample_index += kStereoGroup) {
+    for (uint sample_index = gl_LocalInvocationIndex; sample_index < 8 * warp.edge_samples; sample_index += kWarpGroup) {
         const uint edge = (sample_index / 2) & 3;  // left, top, right, bottom
-        const float along = (float(sample_index / 8) + 0.5) / float(stereo.edge_samples);
+        const float along = (float(sample_index / 8) + 0.5) / float(warp.edge_samples);
         const bool vertical = (edge & 1) == 0;
         const float across = edge < 2 ? 0.5 : -0.5;
         const vec2 pixel_px = vertical ? vec2(edge == 0 ? 0.5 : size.x - 0.5, along * size.y) : vec2(along * size.x, edge == 1 ? 0.5 : size.y - 0.5);
-        const vec3 moved = movePixel(stereo.affiliated_from_dominant, pixel_px, inverse_depth_bounds[sample_index & 1]);
+        const vec3 moved = movePixel(warp.target_from_source, pixel_px, inverse_depth_bounds[sample_index & 1]);
         if (!(moved.z > 0)) { continue; }
         // The paper counts pixels from 0 at their centres. To 2^-14 px, so that an edge that does not move stays at 0.
         const vec2 place = round((moved.xy - 0.5) * 16384.0) / 16384.0;
@@ -67,7 +67,7 @@ void sampleEdges(StereoView stereo) {
     group_low[gl_LocalInvocationIndex] = low;
     group_high[gl_LocalInvocationIndex] = high;
     barrier();
-    for (uint reach = kStereoGroup / 2; reach > 0; reach /= 2) {
+    for (uint reach = kWarpGroup / 2; reach > 0; reach /= 2) {
         if (gl_LocalInvocationIndex < reach) {
             const vec4 other_low = group_low[gl_LocalInvocationIndex + reach], other_high = group_high[gl_LocalInvocationIndex + reach];
             low = vec4(min(low.xy, other_low.xy), max(low.zw, other_low.zw));
@@ -80,25 +80,25 @@ void sampleEdges(StereoView stereo) {
 }
 
 void main() {
-    const StereoView stereo = pass.stereo.at[0];
+    const WarpView warp = pass.warp.at[0];
     findDepthBounds();
-    sampleEdges(stereo);
-    const vec2 size = vec2(stereo.size_px), margin = vec2(stereo.margin_px);
-    const vec2 first = stereo.tight_edges != 0 ? group_low[0].zw : group_low[0].xy;
-    const vec2 last = stereo.tight_edges != 0 ? group_high[0].zw : group_high[0].xy;
+    sampleEdges(warp);
+    const vec2 size = vec2(warp.size_px), margin = vec2(warp.margin_px);
+    const vec2 first = warp.tight_edges != 0 ? group_low[0].zw : group_low[0].xy;
+    const vec2 last = warp.tight_edges != 0 ? group_high[0].zw : group_high[0].xy;
     // left_w, top_h and right_w, bottom_h of the paper.
     const vec2 low_borders = mix(vec2(0), clamp(ceil(first) + margin, vec2(0), floor(size / 2)), greaterThan(first, vec2(0)));
     const vec2 high_borders = mix(vec2(0), clamp(size - 1 - floor(last) + margin, vec2(0), floor(size / 2)), lessThan(last, size - 1));
     const uvec2 low_tiles = (uvec2(low_borders) + kTileSize - 1) / kTileSize;
-    const uvec2 high_tiles = (stereo.size_px - uvec2(high_borders)) / kTileSize;
+    const uvec2 high_tiles = (warp.size_px - uvec2(high_borders)) / kTileSize;
 
-    const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
-    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    const uint tiles = warp.size_tiles.x * warp.size_tiles.y;
+    const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     bool edge = false;
     if (tile < tiles && pass.tile_kinds.at[tile] != kTileHidden) {
-        const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
+        const uvec2 at = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x);
         const bool beyond = (high_borders.x > 0 && at.x >= high_tiles.x) || (high_borders.y > 0 && at.y >= high_tiles.y);
-        edge = any(lessThan(at, low_tiles)) || beyond || (kHiddenTiles && isUnseen(stereo, pass.shown_mask, true, tile, false));
+        edge = any(lessThan(at, low_tiles)) || beyond || (kHiddenTiles && isUnseen(warp, pass.shown_mask, true, tile, false));
         pass.tile_kinds.at[tile] = edge ? kTileEdge : 0;
     }
     const uint edge_tiles = subgroupAdd(edge ? 1 : 0);

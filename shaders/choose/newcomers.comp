@@ -1,4 +1,4 @@
-// newcomers: splats that the affiliated eye sees and the dominant does not. Standing in front of what was reprojected they leave no hole,
+// newcomers: splats that the target sees and the source does not. Standing in front of what was reprojected they leave no hole,
 // so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -16,7 +16,7 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;
 #include "lib/tile_mask.glsl"
 #include "lib/moving_pixel.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
@@ -31,10 +31,10 @@ shared uint large_count;
 const uint kMostSteps = 0x7fffffffu;
 const float kMostStepsOfOne = 2147483520.0;
 
-// Whether the splat's centre, held to the picture, is clearly nearer than what the dominant eye sees in the middle of its tile; also in a
+// Whether the splat's centre, held to the picture, is clearly nearer than what the source sees in the middle of its tile; also in a
 // tile that is rendered.
-bool standsInFront(StereoView stereo, vec2 pixel_px, float inverse_depth) {
-    const uint tile = tileOf(stereo.size_tiles, uvec2(clamp(pixel_px, vec2(0), vec2(stereo.size_px - 1))));
+bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
+    const uint tile = tileOf(warp.size_tiles, uvec2(clamp(pixel_px, vec2(0), vec2(warp.size_px - 1))));
     const uint moving = pass.tile_depths.at[tile];
     return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }
@@ -50,7 +50,7 @@ void addError(uint tile, uint steps) {
 
 // What the splat adds to the tiles it meets, by one thread or, of a large one, by all `together`, which share its rows. False: it is large, and
 // one thread alone leaves it.
-bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
+bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
@@ -59,7 +59,7 @@ bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));
     if (tiles == 0) { return true; }
     const vec2 middle_px = has_reference ? p.reference_px : vec2(box.xy + box.zw) * (0.5 * float(kTileSize));
-    if (has_reference && !standsInFront(stereo, middle_px, p.inverse_depth)) { return true; }
+    if (has_reference && !standsInFront(warp, middle_px, p.inverse_depth)) { return true; }
     if (!together && tiles > kLargeTiles) { return false; }
     if (!together || gl_LocalInvocationIndex == 0) { atomicAdd(pass.counters.at[0].newcomers, 1); }
 
@@ -67,9 +67,9 @@ bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
     const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / kLowPass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
-    const float error = stereo.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
+    const float error = warp.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
     const uint steps = uint(min(error * error * pixels * kErrorSteps, kMostStepsOfOne));
-    const int first = together ? int(gl_LocalInvocationIndex) : 0, rows_apart = together ? int(kStereoGroup) : 1;
+    const int first = together ? int(gl_LocalInvocationIndex) : 0, rows_apart = together ? int(kWarpGroup) : 1;
     for (int row = box.y + first; row < box.w; row += rows_apart) {
         const ivec2 in_row = tilesInRow(outline, uint(row), box);
         for (int x = in_row.x; x < in_row.y; ++x) {
@@ -80,7 +80,7 @@ bool addNewcomer(uint rank, EyeView eye, StereoView stereo, bool together) {
     return true;
 }
 
-// A workgroup looks over a block of the visible splats for those that the dominant eye does not see; its threads then share these few, and
+// A workgroup looks over a block of the visible splats for those that the source does not see; its threads then share these few, and
 // after that the rows of each of the large ones.
 void main() {
     const uint count = pass.visible.at[0].count;
@@ -90,20 +90,20 @@ void main() {
         large_count = 0;
     }
     barrier();
-    for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kStereoGroup) {
+    for (uint in_block = gl_LocalInvocationIndex; in_block < kNewcomersBlock; in_block += kWarpGroup) {
         const uint rank = begin + in_block;
-        if (rank < count && pass.dominant_counts.at[rank] == 0) { unseen_ranks[atomicAdd(unseen_count, 1)] = rank; }
+        if (rank < count && pass.source_counts.at[rank] == 0) { unseen_ranks[atomicAdd(unseen_count, 1)] = rank; }
     }
     barrier();
     const EyeView eye = pass.eyes.at[pass.eye];
-    const StereoView stereo = pass.stereo.at[0];
+    const WarpView warp = pass.warp.at[0];
     [[dont_unroll]] for (uint round = 0; round < 2; ++round) {
         const bool together = round == 1;
         const uint end = together && large_count == 0 ? 0 : unseen_count;
-        for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end; unseen += together ? 1 : kStereoGroup) {
+        for (uint unseen = together ? 0 : gl_LocalInvocationIndex; unseen < end; unseen += together ? 1 : kWarpGroup) {
             const uint rank = unseen_ranks[unseen];
             if (rank == kDone) { continue; }
-            if (addNewcomer(rank, eye, stereo, together)) {
+            if (addNewcomer(rank, eye, warp, together)) {
                 if (!together) { unseen_ranks[unseen] = kDone; }
             } else {
                 atomicAdd(large_count, 1);

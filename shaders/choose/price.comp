@@ -8,11 +8,11 @@
 #include "lib/group.glsl"
 #include "lib/last_group.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
 
-const uint kBinsPerThread = kPriceBins / kStereoGroup;
+const uint kBinsPerThread = kPriceBins / kWarpGroup;
 
 // 16 bins an octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kPriceBins - 1); }
@@ -71,10 +71,10 @@ void findLastBin(uint budget) {
 }
 
 void main() {
-    const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
-    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    const uvec2 size_tiles = pass.warp.at[0].size_tiles;
+    const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }
     if (!isLastGroup(pass.masked_tiles)) { return; }
-    const float budget = pass.stereo.at[0].budget * float(pass.counters.at[0].picture_cost);
+    const float budget = pass.warp.at[0].budget * float(pass.counters.at[0].picture_cost);
     findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
 }

@@ -9,7 +9,7 @@
 #include "lib/tile_mask.glsl"
 #include "lib/last_group.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
 
@@ -28,10 +28,10 @@ bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin
 // What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.
 uint costBefore(uint first_tile, End end) {
     uint own = 0;
-    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kStereoGroup) {
+    for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kWarpGroup) {
         uint prices[kTilesPerStep];
         [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) {
-            prices[i] = tile + i * kStereoGroup < first_tile ? pass.tile_prices.at[tile + i * kStereoGroup] : 0;
+            prices[i] = tile + i * kWarpGroup < first_tile ? pass.tile_prices.at[tile + i * kWarpGroup] : 0;
         }
         [[unroll]] for (uint i = 0; i < kTilesPerStep; ++i) { own += isOfLast(prices[i], end) ? prices[i] & kMaxTileCost : 0; }
     }
@@ -48,14 +48,14 @@ bool isChosen(uint tile, uint tiles) {
     uint total;
     uint before = scanGroup(is_last ? cost : 0, total);
     // Most workgroups have no tile of the last bin, and need not know what the others have.
-    if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kStereoGroup, tiles), end); }
+    if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kWarpGroup, tiles), end); }
     return is_last ? before + cost <= end.left : price != 0 && price >> 22 > end.bin;
 }
 
 void main() {
-    const uvec2 size_tiles = pass.stereo.at[0].size_tiles;
+    const uvec2 size_tiles = pass.warp.at[0].size_tiles;
     const uint tiles = size_tiles.x * size_tiles.y;
-    const uint tile = gl_WorkGroupID.x * kStereoGroup + threadIndex();
+    const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();
     uint kind = tile < tiles ? pass.tile_kinds.at[tile] : kTileHidden;
     if (kPredicted && pass.counters.at[0].moves == 0) {
         kind = kind == 0 ? kTileCheap : kind;

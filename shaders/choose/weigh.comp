@@ -1,38 +1,38 @@
 // weigh: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows. Rendering it costs in proportion to its
-// pairs of tile and splat, and the dominant eye's ranges show about how many these are. A thread per tile. The last workgroup decides
+// pairs of tile and splat, and the source's ranges show about how many these are. A thread per tile. The last workgroup decides
 // whether moving pays at all: if not, the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did
-// not pay in the frame before, the dominant picture comes without what moving needs, and the decision is only for the next frame.
+// not pay in the frame before, the source comes without what moving needs, and the decision is only for the next frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
 #include "lib/tile_mask.glsl"
-#include "lib/stereo.glsl"
+#include "lib/warp.glsl"
 #include "lib/moving_pixel.glsl"
 #include "lib/unseen.glsl"
 #include "lib/last_group.glsl"
 
-layout(local_size_x = kStereoGroup) in;
+layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { WeighPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
 layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
-layout(constant_id = 3) const bool kMayMove = true;       // the dominant eye's pixels are there to be moved
+layout(constant_id = 3) const bool kMayMove = true;       // the source's pixels are there to be moved
 
 // The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
-uvec2 middleOf(StereoView stereo, uint tile) {
-    const uvec2 at = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x);
-    return min(at * kTileSize + kTileSize / 2, stereo.size_px - 1) & uvec2(~0u, ~1u);
+uvec2 middleOf(WarpView warp, uint tile) {
+    const uvec2 at = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x);
+    return min(at * kTileSize + kTileSize / 2, warp.size_px - 1) & uvec2(~0u, ~1u);
 }
 
-// Pairs of the dominant tile that this pixel comes from, if it is as deep as what the dominant eye sees there.
-uint pairsNear(StereoView stereo, uvec2 middle, uint moving) {
+// Pairs of the source tile that this pixel comes from, if it is as deep as what the source sees there.
+uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
-    const vec3 moved = movePixel(stereo.dominant_from_affiliated, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
+    const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
     // Comparisons are written so that NaN stays where it is.
     const bool sane = moved.z > 0 && abs(moved.x) < 1e9 && abs(moved.y) < 1e9;
-    const vec2 place_px = clamp(sane ? moved.xy : middle_px, vec2(0), vec2(stereo.size_px) - 1);
-    const uvec2 range = pass.ranges.at[tileOf(stereo.size_tiles, uvec2(place_px))];
+    const vec2 place_px = clamp(sane ? moved.xy : middle_px, vec2(0), vec2(warp.size_px) - 1);
+    const uvec2 range = pass.ranges.at[tileOf(warp.size_tiles, uvec2(place_px))];
     return range.y - range.x;
 }
 
@@ -40,41 +40,41 @@ uint pairsNear(StereoView stereo, uvec2 middle, uint moving) {
 // what it gets wrong.
 // Without depths it is less certain where tiles come from: to be taken up again, moving must then save clearly more, or frames would
 // alternate.
-bool movingPays(StereoView stereo, uint all_saved, uint picture_cost, uint tiles) {
+bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
     const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
-    const float budget = stereo.budget * float(picture_cost);
+    const float budget = warp.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
     // What is left for the shared part, times kMoveSharedPart, against what moving all tiles costs: in 64 bits.
     uvec2 gain, cost;
     umulExtended(saved - min(saved, mending), kMoveSharedPart, gain.y, gain.x);
-    umulExtended(stereo.move_cost, tiles, cost.y, cost.x);
+    umulExtended(warp.move_cost, tiles, cost.y, cost.x);
     return saved > mending && (gain.y > cost.y || (gain.y == cost.y && gain.x > cost.x));
 }
 
 void main() {
-    const StereoView stereo = pass.stereo.at[0];
-    const uint tiles = stereo.size_tiles.x * stereo.size_tiles.y;
-    const uint tile = gl_WorkGroupID.x * kStereoGroup + gl_LocalInvocationIndex;
+    const WarpView warp = pass.warp.at[0];
+    const uint tiles = warp.size_tiles.x * warp.size_tiles.y;
+    const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     uint cost = 0, saved = 0;
     bool moves = false;
     if (tile < tiles) {
         const bool hidden = kKindsGiven && pass.tile_kinds.at[tile] == kTileHidden;
         if (!hidden) {
-            const uvec2 middle = middleOf(stereo, tile);
-            const uint moving = kMayMove ? pass.moving.at[middle.y * stereo.row_words + middle.x] : 0;
-            const uint pairs = kMayMove ? pairsNear(stereo, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
-            const bool unseen = isUnseen(stereo, pass.shown_mask, kHiddenTiles, tile, true);
+            const uvec2 middle = middleOf(warp, tile);
+            const uint moving = kMayMove ? pass.moving.at[middle.y * warp.row_words + middle.x] : 0;
+            const uint pairs = kMayMove ? pairsNear(warp, middle, moving) : pass.ranges.at[tile].y - pass.ranges.at[tile].x;
+            const bool unseen = isUnseen(warp, pass.shown_mask, kHiddenTiles, tile, true);
             cost = min(pairs, kMaxTileCost - kTilePairs) + kTilePairs;
-            moves = !unseen && pairs > stereo.move_cost;
-            saved = moves ? pairs - stereo.move_cost : 0;
+            moves = !unseen && pairs > warp.move_cost;
+            saved = moves ? pairs - warp.move_cost : 0;
             pass.tile_depths.at[tile] = moving;
             pass.tile_kinds.at[tile] = !kMayMove ? kTileCheap : unseen ? kTileEdge : moves ? 0 : kTileCheap;
         }
         pass.tile_costs.at[tile] = cost;
         pass.tile_errors.at[tile] = 0;
     }
-    const uint threads = gl_NumWorkGroups.x * kStereoGroup;
-    for (uint i = tile; i < maskWords(stereo.size_tiles) * stereo.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }
+    const uint threads = gl_NumWorkGroups.x * kWarpGroup;
+    for (uint i = tile; i < maskWords(warp.size_tiles) * warp.size_tiles.y; i += threads) { pass.tile_mask.at[i] = 0; }
     for (uint i = tile; i < kPriceBins; i += threads) { pass.price_bins.at[i] = 0; }
 
     const uint group_cost = subgroupAdd(cost), group_saved = subgroupAdd(saved), group_moved = subgroupAdd(moves ? 1 : 0), group_shown = subgroupAdd(cost > 0 ? 1 : 0);
@@ -87,12 +87,12 @@ void main() {
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
     const uint shown = atomicOr(pass.counters.at[0].shown_tiles, 0), all_saved = atomicOr(pass.counters.at[0].saved_cost, 0);
     const uint picture_cost = atomicOr(pass.counters.at[0].picture_cost, 0);
-    const DispatchSize rows = DispatchSize((stereo.size_px.y + stereo.rows_apart - 1) / stereo.rows_apart, 1, 1);
-    const bool pays = movingPays(stereo, all_saved, picture_cost, shown);
+    const DispatchSize rows = DispatchSize((warp.size_px.y + warp.rows_apart - 1) / warp.rows_apart, 1, 1);
+    const bool pays = movingPays(warp, all_saved, picture_cost, shown);
     pass.counters.at[0].pays = pays ? 1 : 0;
     if (pays && kMayMove) {
         pass.counters.at[0].moves = 1;
-        pass.counters.at[0].per_pixel_block = DispatchSize(stereo.size_tiles.x, 2 * stereo.size_tiles.y, 1);
+        pass.counters.at[0].per_pixel_block = DispatchSize(warp.size_tiles.x, 2 * warp.size_tiles.y, 1);
         pass.counters.at[0].per_row = rows;
         pass.counters.at[0].per_visible = dispatchOver(pass.visible.at[0].count, kNewcomersBlock);
     } else {

@@ -1,23 +1,23 @@
-// Tiles of the affiliated eye that the dominant eye's picture cannot fill, wherever the scene stands.
+// Tiles of the target that the source's picture cannot fill, wherever the scene stands.
 
-bool isHiddenAt(StereoView stereo, Uints shown_mask, vec2 place_px) {
-    const uvec2 tile = uvec2(clamp(place_px, vec2(0), vec2(stereo.size_px) - 1)) / kTileSize;
-    return !isInMask(shown_mask, stereo.size_tiles, tile);
+bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
+    const uvec2 tile = uvec2(clamp(place_px, vec2(0), vec2(warp.size_px) - 1)) / kTileSize;
+    return !isInMask(shown_mask, warp.size_tiles, tile);
 }
 
-// Whether a corner of the tile lies outside the dominant picture by more than a gap even if all is infinitely far (so much of a
-// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill), or where the dominant eye's lens hides what
+// Whether a corner of the tile lies outside the source by more than a gap even if all is infinitely far (so much of a
+// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill), or where the source's lens hides what
 // it would need. The paper's borders know of the first kind, not of the second: `beyond_counts` is false for it.
-bool isUnseen(StereoView stereo, Uints shown_mask, bool any_hidden, uint tile, bool beyond_counts) {
-    const uvec2 first = uvec2(tile % stereo.size_tiles.x, tile / stereo.size_tiles.x) * kTileSize;
-    const uvec2 last = min(first + kTileSize, stereo.size_px) - 1;
-    const vec2 low = vec2(-float(stereo.gap_px)), high = vec2(stereo.size_px) - low;
+bool isUnseen(WarpView warp, Uints shown_mask, bool any_hidden, uint tile, bool beyond_counts) {
+    const uvec2 first = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x) * kTileSize;
+    const uvec2 last = min(first + kTileSize, warp.size_px) - 1;
+    const vec2 low = vec2(-float(warp.gap_px)), high = vec2(warp.size_px) - low;
     bool unseen = false;
     for (uint corner = 0; corner < 4; ++corner) {
         const vec2 at = vec2((corner & 1) == 0 ? first.x : last.x, corner < 2 ? first.y : last.y) + 0.5;
-        const vec3 moved = movePixel(stereo.dominant_from_affiliated, at, 0);
+        const vec3 moved = movePixel(warp.source_from_target, at, 0);
         const bool beyond = !(moved.z > 0) || any(lessThan(moved.xy, low)) || any(greaterThan(moved.xy, high));
-        unseen = unseen || (beyond_counts && beyond) || (any_hidden && !beyond && isHiddenAt(stereo, shown_mask, moved.xy));
+        unseen = unseen || (beyond_counts && beyond) || (any_hidden && !beyond && isHiddenAt(warp, shown_mask, moved.xy));
     }
     return unseen;
 }

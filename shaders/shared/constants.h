@@ -86,12 +86,12 @@ BINOSPLAT_CONSTANT uint kDepthSum = 0;
 BINOSPLAT_CONSTANT uint kDepthMean = 1;
 BINOSPLAT_CONSTANT uint kDepthInverse = 2;
 
-// What made a pixel of the affiliated eye, before patching.
+// What made a pixel of the target, before patching.
 BINOSPLAT_CONSTANT uint kCovered = 0;
 BINOSPLAT_CONSTANT uint kGap = 1;
 BINOSPLAT_CONSTANT uint kHole = 2;
 
-// Why a tile of the affiliated eye is rendered; 0: it is not, its pixels are moved.
+// Why a tile of the target is rendered; 0: it is not, its pixels are moved.
 BINOSPLAT_CONSTANT uint kTileEdge = 1;
 BINOSPLAT_CONSTANT uint kTileCenter = 2;
 BINOSPLAT_CONSTANT uint kTilePredicted = 3;
@@ -135,16 +135,16 @@ BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 // does for canted eyes whatever the length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 2304;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
-// What resample makes a row from: arrivals in memory; the dominant eye's pixels; these where none of its tiles is hidden, as is most often so
+// What resample makes a row from: arrivals in memory; the source's pixels; these where none of its tiles is hidden, as is most often so
 // where errors are predicted; or the places that the row above was sampled at.
 BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
 BINOSPLAT_CONSTANT uint kRowMoved = 1;
 BINOSPLAT_CONSTANT uint kWholeRowMoved = 2;
 BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
-// Invocations of a workgroup in the passes of the stereo frame: as many as every device allows.
-BINOSPLAT_CONSTANT uint kStereoGroup = 128;
+// Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
+BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// Pixels of the dominant eye that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
+// Pixels of the source that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
 // two pixels beside them, and the place is up to one off.
 BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 

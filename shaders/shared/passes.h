@@ -109,109 +109,109 @@ struct RasterizePass {
 
 // weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
 struct WeighPass {
-    StereoViews stereo;
-    UVec2s ranges;  // of the dominant eye's pairs
+    WarpViews warp;
+    UVec2s ranges;  // of the source's pairs
     Uints moving;
     Uints tile_kinds;   // out, except where it is kTileHidden
     Uints tile_costs;   // out: in pairs
     Uints tile_errors;  // out: zeros
-    Uints tile_depths;  // out: what the dominant eye sees in the middle of each, a word of `moving`
+    Uints tile_depths;  // out: what the source sees in the middle of each, a word of `moving`
     Uints tile_mask;    // out: zeros
     Uints price_bins;   // out: zeros
-    Uints shown_mask;   // where the dominant eye has hidden tiles: the others
+    Uints shown_mask;   // where the source has hidden tiles: the others
     ListStates visible;
     ListStates masked_tiles;  // counts workgroups; empty as yet
-    StereoCounterss counters;
+    WarpCounterss counters;
 };
 
-// depth_bounds: paper: how often each depth occurs in the dominant picture.
+// depth_bounds: paper: how often each depth occurs in the source.
 struct DepthBoundsPass {
-    StereoViews stereo;
+    WarpViews warp;
     FloatColours colours;
     HalfColours half_colours;
     Uints moving;
     Uints bins;  // out: kDepthBins counts
 };
 
-// edge_rois: paper: the borders that the dominant eye does not see (section 3.5, step 1).
+// edge_rois: paper: the borders that the source does not see (section 3.5, step 1).
 struct EdgeRoisPass {
-    StereoViews stereo;
+    WarpViews warp;
     Uints bins;
     Uints tile_kinds;  // out, except where it is kTileHidden
     Uints shown_mask;  // as in WeighPass
-    StereoCounterss counters;
+    WarpCounterss counters;
 };
 
-// reproject: the dominant eye's pixels go to where the affiliated eye sees them; the nearest stays.
+// reproject: the source's pixels go to where the target sees them; the nearest stays.
 struct ReprojectPass {
-    StereoViews stereo;
+    WarpViews warp;
     Uints moving;
     Uints arrivals;    // in: zeros; out: lib/moving_pixel.glsl
-    Uints shown_mask;  // where the dominant eye has hidden tiles: the others
+    Uints shown_mask;  // where the source has hidden tiles: the others
 };
 
-// resample: every pixel that no tile renders gets its colour from its place in the dominant picture; tiles their expected error.
+// resample: every pixel that no tile renders gets its colour from its place in the source; tiles their expected error.
 struct ResamplePass {
-    StereoViews stereo;
-    FloatColours dominant;
-    HalfColours half_dominant;
-    Uints moving;             // the dominant eye's pixels or, where reproject ran, the arrivals that it left
-    FloatColours affiliated;  // out; `moving` may lie in the same row
-    HalfColours half_affiliated;
+    WarpViews warp;
+    FloatColours source;
+    HalfColours half_source;
+    Uints moving;             // the source's pixels or, where reproject ran, the arrivals that it left
+    FloatColours target;  // out; `moving` may lie in the same row
+    HalfColours half_target;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
     Uints tile_kinds;
     Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where price says kSeenCoarsely
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
-    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `affiliated`
-    StereoCounterss counters;
-    Uints shown_mask;  // where the dominant eye has hidden tiles: the others; null where it has none
+    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `target`
+    WarpCounterss counters;
+    Uints shown_mask;  // where the source has hidden tiles: the others; null where it has none
     vec3 background;   // of tiles that are hidden
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
-// newcomers: predicted: splats that only the affiliated eye sees, by the tiles they stand in.
+// newcomers: predicted: splats that only the target sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
     EyeViews eyes;
-    StereoViews stereo;
+    WarpViews warp;
     Uints tile_depths;  // WeighPass
     Uints order;
     ListStates visible;
-    Uints dominant_counts;  // of tiles
+    Uints source_counts;  // of tiles
     Uints tile_kinds;
     Uints tile_errors;
-    StereoCounterss counters;
+    WarpCounterss counters;
     uint chunk_bits;
     uint eye;
 };
 
 // components: paper: connected holes inside the picture (section 3.5, step 2), in steps: see the shader.
 struct ComponentsPass {
-    StereoViews stereo;
+    WarpViews warp;
     ComponentPixels pixels;  // in and out, of holes
     Uints pixel_classes;
     PixelBoxes boxes;  // out: of each component
     Uints tile_kinds;  // in and out
-    StereoCounterss counters;
+    WarpCounterss counters;
     uint box_capacity;
 };
 
 // price: predicted: what each tile's error costs to mend, and how much there is of each price.
 struct PricePass {
-    StereoViews stereo;
+    WarpViews warp;
     Uints tile_kinds;
     Uints tile_costs;
     Uints tile_errors;         // in; out where an eye does not resolve two rows: kSeenCoarsely
     Uints tile_prices;         // out: bin << 22 | cost
     CoherentUints price_bins;  // cost of the tiles in each bin, of errors that are seen whole; greatest error a pair last
     ListStates masked_tiles;   // counts workgroups
-    StereoCounterss counters;
-    EyeGaze gaze;  // where it is known where the affiliated eye looks
+    WarpCounterss counters;
+    EyeGaze gaze;  // where it is known where the target looks
 };
 
 // select: the tiles that are rendered, as a list and as a mask.
 struct SelectPass {
-    StereoViews stereo;
+    WarpViews warp;
     Uints tile_kinds;  // in and, where errors are predicted, out
     Uints tile_prices;
     Uints tile_list;  // out, in no order
@@ -220,7 +220,7 @@ struct SelectPass {
     ListStates visible;
     ListStates masked_tiles;    // in: a list of none; out
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
-    StereoCounterss counters;
+    WarpCounterss counters;
 };
 
 // A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups

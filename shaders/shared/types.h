@@ -107,9 +107,9 @@ struct PixelMap {
 };
 
 // What the reprojection is given at the start of a frame.
-struct StereoView {
-    PixelMap affiliated_from_dominant;
-    PixelMap dominant_from_affiliated;
+struct WarpView {
+    PixelMap target_from_source;
+    PixelMap source_from_target;
     uvec2 size_px;  // of both eyes
     uvec2 size_tiles;
     uint row_words;        // from a row of moving pixels or of arrivals to the next
@@ -121,9 +121,9 @@ struct StereoView {
     uint move_cost;        // predicted: what moving a tile costs, in pairs; tiles of at most so many pairs are rendered
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
     float hole_error;      // predicted: what a hole's expected difference counts for
-    float newcomer_error;  // predicted: what full coverage by splats that the dominant eye does not see counts for
+    float newcomer_error;  // predicted: what full coverage by splats that the source does not see counts for
 };
-BINOSPLAT_ARRAY_OF(StereoView, StereoViews);
+BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
 // A hole's pixel while holes are grouped: it lies where its colour would (of float colours, in its first half), since all holes are
 // rendered.
@@ -133,8 +133,8 @@ struct ComponentPixel {
 };
 BINOSPLAT_ARRAY_OF(ComponentPixel, ComponentPixels);
 
-// What the passes find out about the affiliated picture, for the report and for later passes.
-struct StereoCounters {
+// What the passes find out about the target, for the report and for later passes.
+struct WarpCounters {
     uint covered_pixels;
     uint gap_pixels;
     uint hole_pixels;
@@ -159,7 +159,7 @@ struct StereoCounters {
     DispatchSize per_visible;       // likewise over the visible splats
     DispatchSize component_groups;  // paper: workgroups over the pixels, none if there is no hole
 };
-BINOSPLAT_ARRAY_OF(StereoCounters, StereoCounterss);
+BINOSPLAT_ARRAY_OF(WarpCounters, WarpCounterss);
 
 // Where an eye looks, and what its pixels are.
 struct EyeGaze {

@@ -1,4 +1,4 @@
-// reproject: the dominant eye's pixels go to where the affiliated eye sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
+// reproject: the source's pixels go to where the target sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
 // greatest inverse depth stays, whatever the order of threads. resample finds the source from it again, so that 32-bit atomics suffice.
 // A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here already,
 // since what lies behind would otherwise show through the cracks. Where colours are copied, they are not: in the paper only pixels move
@@ -10,30 +10,30 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/tile_mask.glsl"
-#include "lib/stereo.glsl"
+#include "lib/warp.glsl"
 #include "lib/moving_pixel.glsl"
 #include "lib/unseen.glsl"
 
 layout(local_size_x = 16, local_size_y = 8) in;
 layout(push_constant, scalar) uniform Push { ReprojectPass pass; };
-layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the dominant picture were not rendered
+layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
 layout(constant_id = 2) const bool kForward = false;      // colours are going to be copied
 
 #include "lib/reproject.glsl"
 
 bool hidesTiles() { return kHiddenTiles; }
 
-void put(StereoView stereo, ivec2 at, uint arrival) {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(stereo.size_px)))) { return; }
-    atomicMax(pass.arrivals.at[uint(at.y) * stereo.row_words + uint(at.x)], arrival);
+void put(WarpView warp, ivec2 at, uint arrival) {
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(warp.size_px)))) { return; }
+    atomicMax(pass.arrivals.at[uint(at.y) * warp.row_words + uint(at.x)], arrival);
 }
 
 // In any direction: the pixels whose centres lie in the parallelogram between `here`, its right and its lower neighbour.
-void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
+void putWithin(WarpView warp, Moved here, Moved right, Moved below) {
     const vec2 u = right.place_px - here.place_px, v = below.place_px - here.place_px;
     const float area = u.x * v.y - u.y * v.x;
     const vec2 low = min(vec2(0), u) + min(vec2(0), v), high = max(vec2(0), u) + max(vec2(0), v);
-    if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(stereo.gap_px + 2))))) { return; }
+    if (!(right.valid && below.valid && area > 0 && all(lessThanEqual(high - low, vec2(warp.gap_px + 2))))) { return; }
     // The neighbours cover their own pixels.
     const ivec2 own = ivec2(floor(here.place_px)), own_right = ivec2(floor(right.place_px)), own_below = ivec2(floor(below.place_px));
     const ivec2 first = ivec2(floor(here.place_px + low)), last = ivec2(floor(here.place_px + high));
@@ -45,23 +45,23 @@ void putWithin(StereoView stereo, Moved here, Moved right, Moved below) {
             const float s = (d.x * v.y - d.y * v.x) / area, t = (u.x * d.y - u.y * d.x) / area;
             if (s < 0 || t < 0 || s > 1 || t > 1) { continue; }
             const float inverse_depth = here.inverse_depth + s * (right.inverse_depth - here.inverse_depth) + t * (below.inverse_depth - here.inverse_depth);
-            put(stereo, at, movingPixel(inverse_depth, 0, max(here.spread, max(right.spread, below.spread))));
+            put(warp, at, movingPixel(inverse_depth, 0, max(here.spread, max(right.spread, below.spread))));
         }
     }
 }
 
 void main() {
-    const StereoView stereo = pass.stereo.at[0];
+    const WarpView warp = pass.warp.at[0];
     const uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, stereo.size_px)) || (movesEvenRows(stereo) && (pixel.y & 1) != 0)) { return; }
-    const Moved here = moveDominant(stereo, pixel);
-    if (!here.valid || isOut(stereo, here)) { return; }
-    putLanded(stereo, here);
-    if (kForward || pixel.x + 1 >= stereo.size_px.x || stereo.gap_px == 0) { return; }
-    const Moved right = moveDominant(stereo, pixel + uvec2(1, 0));
+    if (any(greaterThanEqual(pixel, warp.size_px)) || (movesEvenRows(warp) && (pixel.y & 1) != 0)) { return; }
+    const Moved here = moveSource(warp, pixel);
+    if (!here.valid || isOut(warp, here)) { return; }
+    putLanded(warp, here);
+    if (kForward || pixel.x + 1 >= warp.size_px.x || warp.gap_px == 0) { return; }
+    const Moved right = moveSource(warp, pixel + uvec2(1, 0));
     if (kRectified) {
-        putBetween(stereo, here, right, int(pixel.y));
-    } else if (pixel.y + 1 < stereo.size_px.y) {
-        putWithin(stereo, here, right, moveDominant(stereo, pixel + uvec2(0, 1)));
+        putBetween(warp, here, right, int(pixel.y));
+    } else if (pixel.y + 1 < warp.size_px.y) {
+        putWithin(warp, here, right, moveSource(warp, pixel + uvec2(0, 1)));
     }
 }

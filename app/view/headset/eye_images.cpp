@@ -43,7 +43,7 @@ void EyeImages::acquire(int eye, bool with_depth) {
     if (shows_depth_[e]) { depth_now_[e] = depth_[e].acquire(); }
 }
 
-void EyeImages::present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near) {
+void EyeImages::present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near) {
     const auto e = static_cast<std::size_t>(eye);
     presenter_.record(commands, {&image, part_px_, tinted_by, colour_now_[e], depth_now_[e], see_through_}, near);
 }

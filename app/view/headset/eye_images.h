@@ -29,7 +29,7 @@ public:
     // Whether alpha goes along, for the room behind the scene.
     void seeThrough(bool see_through) { see_through_ = see_through; }
     // Between begin and submit of `commands`, with what acquire() took, also more than once. `near` in scene units.
-    void present(Commands& commands, int eye, const EyeImage& image, const StereoBuffers* tinted_by, double near);
+    void present(Commands& commands, int eye, const Picture& image, const WarpBuffers* tinted_by, double near);
     void clear(Commands& commands, int eye, const glm::vec4& colour);
     // After submit: gives back what acquire() took.
     void release();

@@ -16,4 +16,4 @@ vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
 vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z; }
 
 // Where errors are predicted, an odd row is moved like the even one above it, by that one's depths.
-bool movesEvenRows(StereoView stereo) { return kRectified && stereo.rows_apart == 2; }
+bool movesEvenRows(WarpView warp) { return kRectified && warp.rows_apart == 2; }

@@ -1,5 +1,5 @@
 // Recording the passes that make one eye from the other.
-#include "engine/passes/stereo_passes.h"
+#include "engine/passes/warp_passes.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,9 +12,9 @@ constexpr gpu::uint kMarkGroups = 64;
 
 }  // namespace
 
-gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
-    return {.affiliated_from_dominant = relation.affiliated_from_dominant,
-            .dominant_from_affiliated = relation.dominant_from_affiliated,
+gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings) {
+    return {.target_from_source = relation.target_from_source,
+            .source_from_target = relation.source_from_target,
             .size_px = size_px,
             .size_tiles = tilesOf(size_px),
             .row_words = row_words,
@@ -29,8 +29,8 @@ gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gp
             .newcomer_error = static_cast<float>(settings.newcomer_error)};
 }
 
-gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px) {
-    gpu::StereoCounters counters{};
+gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px) {
+    gpu::WarpCounters counters{};
     if (settings.patching == Patching::kPredicted) { return counters; }
     const glm::uvec2 tiles = tilesOf(size_px);
     counters.moves = 1;
@@ -47,7 +47,7 @@ gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens) {
             .principal_px = {lens.cx, lens.cy}};
 }
 
-KernelTable stereoKernels(const Context& context) {
+KernelTable warpKernels(const Context& context) {
     KernelTable table = everyVariant<WeighKernel>();
     append(table, everyVariant<DepthBoundsKernel>());
     append(table, everyVariant<EdgeRoisKernel>());
@@ -74,15 +74,14 @@ KernelTable stereoKernels(const Context& context) {
 namespace {
 
 // Those of one frame, one function each, and what several of them want to know.
-class StereoRecorder {
+class WarpRecorder {
 public:
-    StereoRecorder(KernelCache& kernels, Commands& commands, const StereoPassInputs& in)
-        : kernels_(kernels), commands_(commands), in_(in) {}
+    WarpRecorder(KernelCache& kernels, Commands& commands, const WarpInputs& in) : kernels_(kernels), commands_(commands), in_(in) {}
 
     [[nodiscard]] bool predicts() const { return in_.settings.patching == Patching::kPredicted; }
     [[nodiscard]] bool followsPaper() const { return in_.settings.patching == Patching::kPaper; }
     [[nodiscard]] bool groupsHoles() const { return followsPaper() && in_.settings.center_rois; }
-    [[nodiscard]] bool keepsClasses() const { return in_.stereo.needs().classes || groupsHoles(); }
+    [[nodiscard]] bool keepsClasses() const { return in_.warp.needs().classes || groupsHoles(); }
 
     void weigh();
     void clearTiles();
@@ -109,51 +108,50 @@ private:
     }
     template <typename K>
     void dispatchByCounter(const K& kernel, const typename K::Pass& pass, std::uint64_t field) {
-        commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, offsetof(FrameState, stereo_counters) + field);
+        commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, offsetof(FrameState, warp_counters) + field);
     }
-    [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::StereoView>(offsetof(FrameState, stereo)); }
-    [[nodiscard]] auto counters() const { return in_.buffers.state.address<gpu::StereoCounters>(offsetof(FrameState, stereo_counters)); }
+    [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::WarpView>(offsetof(FrameState, warp)); }
+    [[nodiscard]] auto counters() const { return in_.buffers.state.address<gpu::WarpCounters>(offsetof(FrameState, warp_counters)); }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
-    [[nodiscard]] auto moving() const { return in_.stereo.moving(in_.affiliated); }
-    [[nodiscard]] auto arrivals() const { return in_.stereo.arrivals(in_.affiliated); }
-    [[nodiscard]] bool hidesDominant() const { return in_.dominant_shown.hideAny(); }
-    [[nodiscard]] bool halfFloats() const { return in_.dominant.half_floats; }
-    // Whether resample moves the dominant eye's pixels itself.
-    [[nodiscard]] bool movesRows() const { return binosplat::movesRows(in_.rectified, in_.stereo); }
+    [[nodiscard]] auto moving() const { return in_.warp.moving(in_.target); }
+    [[nodiscard]] auto arrivals() const { return in_.warp.arrivals(in_.target); }
+    [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
+    [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
+    // Whether resample moves the source's pixels itself.
+    [[nodiscard]] bool movesRows() const { return binosplat::movesRows(in_.rectified, in_.warp); }
     [[nodiscard]] bool copiesColours() const { return in_.settings.forward && !predicts(); }
-    [[nodiscard]] gpu::uint tileGroups() const { return (in_.stereo.tileCount() + gpu::kStereoGroup - 1) / gpu::kStereoGroup; }
+    [[nodiscard]] gpu::uint tileGroups() const { return (in_.warp.tileCount() + gpu::kWarpGroup - 1) / gpu::kWarpGroup; }
 
     KernelCache& kernels_;
     Commands& commands_;
-    const StereoPassInputs& in_;
+    const WarpInputs& in_;
 };
 
-void StereoRecorder::weigh() {
+void WarpRecorder::weigh() {
     begin<WeighKernel>();
-    in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
-    const gpu::WeighPass pass{.stereo = view(),
+    in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
+    const gpu::WeighPass pass{.warp = view(),
                               .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
                               .moving = moving(),
-                              .tile_kinds = in_.stereo.tileKinds(),
-                              .tile_costs = in_.stereo.tileCosts(),
-                              .tile_errors = in_.stereo.tileErrors(),
-                              .tile_depths = in_.stereo.tileDepths(),
-                              .tile_mask = in_.stereo.tileMask(),
-                              .price_bins = in_.stereo.bins(),
-                              .shown_mask = in_.dominant_shown.mask(),
+                              .tile_kinds = in_.warp.tileKinds(),
+                              .tile_costs = in_.warp.tileCosts(),
+                              .tile_errors = in_.warp.tileErrors(),
+                              .tile_depths = in_.warp.tileDepths(),
+                              .tile_mask = in_.warp.tileMask(),
+                              .price_bins = in_.warp.bins(),
+                              .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                               .counters = counters()};
-    dispatch(WeighKernel{.rectified = in_.rectified,
-                         .hidden_tiles = hidesDominant(),
-                         .kinds_given = in_.affiliated_shown.hideAny(),
-                         .may_move = in_.may_move},
-             pass, tileGroups());
+    dispatch(
+        WeighKernel{
+            .rectified = in_.rectified, .hidden_tiles = hidesSource(), .kinds_given = in_.target_shown.hideAny(), .may_move = in_.may_move},
+        pass, tileGroups());
 }
 
 // Timed with the pass that comes next.
-void StereoRecorder::clearTiles() {
+void WarpRecorder::clearTiles() {
     if (followsPaper()) {
         begin<DepthBoundsKernel>();
     } else if (movesRows()) {
@@ -161,130 +159,130 @@ void StereoRecorder::clearTiles() {
     } else {
         begin<ReprojectKernel>();
     }
-    commands_.fillZero(in_.stereo.tiles());
-    in_.affiliated_shown.recordKinds(commands_, in_.stereo.tiles(), StereoBuffers::tileKindsOffset());
+    commands_.fillZero(in_.warp.tiles());
+    in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
 }
 
-void StereoRecorder::findDepthBounds() {
-    const gpu::DepthBoundsPass bounds{.stereo = view(),
-                                      .colours = in_.dominant.colours.address<gpu::vec4>(),
-                                      .half_colours = in_.dominant.colours.address<gpu::uvec2>(),
+void WarpRecorder::findDepthBounds() {
+    const gpu::DepthBoundsPass bounds{.warp = view(),
+                                      .colours = in_.source.colours.address<gpu::vec4>(),
+                                      .half_colours = in_.source.colours.address<gpu::uvec2>(),
                                       .moving = moving(),
-                                      .bins = in_.stereo.bins()};
-    const glm::uvec2 tiles = in_.stereo.sizeTiles();
+                                      .bins = in_.warp.bins()};
+    const glm::uvec2 tiles = in_.warp.sizeTiles();
     dispatch(DepthBoundsKernel{.half_colours = halfFloats()}, bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
 }
 
-void StereoRecorder::findEdgeRois() {
+void WarpRecorder::findEdgeRois() {
     begin<EdgeRoisKernel>();
-    const gpu::EdgeRoisPass edges{.stereo = view(),
-                                  .bins = in_.stereo.bins(),
-                                  .tile_kinds = in_.stereo.tileKinds(),
-                                  .shown_mask = in_.dominant_shown.mask(),
+    const gpu::EdgeRoisPass edges{.warp = view(),
+                                  .bins = in_.warp.bins(),
+                                  .tile_kinds = in_.warp.tileKinds(),
+                                  .shown_mask = in_.source_shown.mask(),
                                   .counters = counters()};
-    dispatch(EdgeRoisKernel{.rectified = in_.rectified, .hidden_tiles = hidesDominant()}, edges, tileGroups());
+    dispatch(EdgeRoisKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource()}, edges, tileGroups());
 }
 
-void StereoRecorder::reproject() {
+void WarpRecorder::reproject() {
     if (movesRows()) { return; }
     begin<ReprojectKernel>();
-    const gpu::ReprojectPass pass{.stereo = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.dominant_shown.mask()};
-    dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesDominant(), .forward = copiesColours()}, pass,
-                      offsetof(gpu::StereoCounters, per_pixel_block));
+    const gpu::ReprojectPass pass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.source_shown.mask()};
+    dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource(), .forward = copiesColours()}, pass,
+                      offsetof(gpu::WarpCounters, per_pixel_block));
 }
 
-void StereoRecorder::resample() {
-    const bool whole = predicts() && !in_.dominant_shown.hideAny() && !keepsClasses();
+void WarpRecorder::resample() {
+    const bool whole = predicts() && !in_.source_shown.hideAny() && !keepsClasses();
     resampleFrom(0, !movesRows() ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
 }
 
-void StereoRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
+void WarpRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
 
-void StereoRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
+void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
     begin<ResampleKernel>();
-    const bool knows_errors = predict_errors || in_.affiliated_gaze;
-    const gpu::ResamplePass pass{.stereo = view(),
-                                 .dominant = in_.dominant.colours.address<gpu::vec4>(),
-                                 .half_dominant = in_.dominant.colours.address<gpu::uvec2>(),
+    const bool knows_errors = predict_errors || in_.target_gaze;
+    const gpu::ResamplePass pass{.warp = view(),
+                                 .source = in_.source.colours.address<gpu::vec4>(),
+                                 .half_source = in_.source.colours.address<gpu::uvec2>(),
                                  .moving = movesRows() ? moving() : arrivals(),
-                                 .affiliated = in_.affiliated.colours.address<gpu::vec4>(),
-                                 .half_affiliated = in_.affiliated.colours.address<gpu::uvec2>(),
-                                 .depths = in_.affiliated.depths.address<float>(),
-                                 .tile_kinds = in_.stereo.tileKinds(),
-                                 .tile_errors = knows_errors ? in_.stereo.tileErrors() : gpu::DeviceAddress<gpu::uint>{},
-                                 .pixel_classes = in_.stereo.pixelClasses(),
-                                 .component_pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
+                                 .target = in_.target.colours.address<gpu::vec4>(),
+                                 .half_target = in_.target.colours.address<gpu::uvec2>(),
+                                 .depths = in_.target.depths.address<float>(),
+                                 .tile_kinds = in_.warp.tileKinds(),
+                                 .tile_errors = knows_errors ? in_.warp.tileErrors() : gpu::DeviceAddress<gpu::uint>{},
+                                 .pixel_classes = in_.warp.pixelClasses(),
+                                 .component_pixels = in_.target.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),
-                                 .shown_mask = in_.dominant_shown.mask(),
+                                 .shown_mask = in_.source_shown.mask(),
                                  .background = in_.background,
                                  .first_row = first_row};
     const ResampleKernel resample_kernel{.rectified = in_.rectified,
                                          .predict_errors = predict_errors,
-                                         .depth = in_.affiliated.depths.bytes() > 0,
+                                         .depth = in_.target.depths.bytes() > 0,
                                          .classes = keepsClasses(),
                                          .components = groupsHoles(),
-                                         .row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.stereo.rowSteps(),
+                                         .row_steps = row_source == gpu::kPlacesGiven ? 0 : in_.warp.rowSteps(),
                                          .half_colours = halfFloats(),
                                          .forward = copiesColours(),
                                          .row_source = row_source};
-    dispatchByCounter(resample_kernel, pass, offsetof(gpu::StereoCounters, per_row));
+    dispatchByCounter(resample_kernel, pass, offsetof(gpu::WarpCounters, per_row));
 }
 
-void StereoRecorder::findNewcomers() {
+void WarpRecorder::findNewcomers() {
     begin<NewcomersKernel>();
     const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
                                   .eyes = in_.buffers.eyes(),
-                                  .stereo = view(),
-                                  .tile_depths = in_.stereo.tileDepths(),
+                                  .warp = view(),
+                                  .tile_depths = in_.warp.tileDepths(),
                                   .order = in_.buffers.visible.order().values,
                                   .visible = visible(),
-                                  .dominant_counts = in_.buffers.visible.tileCounts(),
-                                  .tile_kinds = in_.stereo.tileKinds(),
-                                  .tile_errors = in_.stereo.tileErrors(),
+                                  .source_counts = in_.buffers.visible.tileCounts(),
+                                  .tile_kinds = in_.warp.tileKinds(),
+                                  .tile_errors = in_.warp.tileErrors(),
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
-                                  .eye = static_cast<gpu::uint>(1 - in_.dominant_eye)};
-    dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::StereoCounters, per_visible));
+                                  .eye = static_cast<gpu::uint>(in_.target_view)};
+    dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::WarpCounters, per_visible));
 }
 
-void StereoRecorder::groupHoles() {
+void WarpRecorder::groupHoles() {
     begin<ComponentsKernel>();
-    const gpu::ComponentsPass pass{.stereo = view(),
-                                   .pixels = in_.affiliated.colours.address<gpu::ComponentPixel>(),
-                                   .pixel_classes = in_.stereo.pixelClasses(),
-                                   .boxes = in_.stereo.boxes(),
-                                   .tile_kinds = in_.stereo.tileKinds(),
+    const gpu::ComponentsPass pass{.warp = view(),
+                                   .pixels = in_.target.colours.address<gpu::ComponentPixel>(),
+                                   .pixel_classes = in_.warp.pixelClasses(),
+                                   .boxes = in_.warp.boxes(),
+                                   .tile_kinds = in_.warp.tileKinds(),
                                    .counters = counters(),
-                                   .box_capacity = in_.stereo.needs().boxes};
+                                   .box_capacity = in_.warp.needs().boxes};
     for (std::uint32_t step = 0; step < 3; ++step) {
         dispatchByCounter(ComponentsKernel{.step = step, .half_colours = halfFloats()}, pass,
-                          offsetof(gpu::StereoCounters, component_groups));
+                          offsetof(gpu::WarpCounters, component_groups));
     }
     dispatch(ComponentsKernel{.step = 3, .half_colours = halfFloats()}, pass, kMarkGroups);
 }
 
-void StereoRecorder::price() {
+void WarpRecorder::price() {
     begin<PriceKernel>();
-    const gpu::PricePass pass{.stereo = view(),
-                              .tile_kinds = in_.stereo.tileKinds(),
-                              .tile_costs = in_.stereo.tileCosts(),
-                              .tile_errors = in_.stereo.tileErrors(),
-                              .tile_prices = in_.stereo.tilePrices(),
-                              .price_bins = in_.stereo.bins(),
+    const gpu::PricePass pass{.warp = view(),
+                              .tile_kinds = in_.warp.tileKinds(),
+                              .tile_costs = in_.warp.tileCosts(),
+                              .tile_errors = in_.warp.tileErrors(),
+                              .tile_prices = in_.warp.tilePrices(),
+                              .price_bins = in_.warp.bins(),
                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                               .counters = counters(),
-                              .gaze = in_.affiliated_gaze ? eyeGazeOf(*in_.affiliated_gaze, in_.affiliated_lens) : gpu::EyeGaze{}};
-    dispatch(PriceKernel{.foveated = in_.affiliated_gaze.has_value()}, pass, tileGroups());
+                              .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
+    dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }
 
-void StereoRecorder::select() {
+void WarpRecorder::select() {
     begin<SelectKernel>();
-    const gpu::SelectPass pass{.stereo = view(),
-                               .tile_kinds = in_.stereo.tileKinds(),
-                               .tile_prices = in_.stereo.tilePrices(),
-                               .tile_list = in_.stereo.tileList(),
-                               .tile_mask = in_.stereo.tileMask(),
-                               .tile_costs = in_.stereo.tileCosts(),
+    const gpu::SelectPass pass{.warp = view(),
+                               .tile_kinds = in_.warp.tileKinds(),
+                               .tile_prices = in_.warp.tilePrices(),
+                               .tile_list = in_.warp.tileList(),
+                               .tile_mask = in_.warp.tileMask(),
+                               .tile_costs = in_.warp.tileCosts(),
                                .visible = visible(),
                                .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
                                .masked_visible = listAt(offsetof(FrameState, masked_visible)),
@@ -294,8 +292,8 @@ void StereoRecorder::select() {
 
 }  // namespace
 
-void StereoPasses::record(Commands& commands, const StereoPassInputs& in) {
-    StereoRecorder passes(kernels_, commands, in);
+void WarpPasses::record(Commands& commands, const WarpInputs& in) {
+    WarpRecorder passes(kernels_, commands, in);
     if (passes.predicts()) {
         passes.weigh();
         if (!in.may_move) { return; }

@@ -1,5 +1,5 @@
-// Allocating what the stereo passes work on.
-#include "engine/passes/stereo_buffers.h"
+// Allocating what the passes of warp and choose work on.
+#include "engine/passes/warp_buffers.h"
 
 #include <algorithm>
 
@@ -7,16 +7,16 @@ namespace binosplat {
 
 std::uint32_t mostRowSteps(const Context& context) { return context.sharedMemory() >= 32768 ? gpu::kMostRowSteps : 1; }
 
-std::uint64_t StereoBuffers::maskWords(glm::uvec2 size_px) {
+std::uint64_t WarpBuffers::maskWords(glm::uvec2 size_px) {
     const glm::uvec2 tiles = tilesOf(size_px);
     return std::uint64_t{(tiles.x + 31) / 32} * tiles.y;
 }
 
-StereoBuffers::StereoBuffers(const Context& context, const StereoBufferNeeds& needs)
+WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     : needs_(needs), longest_shared_row_(mostRowSteps(context) * gpu::kArrivalsStep) {
     if (needs.size_px.x == 0) { return; }
     const std::uint64_t words = 5 * std::uint64_t{tileCount()} + maskWords(needs.size_px) + std::max(gpu::kPriceBins, gpu::kDepthBins);
-    tiles_ = Buffer(context, "stereo tiles", words * sizeof(gpu::uint));
+    tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
     if (needs.classes) { classes_ = Buffer(context, "pixel classes", std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint)); }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
     if (!sharesRows()) {
@@ -24,13 +24,13 @@ StereoBuffers::StereoBuffers(const Context& context, const StereoBufferNeeds& ne
     }
 }
 
-gpu::DeviceAddress<gpu::uint> StereoBuffers::arrivals(const EyeImage& affiliated) const {
-    return sharesRows() ? affiliated.colours.address<gpu::uint>() : planes_.address<gpu::uint>();
+gpu::DeviceAddress<gpu::uint> WarpBuffers::arrivals(const Picture& target) const {
+    return sharesRows() ? target.colours.address<gpu::uint>() : planes_.address<gpu::uint>();
 }
 
-gpu::DeviceAddress<gpu::uint> StereoBuffers::moving(const EyeImage& affiliated) const {
+gpu::DeviceAddress<gpu::uint> WarpBuffers::moving(const Picture& target) const {
     const std::uint64_t width = needs_.size_px.x;
-    return sharesRows() ? arrivals(affiliated).at(width) : arrivals(affiliated).at(width * needs_.size_px.y);
+    return sharesRows() ? arrivals(target).at(width) : arrivals(target).at(width * needs_.size_px.y);
 }
 
 }  // namespace binosplat

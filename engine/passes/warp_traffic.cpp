@@ -1,5 +1,5 @@
 // Sizes are those of the passes' arguments in shaders/shared/passes.h, named in the order they have there.
-#include "engine/passes/stereo_traffic.h"
+#include "engine/passes/warp_traffic.h"
 
 namespace binosplat {
 namespace {
@@ -11,14 +11,14 @@ constexpr double perTile(double words) { return words * kWord / kPixelsOfTile; }
 
 }  // namespace
 
-Traffic stereoTraffic(const StereoFrameFacts& facts) {
+Traffic warpTraffic(const WarpFacts& facts) {
     const bool predict = facts.settings.patching == Patching::kPredicted, paper = facts.settings.patching == Patching::kPaper;
     const bool components = paper && facts.settings.center_rois;
     const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
     // Of odd rows that are moved like even ones nothing is read or written before they are resampled.
     const double rows = facts.even_rows ? 0.5 : 1.0, moving = rows * kWord, arrival = rows * kWord;
-    const double depth = facts.affiliated_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
+    const double depth = facts.target_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
     // Only predicted leaves tiles out before it moves anything.
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
@@ -50,7 +50,7 @@ Traffic stereoTraffic(const StereoFrameFacts& facts) {
     }
     if (paper || predict) {
         // kinds (in and out), prices, costs; the list and the mask. And a workgroup sums up the prices of half of the tiles, at most.
-        traffic.emplace_back("select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kStereoGroup) : 0.0));
+        traffic.emplace_back("select", perTile(6) + (predict ? perTile(1) * tiles / (2 * gpu::kWarpGroup) : 0.0));
     }
     double sum = 0.0;
     for (const auto& [pass, bytes] : traffic) { sum += bytes; }

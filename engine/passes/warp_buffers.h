@@ -9,22 +9,22 @@ namespace binosplat {
 std::uint32_t mostRowSteps(const Context& context);
 
 // What a frame wants of them.
-struct StereoBufferNeeds {
+struct WarpBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
-    bool classes = false;      // of the affiliated picture's pixels
+    bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
     std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 where centre ROIs are off
-    bool operator==(const StereoBufferNeeds&) const = default;
+    bool operator==(const WarpBufferNeeds&) const = default;
 };
 
-// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the affiliated
+// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the target
 // eye's colours come to lie, row by row, as long as resample can keep a row of arrivals in shared memory; otherwise here.
-class StereoBuffers {
+class WarpBuffers {
 public:
-    StereoBuffers() = default;
-    StereoBuffers(const Context& context, const StereoBufferNeeds& needs);
+    WarpBuffers() = default;
+    WarpBuffers(const Context& context, const WarpBufferNeeds& needs);
 
-    [[nodiscard]] const StereoBufferNeeds& needs() const { return needs_; }
+    [[nodiscard]] const WarpBufferNeeds& needs() const { return needs_; }
     [[nodiscard]] glm::uvec2 sizePx() const { return needs_.size_px; }
     [[nodiscard]] glm::uvec2 sizeTiles() const { return tilesOf(needs_.size_px); }
     [[nodiscard]] std::uint32_t tileCount() const { return sizeTiles().x * sizeTiles().y; }
@@ -34,7 +34,7 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tileArray(1); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCosts() const { return tileArray(2); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
-    // What the dominant eye sees in the middle of each, until prices come.
+    // What the source sees in the middle of each, until prices come.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileDepths() const { return tilePrices(); }
     // Once tiles are chosen: of those in the list.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesWithPairs() const { return tilePrices(); }
@@ -54,8 +54,8 @@ public:
     // Moving pixels and arrivals: where the first rows begin, and the words from a row to the next.
     [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= longest_shared_row_; }
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const EyeImage& affiliated) const;
-    [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const EyeImage& affiliated) const;
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const Picture& target) const;
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> moving(const Picture& target) const;
     // How many kArrivalsStep a row takes in shared memory, see resample; 0: rows are not kept there.
     [[nodiscard]] std::uint32_t rowSteps() const {
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
@@ -66,7 +66,7 @@ public:
 private:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const { return tileKinds().at(i * tileCount()); }
 
-    StereoBufferNeeds needs_;
+    WarpBufferNeeds needs_;
     std::uint32_t longest_shared_row_ = 0;
     Buffer tiles_, classes_, boxes_, planes_;
 };

@@ -2,10 +2,10 @@
 //
 //   weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
 //   depth_bounds  paper: how deep the picture is
-//   edge_rois     paper: the borders that the dominant eye does not see
-//   reproject     the dominant eye's pixels go to where the affiliated eye sees them; resample does so itself where that is in their row
-//   resample      every pixel's place in the dominant picture, its colour, and the error to expect
-//   newcomers     predicted: splats that only the affiliated eye sees, nearer than the middle of their tile
+//   edge_rois     paper: the borders that the source does not see
+//   reproject     the source's pixels go to where the target sees them; resample does so itself where that is in their row
+//   resample      every pixel's place in the source, its colour, and the error to expect
+//   newcomers     predicted: splats that only the target sees, nearer than the middle of their tile
 //   components    paper, on request: connected holes inside the picture
 //   price         predicted: what it costs to mend each tile's error
 //   select        the tiles that are rendered
@@ -15,21 +15,21 @@
 #include "engine/gpu/kernel.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/shown_tiles.h"
-#include "engine/passes/stereo_buffers.h"
+#include "engine/passes/warp_buffers.h"
 #include "shaders/shared/passes.h"
 
 #include <optional>
 
 namespace binosplat {
 
-// Who makes the affiliated picture's tiles.
+// Who makes the target's tiles.
 enum class Patching {
     kNone,       // nobody: reprojection and interpolation alone
     kPaper,      // edge ROIs, and centre ROIs if asked for
     kPredicted,  // what is cheap to render, and the tiles of the greatest expected error for their cost
 };
 
-// What the stereo passes are given in addition to the two cameras.
+// What the passes are given in addition to the two cameras.
 struct StereoSettings {
     Patching patching = Patching::kPredicted;
     gpu::uint depth_choice = gpu::kDepthInverse;
@@ -52,51 +52,51 @@ struct Gaze {
     double clear_rad = 0.0;               // how far about it everything counts in full: the eye may look there, too
 };
 
-// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see StereoBuffers.
-gpu::StereoView stereoViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
+// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see WarpBuffers.
+gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
 // What the counters start a frame with: modes that do not weigh move everything.
-gpu::StereoCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
+gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 
 // What the passes of one frame work on.
-struct StereoPassInputs {
+struct WarpInputs {
     const GpuScene& scene;
     const FrameBuffers& buffers;
-    const StereoBuffers& stereo;
+    const WarpBuffers& warp;
     const StereoSettings& settings;
     bool rectified;
-    bool may_move;  // otherwise only weigh runs, for the next frame's sake
-    int list;       // of visible splats, the affiliated eye's
-    int dominant_eye;
-    const EyeImage& dominant;
-    const EyeImage& affiliated;
-    const ShownTiles& dominant_shown;
-    const ShownTiles& affiliated_shown;
+    bool may_move;    // otherwise only weigh runs, for the next frame's sake
+    int list;         // of visible splats, the target's
+    int target_view;  // index into FrameState::eyes
+    const Picture& source;
+    const Picture& target;
+    const ShownTiles& source_shown;
+    const ShownTiles& target_shown;
     glm::vec3 background;
-    const Intrinsics& affiliated_lens;
-    std::optional<Gaze> affiliated_gaze;  // empty: all tiles are seen alike
+    const Intrinsics& target_lens;
+    std::optional<Gaze> target_gaze;  // empty: all tiles are seen alike
 };
 
-// Whether resample moves the dominant eye's pixels itself, row by row: then there is no reproject, and no arrivals in memory.
-inline bool movesRows(bool rectified, const StereoBuffers& stereo) { return rectified && stereo.sharesRows(); }
+// Whether resample moves the source's pixels itself, row by row: then there is no reproject, and no arrivals in memory.
+inline bool movesRows(bool rectified, const WarpBuffers& warp) { return rectified && warp.sharesRows(); }
 
 // How `gaze` looks to the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
 // Their kernels.
-KernelTable stereoKernels(const Context& context);
+KernelTable warpKernels(const Context& context);
 
-class StereoPasses {
+class WarpPasses {
 public:
-    explicit StereoPasses(const Context& context) : kernels_(context, stereoKernels(context)) {}
+    explicit WarpPasses(const Context& context) : kernels_(context, warpKernels(context)) {}
     // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
     void rebuildKernels() { kernels_.rebuild(); }
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
-    void takeKernels(StereoPasses& from) { kernels_.take(from.kernels_); }
+    void takeKernels(WarpPasses& from) { kernels_.take(from.kernels_); }
 
-    // All of them: the affiliated eye's colours, except in the tiles that are listed in the end; its depths, too, where it has room
+    // All of them: the target's colours, except in the tiles that are listed in the end; its depths, too, where it has room
     // for them. Tiles that are hidden become background.
-    void record(Commands& commands, const StereoPassInputs& in);
+    void record(Commands& commands, const WarpInputs& in);
 
 private:
     KernelCache kernels_;

@@ -1,0 +1,33 @@
+// What the target costs in memory traffic in addition to the tiles that are rendered for it.
+#pragma once
+
+#include "engine/passes/warp_passes.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+// Bytes that a pass reads and writes, by pixel of an eye, in frame order. What several threads read counts once, since neighbours read it
+// from a cache; what is read and written back counts twice.
+using Traffic = std::vector<std::pair<std::string, double>>;
+
+// What a frame was like that traffic depends on.
+struct WarpFacts {
+    StereoSettings settings;
+    bool may_move = true;          // the source came with what moving needs
+    bool moves_rows = false;       // resample does what reproject does otherwise
+    bool even_rows = false;        // odd rows are moved like even ones
+    bool sums_even_rows = false;   // and so the source writes nothing for these
+    bool half_floats = false;      // what pictures consist of
+    bool target_depth = false;     // its D is kept
+    bool classes = false;          // of pixels are kept
+    glm::uvec2 size_px{0, 0};      // of an eye
+    gpu::WarpCounters counters{};  // at the end of the frame
+    std::uint32_t visible = 0;     // splats that either eye sees
+};
+
+Traffic warpTraffic(const WarpFacts& facts);
+
+}  // namespace binosplat
