@@ -1,7 +1,7 @@
 // What to say of a camera that sees no splat.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/geometry.h"
 
 #include <glm/glm.hpp>

@@ -6,7 +6,7 @@
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/warp_passes.h"
-#include "engine/present.h"
+#include "engine/passes/present.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>

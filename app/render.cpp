@@ -9,7 +9,7 @@
 #include "app/render_path.h"
 #include "app/report/report.h"
 #include "engine/error.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/roi_picture.h"
 #include "engine/setup/output_files.h"

@@ -27,6 +27,21 @@ constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode =
 // Whether each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
 
+// Which tiles of a picture are rendered where it is made from another.
+enum class TileChoice {
+    kAll,        // all of them: nothing is moved
+    kNone,       // none: reprojection and interpolation alone
+    kPaper,      // edge ROIs, and centre ROIs if asked for
+    kPredicted,  // what is cheap to render, and those of the greatest expected error for their cost
+};
+
+constexpr TileChoice choiceOf(Mode mode) {
+    return mode == Mode::kReproject   ? TileChoice::kNone
+           : mode == Mode::kPaper     ? TileChoice::kPaper
+           : mode == Mode::kPredicted ? TileChoice::kPredicted
+                                      : TileChoice::kAll;
+}
+
 // What splats are blended by, front to back.
 enum class Order {
     kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes

@@ -1,7 +1,7 @@
 // Whole frames in which one eye is made from the other, with all that they leave.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "tests/gpu_fixture.h"
 #include "tests/gpu_scenes.h"
 

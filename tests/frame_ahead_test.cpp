@@ -1,6 +1,6 @@
 // Facts about frames that are not waited for: the same pictures as of those that are, told a frame or two late, and lists with room ahead.
 #include "engine/error.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "tests/frame_runs.h"
 
 #include <doctest/doctest.h>

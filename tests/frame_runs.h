@@ -1,7 +1,7 @@
 // Running whole frames in tests: one call, and all that they leave.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "tests/gpu_fixture.h"
 #include "tests/gpu_scenes.h"
 

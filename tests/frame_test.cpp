@@ -1,5 +1,5 @@
 // Facts about whole frames against the twin: pictures, depth and moments of real, built-in and analytic scenes.
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/picture/metrics.h"
 #include "engine/srgb.h"
 #include "tests/frame_runs.h"

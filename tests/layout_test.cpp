@@ -1,8 +1,8 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
 #include "engine/passes/passes.h"
+#include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
-#include "engine/present.h"
 #include "shaders/embedded_shaders.h"
 #include "shaders/shared/passes.h"
 #include "tests/gpu_fixture.h"

@@ -1,8 +1,8 @@
 // A scene as every stage of the twin leaves it, and what the device needs to take over at any of them.
 #pragma once
 
-#include "engine/eye_view.h"
 #include "engine/gpu/gpu_scene.h"
+#include "engine/passes/eye_view.h"
 #include "shaders/shared/passes.h"
 #include "tests/gpu_fixture.h"
 #include "tests/gpu_scenes.h"

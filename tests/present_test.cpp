@@ -1,5 +1,5 @@
 // Facts about pictures on their way to a headset: pass 10 against its float64 twin, on the device.
-#include "engine/present.h"
+#include "engine/passes/present.h"
 #include "engine/reference/present.h"
 #include "tests/gpu_fixture.h"
 

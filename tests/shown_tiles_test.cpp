@@ -12,7 +12,6 @@
 TEST_SUITE_BEGIN("shown_tiles");
 
 using namespace binosplat;
-using reference::StereoMethod;
 using reference::TileKind;
 using test::Gpu;
 using test::ViewedScene;
@@ -145,18 +144,18 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
         const GpuScene scene(context(), host_scene);
         StereoFrame frame(context(), scene);
         const test::KeptKernels kept(context(), frame);
-        for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
-            const Side dominant = method == StereoMethod::kPaper ? kRight : kLeft, other = dominant == kLeft ? kRight : kLeft;
-            const reference::StereoSettings twin_settings{.method = method,
+        for (const TileChoice method : {TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}) {
+            const Side dominant = method == TileChoice::kPaper ? kRight : kLeft, other = dominant == kLeft ? kRight : kLeft;
+            const reference::StereoSettings twin_settings{.choice = method,
                                                           .margin_px = 8,
                                                           .center_rois = true,
                                                           .source_hidden = lenses()[dominant],
                                                           .target_hidden = lenses()[other]};
             const auto twin = reference::renderStereo(host_scene, {setting.eyes[dominant], setting.eyes[other]}, twin_settings,
                                                       {.background = kBackground});
-            const Mode mode = method == StereoMethod::kReproject ? Mode::kReproject
-                              : method == StereoMethod::kPaper   ? Mode::kPaper
-                                                                 : Mode::kPredicted;
+            const Mode mode = method == TileChoice::kNone    ? Mode::kReproject
+                              : method == TileChoice::kPaper ? Mode::kPaper
+                                                             : Mode::kPredicted;
             const auto made = test::makeAffiliated(frame, setting.eyes, makeSettings(mode, dominant, true));
             const Image depth = frame.readDepth(other);
             CAPTURE(setting.view->name);
@@ -170,7 +169,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
                 again += made.tile_kinds[t] != 0 && made.tile_kinds[t] != gpu::kTileHidden ? 1 : 0;
             }
             // Measured: five in one frame, where a splat that is large for its tiles is seen by the dominant eye within a hair, or is not.
-            CHECK(std::ranges::count(same_kind, 0u) <= (method == StereoMethod::kPredicted ? 6 : 0));
+            CHECK(std::ranges::count(same_kind, 0u) <= (method == TileChoice::kPredicted ? 6 : 0));
             CHECK(made.result.counters.at("tiles_patched") == again);
             // The budget is a share of what is shown. The device's pairs are the twin's and few more.
             const auto& counters = made.result.counters;
@@ -178,7 +177,7 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
             for (std::size_t t = 0; t < twin.tile_costs.size(); ++t) {
                 predicted_cost += made.tile_kinds[t] == gpu::kTilePredicted ? twin.tile_costs[t] : 0;
             }
-            if (method == StereoMethod::kPredicted) {
+            if (method == TileChoice::kPredicted) {
                 CHECK(static_cast<double>(predicted_cost) <= twin_settings.budget * static_cast<double>(counters.at("work_full")));
             }
             // Only pixels that were moved are counted, before any tile is rendered for what is wrong with them.
@@ -304,6 +303,6 @@ TEST_CASE_FIXTURE(Gpu, "the affiliated eye's depth is there in every mode, the r
         FrameSettings without = makeSettings(Mode::kPredicted, kLeft, false);
         without.keep_both_depths = false;
         frame.render(eyes, without);
-        CHECK(frame.image(kRight).depths.bytes() == 0);
+        CHECK(frame.picture(kRight).depths.bytes() == 0);
     }
 }

@@ -32,9 +32,7 @@ inline gpu::uint depthChoiceOf(reference::DepthChoice choice) {
 
 inline StereoSettings settingsOf(const reference::StereoSettings& twin) {
     StereoSettings settings;
-    settings.patching = twin.method == reference::StereoMethod::kPaper       ? Patching::kPaper
-                        : twin.method == reference::StereoMethod::kPredicted ? Patching::kPredicted
-                                                                             : Patching::kNone;
+    settings.choice = twin.choice;
     settings.depth_choice = depthChoiceOf(twin.depth_choice);
     settings.forward = twin.forward;
     settings.gap_px = static_cast<gpu::uint>(twin.gap_px);

@@ -15,15 +15,14 @@ using namespace binosplat;
 using reference::DepthChoice;
 using reference::EyePair;
 using reference::PixelClass;
-using reference::StereoMethod;
 using reference::TileKind;
 using test::AffiliatedFrame;
 using test::Gpu;
 
 namespace {
 
-Mode modeOf(StereoMethod method) {
-    return method == StereoMethod::kReproject ? Mode::kReproject : method == StereoMethod::kPaper ? Mode::kPaper : Mode::kPredicted;
+Mode modeOf(TileChoice method) {
+    return method == TileChoice::kNone ? Mode::kReproject : method == TileChoice::kPaper ? Mode::kPaper : Mode::kPredicted;
 }
 
 }  // namespace
@@ -32,8 +31,8 @@ TEST_CASE("the twin moves nothing where the eyes are one") {
     const auto view = test::viewBuiltin("builtin:atelier", {80, 60}, 5000);
     const EyePair eyes{view.eye, view.eye};
     for (const DepthChoice choice : {DepthChoice::kSum, DepthChoice::kMean, DepthChoice::kInverse}) {
-        for (const StereoMethod method : {StereoMethod::kReproject, StereoMethod::kPaper, StereoMethod::kPredicted}) {
-            const auto pictures = reference::renderStereo(view.scene, eyes, {.method = method, .depth_choice = choice}, {});
+        for (const TileChoice method : {TileChoice::kNone, TileChoice::kPaper, TileChoice::kPredicted}) {
+            const auto pictures = reference::renderStereo(view.scene, eyes, {.choice = method, .depth_choice = choice}, {});
             double worst = 0.0;
             for (std::size_t i = 0; i < pictures.affiliated.size(); ++i) {
                 for (int channel = 0; channel < 4; ++channel) {
@@ -43,8 +42,8 @@ TEST_CASE("the twin moves nothing where the eyes are one") {
             CHECK(worst <= 1e-9);
             CHECK(std::all_of(pictures.resolved.begin(), pictures.resolved.end(),
                               [](const auto& pixel) { return pixel.pixel_class == PixelClass::kCovered; }));
-            if (method != StereoMethod::kPredicted) {
-                const reference::StereoSettings letter{.method = method, .depth_choice = choice, .forward = true};
+            if (method != TileChoice::kPredicted) {
+                const reference::StereoSettings letter{.choice = method, .depth_choice = choice, .forward = true};
                 CHECK(reference::renderStereo(view.scene, eyes, letter, {}).affiliated == pictures.dominant.rgba);
             }
             CHECK(
@@ -68,8 +67,7 @@ TEST_CASE("the twin moves a wall by its disparity, up to the kernel's error") {
                  {0.5f + 0.3f * std::sin(0.5f * static_cast<float>(i)), 0.4f, 0.5f + 0.3f * std::cos(0.7f * static_cast<float>(j))}});
         }
     }
-    const auto pictures =
-        reference::renderStereo(test::makeScene(splats), {eyes[kLeft], eyes[kRight]}, {.method = StereoMethod::kReproject}, {});
+    const auto pictures = reference::renderStereo(test::makeScene(splats), {eyes[kLeft], eyes[kRight]}, {.choice = TileChoice::kNone}, {});
     for (std::size_t y = 0; y < 48; ++y) {
         for (std::size_t x = 0; x < 64; ++x) {
             const std::size_t i = y * 64 + x;
@@ -99,11 +97,11 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
         for (const Side dominant : {kLeft, kRight}) {
             // A move that costs nothing, as much as many tiles' pairs, and more than any. And the paper to the letter, each eye by itself.
             for (const auto& [method, move_cost, letter] :
-                 {std::tuple(StereoMethod::kReproject, 0u, false), std::tuple(StereoMethod::kReproject, 0u, true),
-                  std::tuple(StereoMethod::kPaper, 0u, false), std::tuple(StereoMethod::kPaper, 0u, true),
-                  std::tuple(StereoMethod::kPredicted, 0u, false), std::tuple(StereoMethod::kPredicted, 150u, false),
-                  std::tuple(StereoMethod::kPredicted, 100000u, false)}) {
-                const reference::StereoSettings twin_settings{.method = method,
+                 {std::tuple(TileChoice::kNone, 0u, false), std::tuple(TileChoice::kNone, 0u, true),
+                  std::tuple(TileChoice::kPaper, 0u, false), std::tuple(TileChoice::kPaper, 0u, true),
+                  std::tuple(TileChoice::kPredicted, 0u, false), std::tuple(TileChoice::kPredicted, 150u, false),
+                  std::tuple(TileChoice::kPredicted, 100000u, false)}) {
+                const reference::StereoSettings twin_settings{.choice = method,
                                                               .depth_choice = letter ? DepthChoice::kSum : DepthChoice::kInverse,
                                                               .forward = letter,
                                                               .margin_px = 8,

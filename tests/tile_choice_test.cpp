@@ -34,7 +34,7 @@ StereoCase makePlainCase(glm::uvec2 size_px, Side dominant = kLeft) {
     for (auto* plane : {&c.dominant.depth, &c.dominant.inverse_depth, &c.dominant.inverse_depth_squared}) {
         plane->resize(c.dominant.rgba.size());
     }
-    c.settings.method = reference::StereoMethod::kPaper;
+    c.settings.choice = TileChoice::kPaper;
     return c;
 }
 

@@ -427,8 +427,8 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
                 CAPTURE(view.name);
                 CAPTURE(static_cast<int>(choice));
                 CAPTURE(spreads);
-                const reference::StereoSettings stereo{
-                    .method = spreads ? reference::StereoMethod::kPredicted : reference::StereoMethod::kPaper, .depth_choice = choice};
+                const reference::StereoSettings stereo{.choice = spreads ? TileChoice::kPredicted : TileChoice::kPaper,
+                                                       .depth_choice = choice};
                 reference::Settings settings = kSettings;
                 settings.inverse_depth_moments = true;
                 const TwinStages twin(view, settings);

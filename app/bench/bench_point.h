@@ -4,7 +4,7 @@
 #include "app/bench/bench_plan.h"
 #include "app/bench/bench_results.h"
 #include "app/options/camera_options.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/scene/scene.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/geometry.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/camera_file.h"

@@ -3,7 +3,7 @@
 
 #include "app/options/camera_options.h"
 #include "app/options/options.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <string>
 #include <utility>

@@ -1,7 +1,7 @@
 // What both eyes see, beside one another, as a file.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <filesystem>
 #include <future>

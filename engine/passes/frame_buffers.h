@@ -12,16 +12,24 @@
 
 namespace binosplat {
 
+// Pictures of a frame, and lists of visible splats: two eyes, and a second picture of each.
+inline constexpr std::size_t kMostTargets = 4;
+
+// A picture on its way.
+struct TargetState {
+    gpu::ListState pairs;
+    gpu::EyeCounters counters;
+    gpu::WarpView warp;  // where it is made from another
+    gpu::WarpCounters warp_counters;
+    gpu::ListState chosen_tiles;    // likewise: those that are rendered
+    gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
+};
+
 // What the device is given at the start of a frame, and what it reports at the end.
 struct FrameState {
-    std::array<gpu::EyeView, 2> eyes;
-    std::array<gpu::ListState, 2> visible;  // [0] is both eyes' where they share it
-    std::array<gpu::ListState, 2> pairs;
-    std::array<gpu::EyeCounters, 2> counters;
-    gpu::WarpView warp;
-    gpu::WarpCounters warp_counters;
-    gpu::ListState masked_tiles;    // those of the target that are rendered again
-    gpu::ListState masked_visible;  // visible[0], or empty if there is no such tile
+    std::array<gpu::EyeView, kMostTargets> views;      // a target's has its index
+    std::array<gpu::ListState, kMostTargets> visible;  // [0] is both eyes' where they share it
+    std::array<TargetState, kMostTargets> targets;
 };
 
 glm::uvec2 tilesOf(glm::uvec2 size_px);
@@ -34,11 +42,12 @@ struct FrameCapacity {
     bool operator==(const FrameCapacity&) const = default;
 };
 
-// An eye's picture in device memory, rows top to bottom.
+// What a target leaves in device memory, rows top to bottom.
 struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
     Buffer depths = {};        // D, a float a pixel, where it is wanted
+    glm::uvec2 size_px{0, 0};
 };
 
 // The arrays over the visible splats lie in one buffer, one after the other.
@@ -111,7 +120,7 @@ struct FrameBuffers {
     Buffer tile_ranges;  // uvec2 a tile
 
     [[nodiscard]] FrameCapacity capacity() const { return {visible.capacity(), pairs.capacity(), pairs.lentCapacity(), pairs.lentWords()}; }
-    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, eyes)); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::EyeView> eyes() const { return state.address<gpu::EyeView>(offsetof(FrameState, views)); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> visibleBits() const { return visibility.address<gpu::uint>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> groupCounts() const {
         return visibility.address<gpu::uint>(cullGroups() * (gpu::kCullBlock / 8));
@@ -121,7 +130,10 @@ struct FrameBuffers {
     static std::uint64_t visibleList(int i) {
         return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState);
     }
-    static std::uint64_t pairList(int i) { return offsetof(FrameState, pairs) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState); }
+    // Of a field of TargetState.
+    static std::uint64_t targetField(int target, std::uint64_t offset) {
+        return offsetof(FrameState, targets) + static_cast<std::uint64_t>(target) * sizeof(TargetState) + offset;
+    }
 };
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);

@@ -140,16 +140,18 @@ struct Passes::EyePart {
     bool lists_tiles;
     Role role;
 
-    [[nodiscard]] gpu::uint eye() const { return static_cast<gpu::uint>(target.eye); }
+    [[nodiscard]] gpu::uint eye() const { return static_cast<gpu::uint>(target.index); }
     [[nodiscard]] bool masked() const { return tiles.mask.value != 0; }
     // Where the lists' states lie in the frame's.
     [[nodiscard]] std::uint64_t visibleList() const {
-        return lists_tiles ? offsetof(FrameState, masked_visible) : FrameBuffers::visibleList(target.list);
+        return lists_tiles ? FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_visible))
+                           : FrameBuffers::visibleList(target.list);
     }
-    [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::pairList(target.eye); }
+    [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, pairs)); }
+    [[nodiscard]] std::uint64_t chosenTiles() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_tiles)); }
     [[nodiscard]] auto visible() const { return buffers.state.address<gpu::ListState>(visibleList()); }
     [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(pairList()); }
-    [[nodiscard]] std::uint64_t counterBytes() const { return offsetof(FrameState, counters) + eye() * sizeof(gpu::EyeCounters); }
+    [[nodiscard]] std::uint64_t counterBytes() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, counters)); }
     [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(counterBytes()); }
     [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
     [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
@@ -231,17 +233,17 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .pairs = part.pairs(),
                                      .ranges = part.ranges(),
                                      .tile_list = part.tiles.list,
-                                     .masked_tiles = part.buffers.state.address<gpu::ListState>(offsetof(FrameState, masked_tiles)),
+                                     .masked_tiles = part.buffers.state.address<gpu::ListState>(part.chosenTiles()),
                                      .full_tiles = part.tiles.full,
                                      .counters = part.counters(),
-                                     .colours = target.image->colours.address<gpu::vec4>(),
-                                     .half_colours = target.image->colours.address<gpu::uvec2>(),
-                                     .depths = target.kept.depth ? target.image->depths.address<float>() : gpu::DeviceAddress<float>{},
+                                     .colours = target.picture->colours.address<gpu::vec4>(),
+                                     .half_colours = target.picture->colours.address<gpu::uvec2>(),
+                                     .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
                                      .background = target.background,
                                      .size_px = target.size_px};
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats}), ranges,
-                                       part.buffers.state, offsetof(FrameState, masked_tiles) + offsetof(gpu::ListState, per_item));
+                                       part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
     } else {
         part.commands.dispatchOver(kernels_.get(TileRangesKernel{}), ranges, std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
     }
@@ -254,9 +256,9 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .splats = part.buffers.visible.splats(),
                                        .ranks = sorted.values,
                                        .ranges = part.ranges(),
-                                       .colours = target.image->colours.address<gpu::vec4>(),
-                                       .half_colours = target.image->colours.address<gpu::uvec2>(),
-                                       .depths = target.image->depths.address<float>(),
+                                       .colours = target.picture->colours.address<gpu::vec4>(),
+                                       .half_colours = target.picture->colours.address<gpu::uvec2>(),
+                                       .depths = target.picture->depths.address<float>(),
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,

@@ -35,13 +35,13 @@ struct TileMask {
     gpu::DeviceAddress<gpu::uint> mask, list, full;
 };
 
-// One eye's part of a frame.
+// A picture that a frame renders, all of it or some tiles.
 struct Target {
-    int eye = 0;   // index into FrameState::eyes
-    int list = 0;  // of the visible splats
+    int index = 0;  // of FrameState::views and targets
+    int list = 0;   // of the visible splats
     glm::uvec2 size_px{0, 0}, size_tiles{0, 0};
     PairArrays pairs;
-    const Picture* image = nullptr;
+    const Picture* picture = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
     bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, where all tiles are shown

@@ -18,7 +18,7 @@ gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::u
             .size_px = size_px,
             .size_tiles = tilesOf(size_px),
             .row_words = row_words,
-            .rows_apart = settings.patching == Patching::kPredicted ? 2u : 1u,
+            .rows_apart = settings.choice == TileChoice::kPredicted ? 2u : 1u,
             .gap_px = settings.gap_px,
             .margin_px = settings.margin_px,
             .edge_samples = settings.edge_samples,
@@ -31,7 +31,7 @@ gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::u
 
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px) {
     gpu::WarpCounters counters{};
-    if (settings.patching == Patching::kPredicted) { return counters; }
+    if (settings.choice == TileChoice::kPredicted) { return counters; }
     const glm::uvec2 tiles = tilesOf(size_px);
     counters.moves = 1;
     counters.per_pixel_block = {tiles.x, 2 * tiles.y, 1};
@@ -78,8 +78,8 @@ class WarpRecorder {
 public:
     WarpRecorder(KernelCache& kernels, Commands& commands, const WarpInputs& in) : kernels_(kernels), commands_(commands), in_(in) {}
 
-    [[nodiscard]] bool predicts() const { return in_.settings.patching == Patching::kPredicted; }
-    [[nodiscard]] bool followsPaper() const { return in_.settings.patching == Patching::kPaper; }
+    [[nodiscard]] bool predicts() const { return in_.settings.choice == TileChoice::kPredicted; }
+    [[nodiscard]] bool followsPaper() const { return in_.settings.choice == TileChoice::kPaper; }
     [[nodiscard]] bool groupsHoles() const { return followsPaper() && in_.settings.center_rois; }
     [[nodiscard]] bool keepsClasses() const { return in_.warp.needs().classes || groupsHoles(); }
 
@@ -100,18 +100,21 @@ private:
     void resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors);
     template <typename K>
     void begin() {
-        commands_.beginPass({Role::kAffiliated, K::kStage, K::kShader});
+        commands_.beginPass({in_.role, K::kStage, K::kShader});
     }
     template <typename K>
     void dispatch(const K& kernel, const typename K::Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1) {
         commands_.dispatch(kernels_.get(kernel), pass, groups_x, groups_y);
     }
     template <typename K>
-    void dispatchByCounter(const K& kernel, const typename K::Pass& pass, std::uint64_t field) {
-        commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, offsetof(FrameState, warp_counters) + field);
+    void dispatchByCounter(const K& kernel, const typename K::Pass& pass, std::uint64_t counter) {
+        commands_.dispatchIndirect(kernels_.get(kernel), pass, in_.buffers.state, field(offsetof(TargetState, warp_counters)) + counter);
     }
-    [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::WarpView>(offsetof(FrameState, warp)); }
-    [[nodiscard]] auto counters() const { return in_.buffers.state.address<gpu::WarpCounters>(offsetof(FrameState, warp_counters)); }
+    [[nodiscard]] std::uint64_t field(std::uint64_t offset) const { return FrameBuffers::targetField(in_.index, offset); }
+    [[nodiscard]] auto view() const { return in_.buffers.state.address<gpu::WarpView>(field(offsetof(TargetState, warp))); }
+    [[nodiscard]] auto counters() const {
+        return in_.buffers.state.address<gpu::WarpCounters>(field(offsetof(TargetState, warp_counters)));
+    }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
     [[nodiscard]] auto moving() const { return in_.warp.moving(in_.target); }
@@ -142,7 +145,7 @@ void WarpRecorder::weigh() {
                               .price_bins = in_.warp.bins(),
                               .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
-                              .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
+                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
                               .counters = counters()};
     dispatch(
         WeighKernel{
@@ -241,7 +244,7 @@ void WarpRecorder::findNewcomers() {
                                   .tile_errors = in_.warp.tileErrors(),
                                   .counters = counters(),
                                   .chunk_bits = in_.scene.chunkBits(),
-                                  .eye = static_cast<gpu::uint>(in_.target_view)};
+                                  .eye = static_cast<gpu::uint>(in_.index)};
     dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::WarpCounters, per_visible));
 }
 
@@ -269,7 +272,7 @@ void WarpRecorder::price() {
                               .tile_errors = in_.warp.tileErrors(),
                               .tile_prices = in_.warp.tilePrices(),
                               .price_bins = in_.warp.bins(),
-                              .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
+                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
                               .counters = counters(),
                               .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
@@ -284,8 +287,8 @@ void WarpRecorder::select() {
                                .tile_mask = in_.warp.tileMask(),
                                .tile_costs = in_.warp.tileCosts(),
                                .visible = visible(),
-                               .masked_tiles = listAt(offsetof(FrameState, masked_tiles)),
-                               .masked_visible = listAt(offsetof(FrameState, masked_visible)),
+                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
+                               .masked_visible = listAt(field(offsetof(TargetState, chosen_visible))),
                                .counters = counters()};
     dispatch(SelectKernel{.predicted = predicts()}, pass, tileGroups());
 }

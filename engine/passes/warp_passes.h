@@ -13,6 +13,7 @@
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/gpu/kernel.h"
+#include "engine/mode.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/shown_tiles.h"
 #include "engine/passes/warp_buffers.h"
@@ -22,16 +23,9 @@
 
 namespace binosplat {
 
-// Who makes the target's tiles.
-enum class Patching {
-    kNone,       // nobody: reprojection and interpolation alone
-    kPaper,      // edge ROIs, and centre ROIs if asked for
-    kPredicted,  // what is cheap to render, and the tiles of the greatest expected error for their cost
-};
-
 // What the passes are given in addition to the two cameras.
 struct StereoSettings {
-    Patching patching = Patching::kPredicted;
+    TileChoice choice = TileChoice::kPredicted;
     gpu::uint depth_choice = gpu::kDepthInverse;
     bool forward = false;  // colours are copied as in the paper, not sampled; kPredicted always samples
     gpu::uint gap_px = 2;
@@ -46,7 +40,7 @@ struct StereoSettings {
     bool operator==(const StereoSettings&) const = default;
 };
 
-// Where an eye looks, for Patching::kPredicted: what it does not see there is not worth rendering again.
+// Where an eye looks, for TileChoice::kPredicted: what it does not see there is not worth rendering again.
 struct Gaze {
     glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
     double clear_rad = 0.0;               // how far about it everything counts in full: the eye may look there, too
@@ -64,9 +58,10 @@ struct WarpInputs {
     const WarpBuffers& warp;
     const StereoSettings& settings;
     bool rectified;
-    bool may_move;    // otherwise only weigh runs, for the next frame's sake
-    int list;         // of visible splats, the target's
-    int target_view;  // index into FrameState::eyes
+    bool may_move;  // otherwise only weigh runs, for the next frame's sake
+    int list;       // of visible splats, the target's
+    int index;      // of FrameState::targets and views
+    Role role;
     const Picture& source;
     const Picture& target;
     const ShownTiles& source_shown;

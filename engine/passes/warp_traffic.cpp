@@ -12,7 +12,7 @@ constexpr double perTile(double words) { return words * kWord / kPixelsOfTile; }
 }  // namespace
 
 Traffic warpTraffic(const WarpFacts& facts) {
-    const bool predict = facts.settings.patching == Patching::kPredicted, paper = facts.settings.patching == Patching::kPaper;
+    const bool predict = facts.settings.choice == TileChoice::kPredicted, paper = facts.settings.choice == TileChoice::kPaper;
     const bool components = paper && facts.settings.center_rois;
     const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);

@@ -11,7 +11,7 @@ std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choi
     std::vector<std::uint32_t> bins(static_cast<std::size_t>(kBins), 0);
     for (std::size_t i = 0; i < dominant.rgba.size(); ++i) {
         if (i / dominant.size_px.x % 2 != 0 || dominant.rgba[i].w <= 0.5) { continue; }
-        const auto pixel = movingPixel(dominant, i, {.method = StereoMethod::kPaper, .depth_choice = choice});
+        const auto pixel = movingPixel(dominant, i, {.choice = TileChoice::kPaper, .depth_choice = choice});
         if (!pixel) { continue; }
         const double octave = -std::log2(pixel->inverse_depth);
         ++bins[static_cast<std::size_t>(std::clamp(std::floor(kBinsPerOctave * octave + kBins / 2.0), 0.0, kBins - 1.0))];

@@ -59,14 +59,14 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
     StereoPictures pictures;
     pictures.dominant = rasterizePairs(source, source.pairs, eyes.source, settings);
     pictures.tile_kinds.resize(std::size_t{tiles.x} * tiles.y, TileKind::kNone);
-    const bool predicts = stereo.method == StereoMethod::kPredicted;
+    const bool predicts = stereo.choice == TileChoice::kPredicted;
     std::uint64_t budget_cost = 0;
     if (predicts) {
         Weighed weighed = weigh(pictures.dominant, tilesOfPairs(source.pairs, size_px), eyes, stereo);
         budget_cost = static_cast<std::uint64_t>(stereo.budget * static_cast<double>(weighed.picture_cost));
         pictures.tile_kinds = std::move(weighed.kinds);
         pictures.tile_costs = std::move(weighed.costs);
-    } else if (stereo.method == StereoMethod::kPaper) {
+    } else if (stereo.choice == TileChoice::kPaper) {
         const InverseDepthBounds bounds = findInverseDepthBounds(boundDepths(pictures.dominant, stereo.depth_choice));
         pictures.tile_kinds = markEdges(findBorders(bounds, eyes, stereo), size_px);
         markHidden(pictures.tile_kinds, stereo);
@@ -93,7 +93,7 @@ StereoPictures renderStereo(const Scene& scene, const EyePair& eyes, const Stere
         if (stereo.target_gaze) {
             averageRows(pictures.affiliated, pictures.affiliated_depth, pictures.resolved, pictures.tile_kinds, shares, size_px);
         }
-    } else if (stereo.method == StereoMethod::kPaper && stereo.center_rois) {
+    } else if (stereo.choice == TileChoice::kPaper && stereo.center_rois) {
         markComponents(pictures.resolved, pictures.tile_kinds, size_px, stereo.margin_px);
     }
     patch(pictures, scene, compact(scene, visible, eyes.target, settings), eyes.target, settings);

@@ -1,8 +1,9 @@
 // The float64 twins of the stereo passes: same names, same order, no shared arithmetic. Each function is one pass of
-// shaders/warp and shaders/choose or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4 and 3.5.
-// Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
+// shaders/warp and shaders/choose or a part of one; `renderStereo` runs them all. Source: docs/how-it-works.md; paper, sections 3.4
+// and 3.5. Places are pixels of an image, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows.
 #pragma once
 
+#include "engine/mode.h"
 #include "engine/reference/reference.h"
 
 #include <optional>
@@ -10,7 +11,6 @@
 namespace binosplat::reference {
 
 enum class DepthChoice { kSum, kMean, kInverse };                // D, D/A, A/I
-enum class StereoMethod { kReproject, kPaper, kPredicted };      // which tiles are rendered
 enum class PixelClass : std::uint8_t { kCovered, kGap, kHole };  // what made a pixel
 // Why a tile is rendered; kNone: it is not, its pixels are moved; kHidden: nor that, nobody sees it.
 enum class TileKind : std::uint8_t { kNone, kEdge, kCenter, kPredicted, kHidden, kCheap };
@@ -22,7 +22,7 @@ struct Gaze {
 };
 
 struct StereoSettings {
-    StereoMethod method = StereoMethod::kPredicted;
+    TileChoice choice = TileChoice::kPredicted;  // not kAll
     DepthChoice depth_choice = DepthChoice::kInverse;
     bool forward = false;  // colours are copied, not sampled
     int gap_px = 2;
@@ -45,8 +45,8 @@ struct EyePair {
 
 // rasterize: what the source's pictures say of a pixel's depth; 0 (infinitely far) where nothing was blended.
 double chooseInverseDepth(const Picture& dominant, std::size_t pixel, DepthChoice choice);
-// Likewise rasterize: how much the depths differ that a pixel blends, as a share of the one that is chosen, in steps of half an octave: 0 for
-// none, 1 for 2^-13, up to 31 for 2^2.
+// Likewise rasterize: how much the depths differ that a pixel blends, as a share of the one that is chosen, in steps of half an octave: 0
+// for none, 1 for 2^-13, up to 31 for 2^2.
 std::uint32_t spreadCode(double spread);
 double spreadOf(std::uint32_t code);
 // Likewise rasterize: a pixel as it is moved; nothing if its depth is not one.
@@ -73,8 +73,8 @@ void markHidden(std::vector<TileKind>& kinds, const StereoSettings& settings);
 // Likewise weigh, and edge_rois: unmarked tiles that would need what is hidden from the source even where all is infinitely far (kEdge).
 void markBehindHidden(std::vector<TileKind>& kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// depth_bounds: how many pixels of every other row with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0 to 1023;
-// what is nearer or farther counts as the first or the last.
+// depth_bounds: how many pixels of every other row with alpha above 1/2 have a depth in [2^(b/32 - 16), 2^((b + 1)/32 - 16)), for b from 0
+// to 1023; what is nearer or farther counts as the first or the last.
 std::vector<std::uint32_t> boundDepths(const Picture& dominant, DepthChoice choice);
 
 // edge_rois: inverse depths that all but one pixel in 200 at either end lie between; the widths of the borders that the source does not
@@ -119,8 +119,8 @@ void moveOddRowsAlike(std::vector<Resolved>& resolved, glm::uvec2 size_px);
 // Likewise resample: colours by Catmull and Rom's cubic (1974), not below 0; zero in marked tiles but for the background in hidden ones.
 std::vector<glm::dvec4> resample(const Picture& dominant, std::span<const Resolved> resolved, std::span<const TileKind> kinds,
                                  const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
-// Likewise resample where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is, and
-// between two of a row what is linear between these.
+// Likewise resample where colours are copied (`settings.forward`; paper, section 3.1, stages 2 and 4): the pixel that arrived, as it is,
+// and between two of a row what is linear between these.
 std::vector<glm::dvec4> copyColours(const Picture& dominant, std::span<const Arrival> arrivals, std::span<const TileKind> kinds,
                                     const EyePair& eyes, const glm::dvec3& background = glm::dvec3(0.0));
 // Likewise resample: D of these pixels, their alpha over their inverse depth; 0 where that is infinitely far, and in marked tiles.
@@ -130,14 +130,14 @@ std::vector<double> resampleDepths(std::span<const glm::dvec4> colours, std::spa
 std::vector<double> expectErrors(std::span<const Resolved> resolved, std::span<const Arrival> arrivals, const Picture& dominant,
                                  std::span<const TileKind> kinds, const EyePair& eyes, const StereoSettings& settings);
 
-// newcomers: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what the source
-// sees in the middle of its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
+// newcomers: adds what splats that only the target sees are expected to cost to unmarked tiles, where their centre is nearer than what the
+// source sees in the middle of its tile. Splats are in one order, pairs are by splat. Returns the number of such splats.
 std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedSplat> target_splats, std::span<const TilePair> target_pairs,
                          std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
                          const StereoSettings& settings);
 
-// components: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the margin.
-// With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.
+// components: holes in unmarked tiles, grouped where they touch, corners included; marks the tiles of each group's box, grown by the
+// margin. With more groups than `most_boxes` every pixel is a group of its own. Returns the number of groups.
 std::size_t markComponents(std::span<const Resolved> resolved, std::vector<TileKind>& kinds, glm::uvec2 size_px, int margin_px,
                            std::size_t most_boxes = SIZE_MAX);
 
@@ -157,9 +157,9 @@ std::vector<double> findSeenShares(const Eye& target, const Gaze& gaze);
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
             std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices = {});
 
-// resample once more, where the tiles' `seen_shares` are known: where the eye sees no more than a quarter of an error, so that its finest cycle
-// has four pixels, an odd row of an unmarked tile is the mean of those above and below, with the upper one's classes. The last row of a
-// tile or of the picture stays as it is.
+// resample once more, where the tiles' `seen_shares` are known: where the eye sees no more than a quarter of an error, so that its finest
+// cycle has four pixels, an odd row of an unmarked tile is the mean of those above and below, with the upper one's classes. The last row of
+// a tile or of the picture stays as it is.
 void averageRows(std::vector<glm::dvec4>& colours, std::vector<double>& depths, std::vector<Resolved>& resolved,
                  std::span<const TileKind> kinds, std::span<const double> seen_shares, glm::uvec2 size_px);
 

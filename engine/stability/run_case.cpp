@@ -22,9 +22,7 @@ public:
     [[nodiscard]] const std::vector<glm::dvec4>& of(int eye) { return full(eye, stage_.eyes[static_cast<std::size_t>(eye)]); }
     [[nodiscard]] reference::StereoPictures moved(Mode mode) const {
         reference::StereoSettings stereo{.margin_px = kMarginPx, .center_rois = true};
-        stereo.method = mode == Mode::kReproject ? reference::StereoMethod::kReproject
-                        : mode == Mode::kPaper   ? reference::StereoMethod::kPaper
-                                                 : reference::StereoMethod::kPredicted;
+        stereo.choice = choiceOf(mode);
         return reference::renderStereo(stage_.scene, {stage_.eyes[kDominant], stage_.eyes[1 - kDominant]}, stereo, settings_);
     }
 

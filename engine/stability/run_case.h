@@ -1,7 +1,7 @@
 // One case of the catalogue: on the device in every mode, twice, and on the float64 twin.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 #include "engine/stability/catalogue.h"
 
 #include <optional>

@@ -1,7 +1,7 @@
 // The headset's images for both eyes, and how a frame's pictures get into them.
 #pragma once
 
-#include "engine/present.h"
+#include "engine/passes/present.h"
 #include "xr/layers.h"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "app/view/panel/panel_widgets.h"
 #include "app/view/panel/scene_chooser.h"
 #include "app/view/view_settings.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <glm/glm.hpp>
 

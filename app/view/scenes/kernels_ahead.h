@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <atomic>
 #include <functional>

@@ -5,7 +5,7 @@
 #include "app/view/scenes/kernels_ahead.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/wearer/placement.h"
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <atomic>
 #include <exception>

@@ -1,7 +1,7 @@
 // Where the eyes look, for a frame: where the headset sees them look, or else at the middle of their lenses.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <array>
 #include <optional>

@@ -1,5 +1,5 @@
 // Eyes in the numbers that the device has.
-#include "engine/eye_view.h"
+#include "engine/passes/eye_view.h"
 
 #include "engine/passes/frame_buffers.h"
 

@@ -1,13 +1,14 @@
 // From a frame's pictures to the images that a headset's runtime lends for them.
 #pragma once
 
-#include "engine/frame.h"
+#include "engine/gpu/kernel.h"
+#include "engine/passes/warp_buffers.h"
 
 namespace binosplat {
 
 // An eye's picture and what else goes with it.
 struct PresentedEye {
-    const Picture* image = nullptr;
+    const Picture* picture = nullptr;
     glm::uvec2 size_px{0, 0};
     const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
     vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA

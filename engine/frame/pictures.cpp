@@ -1,5 +1,5 @@
 // What the host reads of the last frame.
-#include "engine/frame.h"
+#include "engine/frame/stereo_frame.h"
 
 #include <glm/gtc/packing.hpp>
 
@@ -14,7 +14,7 @@ std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first
     if (bytes == 0) { return {}; }
     const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
     finish();
-    Commands& commands = flights_[turn_].commands;
+    Commands& commands = flight().commands;
     commands.begin();
     commands.copy(buffer, readback, bytes);
     commands.submitAndWait();
@@ -23,30 +23,31 @@ std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first
 }
 
 Image StereoFrame::readPicture(int eye) {
-    Image picture{sizes_px_[eye], 4, {}};
-    if (!images_[eye].half_floats) {
-        picture.values = readBuffer<float>(images_[eye].colours);
+    const Picture& source = room_.picture(eye);
+    Image picture{source.size_px, 4, {}};
+    if (!source.half_floats) {
+        picture.values = readBuffer<float>(source.colours);
         return picture;
     }
-    for (const gpu::uint pair : readBuffer<gpu::uint>(images_[eye].colours)) {
+    for (const gpu::uint pair : readBuffer<gpu::uint>(source.colours)) {
         const glm::vec2 values = glm::unpackHalf2x16(pair);
         picture.values.insert(picture.values.end(), {values.x, values.y});
     }
     return picture;
 }
-Image StereoFrame::readDepth(int eye) { return {sizes_px_[eye], 1, readBuffer<float>(images_[eye].depths)}; }
+Image StereoFrame::readDepth(int eye) { return {room_.picture(eye).size_px, 1, readBuffer<float>(room_.picture(eye).depths)}; }
 
-Image StereoFrame::readInverseDepthMoments() { return {sizes_px_[dominant_], 2, readBuffer<float>(moments_)}; }
+Image StereoFrame::readInverseDepthMoments() { return {room_.picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
 
 std::vector<std::uint32_t> StereoFrame::readTileKinds() {
-    if (!reprojects(mode_)) { return {}; }
-    return readBuffer<std::uint32_t>(stereo_buffers_.tiles(), stereo_buffers_.tileCount() * sizeof(gpu::uint));
+    if (!plan_.warpedTarget()) { return {}; }
+    return readBuffer<std::uint32_t>(warpBuffers().tiles(), warpBuffers().tileCount() * sizeof(gpu::uint));
 }
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {
-    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(stereo_buffers_.classesBuffer());
+    const std::vector<std::uint32_t> words = readBuffer<std::uint32_t>(warpBuffers().classesBuffer());
     if (words.empty()) { return {}; }
-    const glm::uvec2 size = sizes_px_[0];
+    const glm::uvec2 size = warpBuffers().sizePx();
     const std::size_t row_words = tilesOf(size).x;
     std::vector<std::uint8_t> classes(std::size_t{size.x} * size.y);
     for (std::size_t y = 0; y < size.y; ++y) {

@@ -1,5 +1,5 @@
 // Recording `present` and the copies after it.
-#include "engine/present.h"
+#include "engine/passes/present.h"
 
 #include "engine/error.h"
 
@@ -49,13 +49,13 @@ void Presenter::makeRoom(glm::uvec2 size_px, bool with_depth) {
 }
 
 void Presenter::record(Commands& commands, const PresentedEye& eye, double near) {
-    const bool with_depth = eye.depth && eye.image->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
+    const bool with_depth = eye.depth && eye.picture->depths.bytes() > 0, tinted = eye.tinted_by != nullptr;
     // Only ever grown before anything of this submission uses them: both eyes have one size.
     makeRoom(eye.size_px, with_depth);
     gpu::PresentPass pass{};
-    pass.colours = eye.image->colours.address<gpu::vec4>();
-    pass.half_colours = eye.image->colours.address<gpu::uvec2>();
-    pass.depths = eye.image->depths.address<float>();
+    pass.colours = eye.picture->colours.address<gpu::vec4>();
+    pass.half_colours = eye.picture->colours.address<gpu::uvec2>();
+    pass.depths = eye.picture->depths.address<float>();
     if (tinted) {
         pass.tile_kinds = eye.tinted_by->tileKinds();
         pass.pixel_classes = eye.tinted_by->pixelClasses();
@@ -65,7 +65,7 @@ void Presenter::record(Commands& commands, const PresentedEye& eye, double near)
     pass.size_px = eye.size_px;
     pass.near = static_cast<float>(near);
     commands.beginPass({Role::kNone, PresentKernel::kStage, PresentKernel::kShader});
-    commands.dispatch(kernel(tinted, with_depth, eye.image->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16,
+    commands.dispatch(kernel(tinted, with_depth, eye.picture->half_floats, eye.see_through), pass, (eye.size_px.x + 15) / 16,
                       (eye.size_px.y + 7) / 8);
     commands.copyToImage(pixels_, eye.colour, eye.size_px, vk::ImageAspectFlagBits::eColor);
     if (with_depth) { commands.copyToImage(depths_, eye.depth, eye.size_px, vk::ImageAspectFlagBits::eDepth); }

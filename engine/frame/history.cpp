@@ -1,0 +1,54 @@
+// How frames differ.
+#include "engine/frame/history.h"
+
+#include <cmath>
+
+namespace binosplat {
+namespace {
+
+// What lists hold between two frames changes less than the room ahead of them, unless an eye goes or turns farther than this, or its angles
+// change by more than this share. Heads go at up to 3 m/s and turn at up to 400 degrees/s: at 72 frames a second by 4 cm and 5.6 degrees.
+// Turns by a step are of 15 degrees and more.
+constexpr double kJumpMetres = 0.2;
+constexpr double kJumpDegrees = 6.0;
+constexpr double kJumpZoom = 0.1;
+
+}  // namespace
+
+FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
+    FrameShape shape{.mode = settings.mode,
+                     .dominant = settings.mode == Mode::kMono ? 0 : settings.dominant,
+                     .per_eye = settings.per_eye,
+                     .half_floats = settings.half_floats,
+                     .keep_depth = settings.keep_depth,
+                     .keep_both_depths = settings.keep_both_depths,
+                     .keep_moments = settings.keep_moments,
+                     .keep_classes = settings.keep_classes,
+                     .center_rois = settings.stereo.center_rois};
+    for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
+    return shape;
+}
+
+bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre) {
+    if (eyes.size() != before.size()) { return true; }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const Pose &from = before[e].world_from_camera, &to = eyes[e].world_from_camera;
+        const Intrinsics &lens = before[e].intrinsics, &other_lens = eyes[e].intrinsics;
+        const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
+        const bool is_far = glm::distance(from.position, to.position) > kJumpMetres * units_per_metre;
+        const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
+        if (turns || is_far || zooms) { return true; }
+    }
+    return false;
+}
+
+bool MovingPays::ask(std::span<const Eye> eyes, const FrameSettings& settings) {
+    const int dominant = settings.mode == Mode::kMono ? 0 : settings.dominant;
+    const Asked asked{stereoSettingsOf(settings), dominant, eyes[0].size_px,
+                      settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
+    if (settings.mode != Mode::kPredicted || asked != asked_) { pays_ = true; }
+    asked_ = asked;
+    return pays_;
+}
+
+}  // namespace binosplat

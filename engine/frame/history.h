@@ -1,0 +1,50 @@
+// What a frame remembers of the ones before it.
+#pragma once
+
+#include "engine/frame/settings.h"
+
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// What frames must have in common to be under way together.
+struct FrameShape {
+    Mode mode = Mode::kMono;
+    int dominant = 0;
+    bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false, keep_moments = false, keep_classes = false,
+         center_rois = false;
+    std::array<glm::uvec2, 2> sizes_px{};
+    bool operator==(const FrameShape&) const = default;
+};
+FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
+
+// Whether lists for these eyes need not be like those for `before`.
+bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
+
+// Whether moving pays: `predicted` leaves it out as long as it did not in the last frame known, if that was asked for the same.
+class MovingPays {
+public:
+    struct Asked {
+        StereoSettings stereo;
+        int dominant = 0;
+        glm::uvec2 size_px{0, 0};
+        std::size_t hidden_tiles = 0;
+        bool operator==(const Asked&) const = default;
+    };
+
+    // For the frame that comes now.
+    bool ask(std::span<const Eye> eyes, const FrameSettings& settings);
+    [[nodiscard]] const Asked& asked() const { return asked_; }
+    // What became of a frame that was asked for `asked`.
+    void learn(const FrameSettings& settings, const Asked& asked, bool pays) {
+        if (asked == asked_) { pays_ = settings.mode != Mode::kPredicted || pays; }
+    }
+    void forget() { *this = {}; }
+
+private:
+    Asked asked_;
+    bool pays_ = true;
+};
+
+}  // namespace binosplat

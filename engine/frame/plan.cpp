@@ -1,0 +1,103 @@
+// Each mode as lists, targets and steps.
+#include "engine/frame/plan.h"
+
+#include "engine/error.h"
+#include "engine/passes/eye_view.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace binosplat {
+namespace {
+
+// What `source` keeps for the target that is made from it.
+void keepForWarp(Kept& source, const Warp& warp) {
+    if (!warp.may_move) { return; }
+    const bool predicts = warp.settings.choice == TileChoice::kPredicted;
+    source.moving = true;
+    source.spread = predicts;
+    source.depth_choice = warp.settings.depth_choice;
+    // Odd rows will be moved like even ones, unless somebody asks for their moments.
+    source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
+}
+
+}  // namespace
+
+StereoSettings stereoSettingsOf(const FrameSettings& settings) {
+    StereoSettings stereo = settings.stereo;
+    stereo.choice = choiceOf(settings.mode);
+    return stereo;
+}
+
+int FramePlan::firstTarget() const { return std::ranges::find(steps, Step::Kind::kRender, &Step::kind)->index; }
+
+std::optional<int> FramePlan::warpedTarget() const {
+    const auto found = std::ranges::find_if(targets, [](const TargetPlan& target) { return target.warp.has_value(); });
+    return found == targets.end() ? std::nullopt : std::optional(static_cast<int>(found - targets.begin()));
+}
+
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move) {
+    const Mode mode = settings.mode;
+    const bool one_eye = mode == Mode::kMono;
+    assert(eyes.size() == (one_eye ? 1u : 2u));
+    check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
+          "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
+          eyes.back().size_px.x, eyes.back().size_px.y);
+    const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
+    // Whether each eye is culled and ordered by itself.
+    const bool apart = one_eye || mode == Mode::kTwoPass || (mode == Mode::kPaper && settings.per_eye);
+
+    FramePlan plan{.near = settings.near, .background = settings.background, .square_boxes = settings.square_boxes};
+    for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
+        const bool is_first = e == first;
+        plan.targets.push_back({.eye = eyes[e],
+                                .role = one_eye    ? Role::kNone
+                                        : is_first ? Role::kDominant
+                                                   : Role::kAffiliated,
+                                .list = apart ? e : 0,
+                                .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
+                                         .moments = is_first && settings.keep_moments,
+                                         .half_floats = settings.half_floats}});
+    }
+    std::optional<gpu::Place> middle;
+    if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
+    const auto makeList = [&](const ListPlan& list) {
+        plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
+        plan.lists.push_back(list);
+    };
+    const auto listOf = [&](int e) {
+        makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle}, .role = plan.targets[e].role});
+    };
+    const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
+
+    if (apart) {
+        listOf(first);
+    } else {
+        makeList({.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth});
+    }
+    render(first);
+    if (one_eye) { return plan; }
+
+    const EyeRelation relation = relate(eyes[first], eyes[second]);
+    plan.shares_order = middle || relation.same_depths;
+    TargetPlan &source = plan.targets[first], &target = plan.targets[second];
+    if (apart) { listOf(second); }
+    if (reprojects(mode)) {
+        target.warp = Warp{.source = first,
+                           .relation = relation,
+                           .settings = stereoSettingsOf(settings),
+                           .may_move = may_move,
+                           .gaze = settings.gazes[static_cast<std::size_t>(second)]};
+        target.choice = may_move ? target.warp->settings.choice : TileChoice::kAll;
+        target.keeps_classes = settings.keep_classes;
+        source.feeds = second;
+        keepForWarp(source.kept, *target.warp);
+        plan.steps.push_back({Step::Kind::kWarp, second});
+    }
+    if (target.choice == TileChoice::kNone) { return plan; }
+    if (!apart && !plan.shares_order) { makeList({.eyes = {.order_eye = second, .list = 0}, .role = target.role, .culls = false}); }
+    render(second);
+    return plan;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,71 @@
+// What a frame does, in order: the lists of splats it makes, the pictures it renders, and which of these are made from others.
+#pragma once
+
+#include "engine/frame/settings.h"
+#include "engine/passes/eye_relation.h"
+#include "engine/passes/passes.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// A list of visible splats, front to back.
+struct ListPlan {
+    EyesOfList eyes;
+    Role role = Role::kNone;
+    bool culls = true;  // otherwise it is the one that is there, in the order of another eye
+};
+
+// Where the pixels of a target come from that are not rendered.
+struct Warp {
+    int source = 0;  // of the plan's targets; it is rendered before
+    EyeRelation relation;
+    StereoSettings settings;
+    bool may_move = true;           // otherwise nothing is, and what tells whether moving would pay is found out for the next frame
+    std::optional<Gaze> gaze = {};  // empty: all of the target is seen alike
+};
+
+// A picture that comes out of the frame.
+struct TargetPlan {
+    Eye eye;
+    Role role = Role::kNone;
+    int list = 0;  // of visible splats
+    Kept kept;
+    TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
+    std::optional<Warp> warp = {};
+    std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
+    bool keeps_classes = false;
+};
+
+struct Step {
+    enum class Kind {
+        kList,    // makes FramePlan::lists[index]
+        kWarp,    // moves pixels into FramePlan::targets[index] and chooses its tiles
+        kRender,  // renders these
+    };
+    Kind kind;
+    int index;
+};
+
+struct FramePlan {
+    std::vector<ListPlan> lists = {};
+    std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order
+    std::vector<Step> steps = {};
+    bool shares_order = false;  // one order of the splats is that of all eyes
+    double near = 0.2;
+    glm::dvec3 background{0.0};
+    bool square_boxes = true;
+
+    // The one that others are made from, or the one whose turn is first.
+    [[nodiscard]] int firstTarget() const;
+    // The first that is made from another.
+    [[nodiscard]] std::optional<int> warpedTarget() const;
+};
+
+// The only one who asks which mode it is. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
+// pixels paid in the frame before, or nobody knows.
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move);
+
+}  // namespace binosplat

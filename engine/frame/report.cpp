@@ -1,0 +1,144 @@
+// Counters by name, and sentences.
+#include "engine/frame/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace binosplat {
+namespace {
+
+std::string suffixOf(const FramePlan& plan, std::size_t target) {
+    return plan.targets.size() == 1 ? "" : target == kLeft ? "_left" : "_right";
+}
+
+void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
+    const TargetPlan& target = frame.plan.targets[index];
+    const TargetPlan& source = frame.plan.targets[static_cast<std::size_t>(target.warp->source)];
+    const StereoSettings& settings = target.warp->settings;
+    const TargetState& state = frame.state.targets[index];
+    const gpu::WarpCounters& warp = state.warp_counters;
+    const WarpBuffers& buffers = frame.room.warp(static_cast<int>(index));
+    const bool has_classes = buffers.classesBuffer().bytes() > 0;
+    auto& counters = result.counters;
+    if (has_classes) {
+        counters["pixels_covered"] = warp.covered_pixels;
+        counters["pixels_gap"] = warp.gap_pixels;
+        counters["pixels_hole"] = warp.hole_pixels;
+    }
+    counters["tiles_patched"] = state.chosen_tiles.count;
+    counters["tiles_edge"] = warp.edge_tiles;
+    counters["tiles_center"] = warp.center_tiles;
+    counters["tiles_predicted"] = warp.predicted_tiles;
+    if (settings.choice == TileChoice::kPredicted) {
+        counters["tiles_cheap"] = warp.cheap_tiles;
+        counters["tiles_weighed_as_moved"] = warp.moved_tiles;
+        counters["work_full"] = warp.picture_cost;
+        counters["work_patched"] = warp.chosen_cost;
+        counters["work_saved_by_moving"] = warp.saved_cost;
+    }
+    counters["hole_components"] = warp.components;
+    counters["splats_newcomers"] = warp.newcomers;
+    counters["stereo_bytes"] = buffers.bytes();
+    const bool rectified = target.warp->relation.rectified;
+    result.stereo_bytes_per_pixel = warpTraffic({.settings = settings,
+                                                 .may_move = target.warp->may_move,
+                                                 .moves_rows = movesRows(rectified, buffers),
+                                                 .even_rows = settings.choice == TileChoice::kPredicted && rectified,
+                                                 .sums_even_rows = source.kept.even_rows,
+                                                 .half_floats = target.kept.half_floats,
+                                                 .target_depth = target.kept.depth,
+                                                 .classes = has_classes,
+                                                 .size_px = target.eye.size_px,
+                                                 .counters = warp,
+                                                 .visible = frame.state.visible[0].count});
+    const std::uint32_t shown = buffers.tileCount() - frame.room.shown(static_cast<int>(index)).hiddenCount();
+    result.tiles_rendered = shown > 0 ? static_cast<double>(state.chosen_tiles.count) / shown : 0.0;
+    if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
+}
+
+void explainWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
+    const auto leaveOut = [&](bool condition, std::string_view sentence) {
+        if (condition) { result.left_out.emplace_back(sentence); }
+    };
+    const StereoSettings& settings = frame.plan.targets[index].warp->settings;
+    const gpu::WarpCounters& warp = frame.state.targets[index].warp_counters;
+    const bool paper = settings.choice == TileChoice::kPaper, predicts = settings.choice == TileChoice::kPredicted;
+    leaveOut(predicts && warp.moves == 0, "reprojection: every tile is cheaper to render than to move, so that nothing is lost");
+    leaveOut((paper || predicts) && frame.state.targets[index].chosen_tiles.count == 0, "patching: no tile needs to be rendered again");
+    leaveOut(paper && !settings.center_rois, "centre ROIs: not asked for");
+    leaveOut(paper && settings.center_rois && warp.hole_pixels == 0, "centre ROIs: the picture has no holes");
+    leaveOut(predicts && warp.moves != 0 && warp.newcomers == 0,
+             "errors of newcomers: the affiliated eye sees no splat that the dominant one does not");
+}
+
+void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
+    const auto leaveOut = [&](bool condition, std::string_view sentence) {
+        if (condition) { result.left_out.emplace_back(sentence); }
+    };
+    const FramePlan& plan = frame.plan;
+    const bool moments = std::ranges::any_of(plan.targets, [](const TargetPlan& target) {
+        return target.kept.moments || (target.warp && (target.warp->settings.choice == TileChoice::kPredicted ||
+                                                       target.warp->settings.depth_choice == gpu::kDepthInverse));
+    });
+    const bool two = plan.targets.size() == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
+    leaveOut(frame.scene.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));
+    leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
+    leaveOut(two && !plan.targets[static_cast<std::size_t>(1 - plan.firstTarget())].kept.depth,
+             "depth of the affiliated eye: nothing reads it");
+    leaveOut(both_at_once, "culling for the affiliated eye alone: both eyes are culled at once");
+    leaveOut(both_at_once && plan.shares_order,
+             plan.lists[0].eyes.middle ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
+                                       : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
+    for (std::size_t e = 0; e < plan.targets.size(); ++e) {
+        const glm::uvec2 tiles = tilesOf(plan.targets[e].eye.size_px);
+        const ShownTiles& shown = frame.room.shown(static_cast<int>(e));
+        leaveOut(shown.hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown.hiddenCount(),
+                                              std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
+    }
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
+        if (plan.targets[t].warp) { explainWarp(frame, t, result); }
+    }
+}
+
+}  // namespace
+
+FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
+    const FrameBuffers& lists = frame.room.lists();
+    FrameResult result;
+    result.mark = mark;
+    result.gpu_ms = frame.commands.times();
+    result.gpu_total_ms = frame.commands.totalMs();
+    result.peak_gpu_bytes = frame.context.memoryUse().peak_bytes;
+    auto& counters = result.counters;
+    counters["commands"] = frame.commands.count();
+    counters["splats_read"] = frame.scene.splatCount();
+    counters["scene_bytes"] = frame.scene.bytes();
+    counters["visible_bytes"] = lists.visible.bytes();
+    counters["pair_bytes"] = lists.pairs.bytes();
+    counters["scratch_bytes"] = lists.scratch.bytes();
+    for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
+        const TargetPlan& target = frame.plan.targets[t];
+        const TargetState& state = frame.state.targets[t];
+        const std::string suffix = suffixOf(frame.plan, t);
+        const glm::uvec2 size_px = target.eye.size_px, tiles = tilesOf(size_px);
+        const ShownTiles& shown = frame.room.shown(static_cast<int>(t));
+        const Picture& picture = frame.room.picture(static_cast<int>(t));
+        counters["splats_visible" + suffix] = frame.state.visible[static_cast<std::size_t>(target.list)].count;
+        counters["tile_pairs" + suffix] = state.pairs.count;
+        if (frame.plan.square_boxes) {
+            counters["square_box_tile_pairs" + suffix] =
+                (std::uint64_t{state.counters.square_box_pairs_high} << 32) | state.counters.square_box_pairs_low;
+        }
+        counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
+        if (shown.hideAny()) { counters["tiles_hidden" + suffix] = shown.hiddenCount(); }
+        counters["pixels" + suffix] = std::uint64_t{size_px.x} * size_px.y;
+        counters["pixel_bytes" + suffix] = picture.colours.bytes() + picture.depths.bytes();
+        if (target.warp) { countWarp(frame, t, result); }
+    }
+    explainLeftOut(frame, result);
+    return result;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,19 @@
+// What a frame says of itself: counters, and what it left out.
+#pragma once
+
+#include "engine/frame/room.h"
+
+namespace binosplat {
+
+struct FrameFacts {
+    const Context& context;
+    const GpuScene& scene;
+    const FrameRoom& room;
+    const FramePlan& plan;
+    const FrameState& state;
+    const Commands& commands;
+};
+
+FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark);
+
+}  // namespace binosplat

@@ -1,0 +1,197 @@
+// Pictures and lists grow to what frames need.
+#include "engine/frame/room.h"
+
+#include "engine/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace binosplat {
+namespace {
+
+// Components of holes that get a box of their own: 64 KiB.
+constexpr std::uint32_t kHoleBoxes = 4096;
+// Room that is made ahead of what was needed.
+constexpr double kRoomMade = 1.5;
+
+void resize(const Context& context, Buffer& buffer, const char* name, std::uint64_t bytes) {
+    if (buffer.bytes() == bytes) { return; }
+    buffer = {};
+    buffer = Buffer(context, name, bytes);
+}
+
+WarpBufferNeeds needsOf(const TargetPlan& target) {
+    if (!target.warp) { return {}; }
+    const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
+    return {target.eye.size_px, target.keeps_classes || components, target.kept.half_floats, components ? kHoleBoxes : 0};
+}
+
+}  // namespace
+
+FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity) : context_(context), first_capacity_(first_capacity) {
+    shown_.reserve(kMostTargets);
+    while (shown_.size() < kMostTargets) { shown_.emplace_back(context); }
+}
+
+void FrameRoom::show(const GpuScene& scene) {
+    scene_ = &scene;
+    first_frame_ = true;
+    lists_ = {};
+    lists_ = makeFrameBuffers(context_, scene.splatCount());
+}
+
+void FrameRoom::recordShown(Commands& commands) {
+    for (ShownTiles& shown : shown_) { shown.record(commands); }
+}
+
+void FrameRoom::forgetUploads() {
+    for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
+}
+
+void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
+    std::uint64_t most_tiles = 0, moments_bytes = 0;
+    for (std::size_t t = 0; t < pictures_.size(); ++t) {
+        const bool used = t < plan.targets.size();
+        const Kept kept = used ? plan.targets[t].kept : Kept{};
+        const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0), tiles = tilesOf(size_px);
+        const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
+        most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
+        const auto hidden = used && t < hidden_tiles.size() ? hidden_tiles[t] : std::span<const std::uint8_t>{};
+        assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
+        shown_[t].set(hidden, tiles);
+        Picture& picture = pictures_[t];
+        picture.size_px = size_px;
+        picture.half_floats = kept.half_floats;
+        resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
+        resize(context_, picture.depths, "depths", kept.depth ? pixels * sizeof(float) : 0);
+        if (kept.moments) { moments_bytes = pixels * sizeof(gpu::vec2); }
+        const WarpBufferNeeds needs = used ? needsOf(plan.targets[t]) : WarpBufferNeeds{};
+        if (warps_[t].needs() != needs) {
+            warps_[t] = {};
+            warps_[t] = WarpBuffers(context_, needs);
+        }
+    }
+    resize(context_, moments_, "inverse depth moments", moments_bytes);
+    resize(context_, lists_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));
+}
+
+std::uint32_t FrameRoom::mostLentPairs(const FramePlan& plan) const {
+    const std::optional<int> lender = plan.targets[plan.firstTarget()].feeds;
+    if (!lender) { return 0; }
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(picture(*lender).colours.bytes() / sizeof(gpu::uint), UINT32_MAX));
+}
+
+FrameCapacity FrameRoom::lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const {
+    const std::uint32_t most = mostLentPairs(plan);
+    capacity.lent_pairs = std::min(capacity.lent_pairs, most);
+    capacity.lent_words = capacity.lent_pairs == 0 ? 0 : std::min(most / capacity.lent_pairs, PairBuffers::kMostLentWords);
+    return capacity;
+}
+
+void FrameRoom::fitLists(const FramePlan& plan) {
+    FrameCapacity capacity = lists_.capacity();
+    if (capacity == FrameCapacity{}) {
+        capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0, 0};
+        if (plan.warpedTarget()) {
+            // What is rendered again has far fewer pairs.
+            capacity.lent_pairs = capacity.pairs;
+            capacity.pairs = (capacity.pairs + 3) / 4;
+        }
+    }
+    growFrameBuffers(context_, lists_, lendWhatFits(plan, capacity));
+}
+
+bool FrameRoom::isCutShort(const FrameState& state) {
+    const auto isEmptied = [](const gpu::ListState& list) { return list.needed != list.count; };
+    return std::ranges::any_of(state.visible, isEmptied) ||
+           std::ranges::any_of(state.targets, [&](const TargetState& target) { return isEmptied(target.pairs); });
+}
+
+bool FrameRoom::isSourceVoid(const FramePlan& plan, const FrameState& state) {
+    const auto source = static_cast<std::size_t>(plan.firstTarget());
+    const gpu::ListState &visible = state.visible[static_cast<std::size_t>(plan.targets[source].list)],
+                         &pairs = state.targets[source].pairs;
+    return visible.needed != visible.count || pairs.needed != pairs.count;
+}
+
+double FrameRoom::spareFor(double ahead) const {
+    // Just enough the first time, since a single picture needs no more; with room to spare once the view moves.
+    return ahead > 1.0 ? kRoomMade : first_frame_ ? 1.0 : 1.25;
+}
+
+FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const {
+    const auto enough = [&](std::uint32_t needed, std::uint32_t capacity) {
+        if (ahead * needed <= capacity) { return capacity; }
+        const double roomy = std::min(std::ceil(needed * spare / 1024.0) * 1024.0, 2147482624.0);
+        return std::max(needed, static_cast<std::uint32_t>(roomy));
+    };
+    const FrameCapacity now = lists_.capacity();
+    FrameCapacity wanted = now;
+    for (const gpu::ListState& visible : state.visible) {
+        wanted.visible = std::max(wanted.visible, std::min(enough(visible.needed, now.visible), std::max(scene_->splatCount(), 1u)));
+    }
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
+        const std::uint32_t pairs = state.targets[t].pairs.needed;
+        check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
+        // Without the source's pairs every tile seems cheap to render: how many the target needs shows in the next try.
+        if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
+        if (!plan.targets[t].feeds || pairs > mostLentPairs(plan)) {
+            wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs));
+        } else if (pairs > now.pairs) {
+            wanted.lent_pairs = enough(pairs, now.lent_pairs);
+        }
+    }
+    return lendWhatFits(plan, wanted);
+}
+
+bool FrameRoom::hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const {
+    return roomFor(plan, state, ahead, spareFor(ahead)) == lists_.capacity();
+}
+
+bool FrameRoom::growIfNeeded(const FramePlan& plan, const FrameState& state) {
+    const FrameCapacity wanted = roomFor(plan, state, 1.0, spareFor(1.0));
+    if (wanted == lists_.capacity()) {
+        first_frame_ = false;
+        return true;
+    }
+    growFrameBuffers(context_, lists_, wanted);
+    return false;
+}
+
+bool FrameRoom::tryToGrow(const FrameCapacity& wanted) {
+    const FrameCapacity before = lists_.capacity();
+    try {
+        growFrameBuffers(context_, lists_, wanted);
+        return true;
+    } catch (const Error&) {
+        growFrameBuffers(context_, lists_, before);
+        return false;
+    }
+}
+
+bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
+    for (const double spare : {spareFor(1.0), 1.0}) {
+        const FrameCapacity wanted = roomFor(plan, state, 1.0, spare);
+        if (wanted == lists_.capacity()) { return false; }
+        if (tryToGrow(wanted)) { return true; }
+    }
+    return false;
+}
+
+void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
+    // Of the target's work: all, or the share that is cheap to render and the budget.
+    const bool moves = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())].warp->may_move;
+    const double share = moves ? 0.5 : 1.0;
+    const std::uint32_t pairs = state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed;
+    FrameCapacity wanted = lists_.capacity();
+    wanted.pairs = std::max(wanted.pairs, static_cast<std::uint32_t>(share * std::min(pairs, gpu::kMaxItems)));
+    if (wanted != lists_.capacity()) { tryToGrow(lendWhatFits(plan, wanted)); }
+}
+
+void FrameRoom::makeRoomAhead(const FramePlan& plan, const FrameState& state) {
+    if (!room_ahead_fits_ || hasRoom(plan, state, kRoomAhead)) { return; }
+    room_ahead_fits_ = tryToGrow(roomFor(plan, state, kRoomAhead, spareFor(kRoomAhead)));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,86 @@
+// The device memory of frames: pictures, lists, and what warps work on. As much as the eyes need, found out by the frames themselves.
+#pragma once
+
+#include "engine/frame/plan.h"
+#include "engine/passes/shown_tiles.h"
+#include "engine/passes/warp_buffers.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+class FrameRoom {
+public:
+    // Lists of frames that are not waited for have so many times the room that the last known frame needed.
+    static constexpr double kRoomAhead = 1.15;
+
+    FrameRoom(const Context& context, const FrameCapacity& first_capacity);
+
+    // Lists are of `scene` from now on.
+    void show(const GpuScene& scene);
+    // As if no frame had been drawn yet.
+    void forgetFrames() { first_frame_ = true; }
+    [[nodiscard]] bool isFirstFrame() const { return first_frame_; }
+
+    // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks the memory: then no picture is
+    // left.
+    void fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles);
+    // Lists, as far as anything is known of what it needs.
+    void fitLists(const FramePlan& plan);
+
+    // The next ones are about what a frame reported that was drawn by `plan`.
+
+    // Whether a list had no room at all.
+    [[nodiscard]] static bool isCutShort(const FrameState& state);
+    // Whether the lists of the target that others are made from had no room, so that its picture shows nothing.
+    [[nodiscard]] static bool isSourceVoid(const FramePlan& plan, const FrameState& state);
+    // Of the lists, for `ahead` times what was needed.
+    [[nodiscard]] bool hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const;
+    // Whether the lists had room; if not, makes room.
+    bool growIfNeeded(const FramePlan& plan, const FrameState& state);
+    // Whether it made room: with some to spare, or as much as is needed where that does not fit.
+    bool growIfItFits(const FramePlan& plan, const FrameState& state);
+    // Where the source's pairs had no room, which those of the target depend on: a guess.
+    void makeRoomForChosen(const FramePlan& plan, const FrameState& state);
+    // For kRoomAhead times what was needed; goes without where that does not fit, as long as the lists themselves do.
+    void makeRoomAhead(const FramePlan& plan, const FrameState& state);
+    [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
+    // The frame had room.
+    void haveFrame() { first_frame_ = false; }
+
+    [[nodiscard]] const FrameBuffers& lists() const { return lists_; }
+    [[nodiscard]] const Picture& picture(int target) const { return pictures_[static_cast<std::size_t>(target)]; }
+    [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
+    [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
+    [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
+    // Before the passes of a frame.
+    void recordShown(Commands& commands);
+    // Once what was recorded has run.
+    void forgetUploads();
+
+private:
+    // Pairs that the source's sort finds room for in the picture that is made from it, while nothing is in it.
+    [[nodiscard]] std::uint32_t mostLentPairs(const FramePlan& plan) const;
+    [[nodiscard]] FrameCapacity lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const;
+    // False, and the lists as they were, where the device has not that much memory.
+    bool tryToGrow(const FrameCapacity& wanted);
+    // Those that must grow have room for `spare` times what was needed.
+    [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const;
+    [[nodiscard]] double spareFor(double ahead) const;
+
+    const Context& context_;
+    const GpuScene* scene_ = nullptr;
+    FrameCapacity first_capacity_;
+    FrameBuffers lists_;
+    std::array<Picture, kMostTargets> pictures_;
+    Buffer moments_;
+    std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
+    std::vector<ShownTiles> shown_;
+    bool first_frame_ = true;
+    bool room_ahead_fits_ = true;  // in the device's memory
+};
+
+}  // namespace binosplat

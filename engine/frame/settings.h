@@ -1,0 +1,65 @@
+// What a frame is asked for, and what it says of itself.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/gpu/commands.h"
+#include "engine/mode.h"
+#include "engine/passes/frame_buffers.h"
+#include "engine/passes/warp_passes.h"
+#include "engine/passes/warp_traffic.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct FrameSettings {
+    Mode mode = Mode::kPredicted;
+    Side dominant = kLeft;
+    double near = 0.2;             // scene units
+    double units_per_metre = 1.0;  // scene units in a metre of the wearer: says what a jump of the eyes is
+    glm::dvec3 background{0.0};
+    Order order = Order::kDepth;  // of all modes; a frame of two eyes has one middle, also where nothing is shared
+    StereoSettings stereo;        // how one eye is made from the other; its `choice` follows from the mode
+    // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The two sequential strategies that the paper compares
+    // differ only in the second eye's picture (section 4.3), and it mentions no work that the eyes share.
+    bool per_eye = false;
+    bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
+    bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
+    bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
+    bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
+    bool keep_classes = false;      // what made each pixel of the affiliated eye, for readPixelClasses and the report's counters
+    bool square_boxes = true;       // the report says how many pairs the customary square bound would make
+    // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
+    // pairs and take no part in the budget, which is a share of the others.
+    std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
+    // kPredicted, by eye: where it looks; empty: nobody knows. Of the affiliated eye's errors only what it sees there counts.
+    std::array<std::optional<Gaze>, 2> gazes = {};
+    std::uint64_t mark = 0;  // of whoever asks; comes back with the result
+};
+
+// Its `stereo`, with what the mode says of the choice of tiles.
+StereoSettings stereoSettingsOf(const FrameSettings& settings);
+
+struct FrameResult {
+    PassTimes gpu_ms;
+    double gpu_total_ms = 0.0;  // from the first pass to the last
+    std::map<std::string, std::uint64_t> counters;
+    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, where the mode has any
+    double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
+    std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time
+    std::vector<std::string> left_out;                 // what this scene and mode did not need
+    std::uint64_t mark = 0;                            // of the settings it was asked with
+};
+
+// What a frame starts with; the defaults suit every device.
+struct FrameOptions {
+    FrameCapacity first_capacity{65536, 262144};
+    std::uint32_t threads_per_cell = 0;  // see Passes
+};
+
+}  // namespace binosplat

@@ -1,0 +1,181 @@
+// Frames one after another: what each prepares, when it is waited for, and when it is done again.
+#include "engine/frame/stereo_frame.h"
+
+#include "engine/frame/report.h"
+
+namespace binosplat {
+
+StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
+    : context_(context),
+      passes_(context, options.threads_per_cell),
+      warp_passes_(context),
+      room_(context, options.first_capacity),
+      flights_{Flight(context), Flight(context)} {
+    show(scene);
+}
+
+void StereoFrame::show(const GpuScene& scene) {
+    finish();
+    scene_ = &scene;
+    room_.show(scene);
+    moving_pays_.forget();
+}
+
+void StereoFrame::rebuildKernels() {
+    finish();
+    passes_.rebuildKernels();
+    warp_passes_.rebuildKernels();
+}
+
+void StereoFrame::takeKernels(StereoFrame& from) {
+    finish();
+    from.finish();
+    passes_.takeKernels(from.passes_);
+    warp_passes_.takeKernels(from.warp_passes_);
+}
+
+void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
+    finish();
+    prepare(eyes, settings);
+    Commands& commands = flight().commands;
+    // `predicted` may find that moving does not pay.
+    for (const bool may_move : {false, true}) {
+        recorder().record(commands, planFrame(settings, eyes, may_move));
+        commands.drop();
+    }
+    room_.forgetFrames();
+}
+
+FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append) {
+    finish();
+    prepare(eyes, settings);
+    renderUntilComplete(settings, append);
+    return take(flight());
+}
+
+void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
+    if (shapeOf(eyes, settings) == shape_) { return; }
+    finish();
+    shape_ = {};  // some pictures are new, and some may fail
+    plan_ = planFrame(settings, eyes, true);
+    room_.fitPictures(plan_, settings.hidden_tiles);
+}
+
+std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append,
+                                                    vk::Semaphore signals) {
+    Flight &before_last = flight(), &last = flights_[1 - turn_];
+    std::optional<FrameResult> result = land(before_last);
+    bool waits = room_.isFirstFrame() || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
+    // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
+    const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, state_, kRoomAhead);
+    if (waits || is_short) {
+        if (auto newer = land(last)) { result = std::move(newer); }
+        waits = waits || FrameRoom::isCutShort(state_);
+        if (is_short) { room_.makeRoomAhead(plan_, state_); }
+    }
+    prepare(eyes, settings);
+    if (!waits) {
+        record(settings, append);
+        flight().commands.submit(signals);
+        turn_ = 1 - turn_;
+        return result;
+    }
+    makeRoomForVisible();
+    done_again_ += renderAtMostTwice(settings, append);
+    if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
+    result = take(flight());
+    result->counters["frames_cut_short"] = cut_short_;
+    result->counters["frames_done_again"] = done_again_;
+    room_.makeRoomAhead(plan_, state_);
+    if (signals) {
+        const std::lock_guard lock(context_.queueMutex());
+        context_.queue().submit(vk::SubmitInfo({}, {}, {}, signals));
+    }
+    return result;
+}
+
+std::optional<FrameResult> StereoFrame::finish() {
+    std::optional<FrameResult> older = land(flights_[turn_]), newer = land(flights_[1 - turn_]);
+    return newer ? std::move(newer) : std::move(older);
+}
+
+std::optional<FrameResult> StereoFrame::land(Flight& flight) {
+    if (!flight.commands.isUnderWay()) { return std::nullopt; }
+    flight.commands.wait();
+    state_ = flight.readback.mapped<FrameState>()[0];
+    if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
+    FrameResult result = take(flight);
+    result.counters["frames_cut_short"] = cut_short_;
+    result.counters["frames_done_again"] = done_again_;
+    return result;
+}
+
+FrameResult StereoFrame::take(const Flight& flight) {
+    if (const std::optional<int> warped = flight.plan.warpedTarget()) {
+        const gpu::WarpCounters& counters = state_.targets[static_cast<std::size_t>(*warped)].warp_counters;
+        moving_pays_.learn(flight.settings, flight.asked, counters.pays != 0);
+    }
+    return reportFrame({context_, *scene_, room_, flight.plan, state_, flight.commands}, flight.settings.mark);
+}
+
+void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Append& append) {
+    do { renderOnce(settings, append); } while (!room_.growIfNeeded(plan_, state_));
+}
+
+std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, const Append& append) {
+    renderOnce(settings, append);
+    const std::optional<int> warped = plan_.warpedTarget();
+    const bool guesses =
+        warped && plan_.targets[static_cast<std::size_t>(*warped)].choice != TileChoice::kNone && FrameRoom::isSourceVoid(plan_, state_);
+    if (!room_.growIfItFits(plan_, state_)) {
+        room_.haveFrame();
+        return 0;
+    }
+    if (guesses) { room_.makeRoomForChosen(plan_, state_); }
+    renderOnce(settings, append);
+    // What is still short has room the next time.
+    if (!room_.growIfItFits(plan_, state_)) { room_.haveFrame(); }
+    return 1;
+}
+
+void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append) {
+    record(settings, append);
+    flight().commands.submitAndWait();
+    room_.forgetUploads();
+    state_ = flight().readback.mapped<FrameState>()[0];
+}
+
+void StereoFrame::makeRoomForVisible() {
+    recorder().recordCulling(flight().commands, plan_);
+    recorder().recordReport(flight().commands, flight().readback);
+    flight().commands.submitAndWait();
+    state_ = flight().readback.mapped<FrameState>()[0];
+    room_.growIfItFits(plan_, state_);  // of pairs nothing is known yet
+}
+
+bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        if (!room_.shown(static_cast<int>(e)).isOf(settings.hidden_tiles[e], tilesOf(eyes[e].size_px))) { return true; }
+    }
+    return shapeOf(eyes, settings) != shape_ || jumps(eyes_, eyes, settings.units_per_metre);
+}
+
+void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
+    plan_ = planFrame(settings, eyes, moving_pays_.ask(eyes, settings));
+    room_.fitPictures(plan_, settings.hidden_tiles);
+    room_.fitLists(plan_);
+    shape_ = shapeOf(eyes, settings);
+    eyes_.assign(eyes.begin(), eyes.end());
+}
+
+void StereoFrame::record(const FrameSettings& settings, const Append& append) {
+    flight().plan = plan_;
+    flight().settings = settings;
+    flight().settings.hidden_tiles = {};
+    flight().asked = moving_pays_.asked();
+    recorder().record(flight().commands, plan_);
+    recorder().recordReport(flight().commands, flight().readback);
+    if (append) { append(flight().commands); }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,126 @@
+// The stereo frame: one call plans, records and runs the passes that render both eyes.
+#pragma once
+
+#include "engine/frame/history.h"
+#include "engine/frame/record.h"
+#include "engine/picture/image.h"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+class StereoFrame {
+public:
+    static constexpr double kRoomAhead = FrameRoom::kRoomAhead;
+
+    StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
+
+    // From now on frames are of `scene`, on the same device. Kernels stay compiled.
+    void show(const GpuScene& scene);
+
+    // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
+    // frame is done again: the result is never that of a truncated list. Throws Error if the device lacks the memory.
+    // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
+    FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
+    // For showing frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last, whose
+    // result it returns (empty where there is none). So the device draws one frame while the next is prepared. Lists have room for more
+    // than the last frame needed. A frame that still finds too little room shows background for once and is counted ("frames_cut_short"),
+    // and the frame after it is waited for. So is a frame that has little in common with the one before: the first one, one of another
+    // size or mode, and one after a jump of the eyes. Where a list has no room in a frame that is waited for, the frame is done again,
+    // once, before anybody sees it ("frames_done_again"). What it needs is counted or, where that is not possible, guessed, so that even
+    // then it is seldom cut short.
+    // `signals`, where given, is signalled when the frame is done.
+    std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
+                                           const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
+    // Makes the images that renderAhead needs for such frames, where they are others than those of the frame before, for which it waits.
+    // Throws Error if the device lacks the memory: then no picture is left, and frames as they were before may still be rendered.
+    void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
+    // Waits for all frames under way: after this nothing that they use is in use. The last one's result.
+    std::optional<FrameResult> finish();
+    // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
+    void rebuildKernels();
+    // Goes on with the kernels of a frame of the same device and options, and with its own that the other lacks: what was made for one
+    // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
+    void takeKernels(StereoFrame& from);
+    // How many it has, but those of sorting.
+    [[nodiscard]] std::size_t kernelCount() const { return passes_.kernelCount() + warp_passes_.kernelCount(); }
+    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
+    void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
+
+    // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
+    [[nodiscard]] Image readPicture(int eye);
+    // D = sum w z of the dominant eye, one channel.
+    [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.firstTarget()); }
+    // The same of any eye, where it was kept.
+    [[nodiscard]] Image readDepth(int eye);
+    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; where they were kept.
+    [[nodiscard]] Image readInverseDepthMoments();
+    // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
+    [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
+    // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; where they
+    // were kept.
+    [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
+
+    // The same in device memory, for whoever shows them.
+    [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(eye); }
+    // Of the target that is made from another; without memory where there is none.
+    [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
+
+private:
+    using Append = std::function<void(Commands&)>;
+    // A frame on the device, and what must be remembered to understand what it says. Two take turns; what only the device touches they
+    // share, since every command waits for those before it, also those of the frame before.
+    struct Flight {
+        explicit Flight(const Context& context)
+            : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context) {}
+
+        Buffer readback;
+        Commands commands;  // after what it writes: it waits before that goes
+        FramePlan plan;
+        FrameSettings settings;
+        MovingPays::Asked asked;
+    };
+
+    [[nodiscard]] Flight& flight() { return flights_[turn_]; }
+    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, *scene_, room_}; }
+    // Plans it, and has room for it as far as anything is known.
+    void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
+    // What was prepared, into the flight whose turn it is.
+    void record(const FrameSettings& settings, const Append& append);
+    // Waits for it; its result, if it was under way.
+    std::optional<FrameResult> land(Flight& flight);
+    // Reads what it reported, and learns from it.
+    FrameResult take(const Flight& flight);
+    void renderOnce(const FrameSettings& settings, const Append& append);
+    // Until the lists had room.
+    void renderUntilComplete(const FrameSettings& settings, const Append& append);
+    // The same for who shows frames: once more at most; how often it was done again. What has no room even then shows background, and has
+    // room the next time if the device has that much memory.
+    std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
+    // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
+    void makeRoomForVisible();
+    // Whether the frame has little in common with the one before.
+    [[nodiscard]] bool isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    template <typename T>
+    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);
+
+    const Context& context_;
+    const GpuScene* scene_ = nullptr;
+    Passes passes_;
+    WarpPasses warp_passes_;
+    FrameRoom room_;
+    FramePlan plan_;      // of the last frame
+    FrameState state_{};  // what the last one known reported
+    MovingPays moving_pays_;
+    FrameShape shape_;
+    std::vector<Eye> eyes_;
+    std::uint64_t cut_short_ = 0, done_again_ = 0;
+    std::size_t turn_ = 0;
+    std::array<Flight, 2> flights_;  // last: they wait before anything goes that they use
+};
+
+}  // namespace binosplat
