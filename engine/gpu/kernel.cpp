@@ -27,20 +27,55 @@ std::string nameInShader(std::string_view field) {
 
 void append(KernelTable& table, const KernelTable& more) { table.insert(table.end(), more.begin(), more.end()); }
 
+namespace {
+
+// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Drivers are told so instead of by VkSpecializationInfo, since
+// not all leave out what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then.
+std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values) {
+    constexpr std::uint32_t kConstantTrue = 41, kConstantFalse = 42, kConstant = 43, kSpecConstantTrue = 48, kSpecConstantFalse = 49,
+                            kSpecConstant = 50, kDecorate = 71, kSpecId = 1;
+    constexpr std::size_t kHeaderWords = 5;
+    std::map<std::uint32_t, std::uint32_t> value_of;  // by the id of the constant
+    std::vector<std::uint32_t> specialized(words.begin(), words.begin() + kHeaderWords);
+    for (std::size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
+        const auto instruction = words.subspan(at, words[at] >> 16);
+        const std::uint32_t opcode = instruction[0] & 0xffff;
+        if (opcode == kDecorate && instruction[2] == kSpecId) {
+            if (instruction[3] < values.size()) { value_of[instruction[1]] = values[instruction[3]]; }
+            continue;  // decorations come before what they decorate
+        }
+        const auto put = [&](std::uint32_t other) { specialized.push_back((instruction[0] & 0xffff0000) | other); };
+        const auto found = opcode >= kSpecConstantTrue && opcode <= kSpecConstant ? value_of.find(instruction[2]) : value_of.end();
+        switch (opcode) {
+            case kSpecConstantTrue:
+            case kSpecConstantFalse:
+                put((found != value_of.end() ? found->second != 0 : opcode == kSpecConstantTrue) ? kConstantTrue : kConstantFalse);
+                break;
+            case kSpecConstant:
+                put(kConstant);
+                break;
+            default:
+                put(opcode);
+        }
+        specialized.insert(specialized.end(), instruction.begin() + 1, instruction.end());
+        if (opcode == kSpecConstant && found != value_of.end()) { specialized.back() = found->second; }
+    }
+    return specialized;
+}
+
+}  // namespace
+
 Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t push_bytes, const std::vector<std::uint32_t>& constants,
                Keep keep)
     : push_bytes_(push_bytes) {
-    const auto words = context.shaderWords(shader);
-    assert(!words.empty() && push_bytes <= 128);
+    const auto general = context.shaderWords(shader);
+    assert(!general.empty() && push_bytes <= 128);
     assert(keep == Keep::kNothing || context.hasKernelStatistics());
-    const vk::raii::ShaderModule module(context.device(), vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data()));
+    const std::vector<std::uint32_t> words = specialize(general, constants);
+    const vk::raii::ShaderModule module(context.device(), vk::ShaderModuleCreateInfo({}, words.size() * sizeof(words[0]), words.data()));
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
     layout_ = vk::raii::PipelineLayout(context.device(), vk::PipelineLayoutCreateInfo({}, {}, range));
-    std::vector<vk::SpecializationMapEntry> entries;
-    for (std::uint32_t id = 0; id < constants.size(); ++id) { entries.emplace_back(id, id * sizeof(std::uint32_t), sizeof(std::uint32_t)); }
-    const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                                constants.size() * sizeof(std::uint32_t), constants.data());
-    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
+    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
     const auto flags =
         keep == Keep::kStatistics ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR) : vk::PipelineCreateFlags();
     // A driver may have no statistics of what it did not compile just now.
