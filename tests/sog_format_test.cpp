@@ -120,6 +120,20 @@ TEST_CASE("a key asks for antialiasing, by the name of old writers or of new one
     CHECK_FALSE(antialiased("\"model\":\"2dgs\","));
 }
 
+TEST_CASE("a scene that says that it is 2DGS is of discs") {
+    const Folder folder;
+    SogText files = makeSog();
+    const Scene gaussians = loadScene(writeSogFolder(folder, "scene", files));
+    files["meta.json"] = replaced(files["meta.json"], "{", "{\"model\":\"2dgs\",");
+    LoadNotes notes;
+    const Scene discs = loadScene(writeSogFolder(folder, "scene", files), 0, &notes);
+    CHECK(gaussians.isGaussian3d());
+    CHECK_FALSE(discs.isGaussian3d());
+    CHECK_FALSE(notes.three_scales);
+    CHECK(discs.scales == gaussians.scales);
+    CHECK(discs.rotations == gaussians.rotations);
+}
+
 TEST_CASE("a Git LFS pointer in place of a picture is named as what it is") {
     const Folder folder;
     SogText files = makeSog();

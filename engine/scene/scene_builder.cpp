@@ -143,4 +143,11 @@ Scene SceneBuilder::finish(LoadNotes& notes) {
     return std::move(scene_);
 }
 
+void takeAsDiscs(Scene& scene, LoadNotes& notes) {
+    scene.thicknesses = {};
+    scene.antialiased = false;
+    notes.three_scales = false;
+    notes.median_flatness = 0.0;
+}
+
 }  // namespace binosplat

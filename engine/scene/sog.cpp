@@ -22,6 +22,7 @@ Scene readSog(const std::string& source, std::unique_ptr<SogFiles> files, LoadNo
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
     scene.antialiased = splats.antialiased();
+    if (splats.discs()) { takeAsDiscs(scene, notes); }
     return scene;
 }
 

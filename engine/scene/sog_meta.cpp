@@ -83,7 +83,11 @@ SogMeta parseSogMeta(std::span<const std::byte> text, const std::string& place) 
 
     SogMeta meta;
     meta.antialiased = root.has("antialias") && root.at("antialias").flag();
-    if (root.has("model")) { meta.antialiased = root.at("model").text() == "antialiased"; }  // newer writers
+    if (root.has("model")) {  // newer writers
+        const std::string model = root.at("model").text();
+        meta.antialiased = model == "antialiased";
+        meta.discs = model == "2dgs";
+    }
     const JsonNode means = root.at("means"), mins = means.at("mins"), maxs = means.at("maxs");
     mins.requireArray(3);
     maxs.requireArray(3);

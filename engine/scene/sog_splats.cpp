@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint64_t kMaxMetaBytes = std::uint64_t{1} << 22;
 constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{1} << 30;
-constexpr std::size_t kPaletteColumns = 64;  // entries per row of the centroids
 
 // Positions are noise in their low bytes: a scene of so many pixels has more bytes than that.
 std::uint64_t mostPixels(std::uint64_t bytes) { return 256 * bytes + 65536; }
@@ -36,7 +35,7 @@ Packed readPacked(SogFiles& files, const std::string& name) {
 // The SH degree that version 1 tells by the width of its palette.
 int paletteDegree(const SogPalette& palette, const Packed& centroids) {
     for (int degree = 1; degree <= kMaxShDegree; ++degree) {
-        const std::size_t width = kPaletteColumns * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
+        const std::size_t width = kSogPaletteColumns * (static_cast<std::size_t>(shCoefficientCount(degree)) - 1);
         if (centroids.size_px.x == width && (palette.sh_degree == 0 || palette.sh_degree == degree)) { return degree; }
     }
     fail("{}: is {} pixels wide, expected 192, 512 or 960 for SH of degree 1, 2 or 3", centroids.place, centroids.size_px.x);
@@ -54,7 +53,7 @@ SogPictures decodePictures(SogFiles& files, SogMeta& meta) {
         per_splat.push_back(&labels);
         all.insert(all.end(), {&centroids, &labels});
         meta.palette->sh_degree = paletteDegree(*meta.palette, centroids);
-        const std::uint64_t entries = std::uint64_t{kPaletteColumns} * centroids.size_px.y;
+        const std::uint64_t entries = std::uint64_t{kSogPaletteColumns} * centroids.size_px.y;
         if (meta.palette->count == std::numeric_limits<std::uint64_t>::max()) { meta.palette->count = entries; }
         check(meta.palette->count <= entries, "{}: has room for {} entries, expected the {} of meta.json", centroids.place, entries,
               meta.palette->count);
@@ -121,7 +120,7 @@ void unpackSplat(const SogMeta& meta, const SogPictures& pictures, std::size_t s
     const std::size_t coefficients = static_cast<std::size_t>(shCoefficientCount(meta.palette->sh_degree)) - 1;
     const std::size_t label = pictures.labels.rgba[pixel] | static_cast<std::size_t>(pictures.labels.rgba[pixel + 1]) << 8;
     const bool known = label < meta.palette->count;
-    const std::size_t first = (label / kPaletteColumns * pictures.centroids.size_px.x) + label % kPaletteColumns * coefficients;
+    const std::size_t first = (label / kSogPaletteColumns * pictures.centroids.size_px.x) + label % kSogPaletteColumns * coefficients;
     for (std::size_t channel = 0; channel < 3; ++channel) {
         float* rest = block.rest(row) + channel * in_block;
         for (std::size_t k = 0; k < coefficients; ++k) {

@@ -26,6 +26,7 @@ public:
 
     [[nodiscard]] std::uint64_t count() const { return meta_.count; }
     [[nodiscard]] bool antialiased() const { return meta_.antialiased; }
+    [[nodiscard]] bool discs() const { return meta_.discs; }
     [[nodiscard]] int shDegree() const { return meta_.palette ? meta_.palette->sh_degree : 0; }
     // Throws Error where a picture is missing or all are too small for so many splats: room for them can be reserved.
     void requirePlausibleCount() const;

@@ -145,6 +145,9 @@ Scene readStreamedSog(const std::string& source, const Streamed& scene, const Le
     if (progress) { progress(1.0); }
     Scene whole = builder.finish(notes);
     whole.antialiased = std::ranges::any_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.antialiased(); });
+    if (!level.chunks.empty() && std::ranges::all_of(level.chunks, [](const Chunk& chunk) { return chunk.splats.discs(); })) {
+        takeAsDiscs(whole, notes);
+    }
     noteLevel(source, scene, level, notes);
     return whole;
 }
