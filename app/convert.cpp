@@ -1,9 +1,8 @@
-// `binosplat convert`: any scene that can be read, as a PLY or an SPZ file.
+// `binosplat convert`: any scene that can be read, as a PLY, an SPZ or a SOG file.
 #include "app/commands.h"
 #include "app/load.h"
 #include "engine/error.h"
-#include "engine/scene/ply.h"
-#include "engine/scene/spz.h"
+#include "engine/scene/scene_targets.h"
 
 #include <filesystem>
 
@@ -11,8 +10,7 @@ namespace binosplat {
 
 void runConvert(const ConvertOptions& options) {
     const std::string out = options.out.string();
-    const bool as_spz = options.out.extension() == ".spz";
-    check(as_spz || options.out.extension() == ".ply", "{}: must be a file whose name ends in .ply or .spz", out);
+    const SceneTarget& target = findSceneTarget(options.out);
     const std::filesystem::path folder = options.out.has_parent_path() ? options.out.parent_path() : ".";
     check(std::filesystem::is_directory(folder), "{}: cannot be written, {} must be a directory", out, folder.string());
 
@@ -27,15 +25,11 @@ void runConvert(const ConvertOptions& options) {
     }
     {
         ProgressLine line("writing " + out);
-        const Progress progress = [&](double share) { line.show(share); };
-        if (as_spz) {
-            writeSpz(scene, out, progress);
-        } else {
-            writePly(scene, out, progress);
-        }
+        target.write(scene, out, [&](double share) { line.show(share); });
     }
     fmt::print("{}: {} splats ({}), SH degree {}, {} bytes\n", out, scene.size(), scene.isGaussian3d() ? "3D Gaussians" : "discs",
                scene.sh_degree, std::filesystem::file_size(options.out));
+    fmt::print("  loses: {}\n", target.describeLoss(scene));
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }
 }
 

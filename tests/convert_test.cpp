@@ -46,6 +46,55 @@ TEST_CASE("a scene goes through PLY unchanged and through SPZ within its quanta"
     }
 }
 
+#ifdef BINOSPLAT_OPENIMAGEIO
+TEST_CASE("a scene goes through SOG and back, and stays discs") {
+    const Workplace work;
+    const Outcome outcome = work.run("convert builtin:slanted-wall a.sog");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.output.find("a.sog: 1681 splats (discs), SH degree 0") == 0);
+    REQUIRE(work.run("convert a.sog b.ply").exit_code == 0);
+    REQUIRE(work.run("convert b.ply b.sog").exit_code == 0);
+    CHECK(fileCount(work) == 3);
+    const Scene made = loadScene("builtin:slanted-wall"), back = loadScene((work.path / "b.sog").string());
+    REQUIRE(back.size() == made.size());
+    CHECK_FALSE(back.isGaussian3d());
+    checkRefused(work, "convert builtin:slanted-wall b.ply/c.sog", 1, "b.ply must be a directory");
+    std::filesystem::create_directory(work.path / "d.sog");
+    checkRefused(work, "convert builtin:slanted-wall d.sog", 1, "d.sog: is a directory");
+    CHECK(fileCount(work) == 4);
+}
+#else
+TEST_CASE("a build without libwebp says that it cannot write SOG") {
+    const Workplace work;
+    checkRefused(work, "convert builtin:one-splat a.sog", 1, "a.sog: this build cannot write SOG");
+    CHECK(work.isEmpty());
+}
+#endif
+
+TEST_CASE("each format says in one line what it loses") {
+    const Workplace work;
+    const auto lossOf = [&](const std::string& arguments) {
+        const Outcome outcome = work.run("convert " + arguments);
+        INFO(outcome.errors);
+        CHECK(outcome.exit_code == 0);
+        const std::size_t at = outcome.output.find("\n  loses: ");
+        REQUIRE(at != std::string::npos);
+        return outcome.output.substr(at + 10, outcome.output.find('\n', at + 1) - at - 10);
+    };
+    CHECK(lossOf("builtin:slanted-wall a.ply") == "nothing");
+    CHECK(
+        lossOf("a.ply a.spz") ==
+        "positions in steps of 1.53e-05 units, scales of 6 %; colours and opacities of 8 bits; rotations of 10 bits a component; that its "
+        "splats are discs (render it with --flatten)");
+    CHECK(lossOf("a.spz b.spz").find("discs") == std::string::npos);
+#ifdef BINOSPLAT_OPENIMAGEIO
+    CHECK(lossOf("a.ply a.sog") ==
+          "the order of the splats; positions of 16 bits over the logarithm of the scene's extent; scales and colours of 256 values each; "
+          "rotations and opacities of 8 bits");
+#endif
+}
+
 TEST_CASE("a sphere can be cut out of a scene, and keeps all that its splats have") {
     const Workplace work;
     const Scene wall = loadScene("builtin:slanted-wall");
@@ -85,7 +134,7 @@ TEST_CASE("a scene may take the place of its own file") {
 
 TEST_CASE("what cannot be converted leaves nothing behind") {
     const Workplace work;
-    checkRefused(work, "convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply or .spz");
+    checkRefused(work, "convert builtin:one-splat a.obj", 1, "a.obj: must be a file whose name ends in .ply, .spz or .sog");
     checkRefused(work, "convert builtin:one-splat nowhere/a.ply", 1, "nowhere must be a directory");
     checkRefused(work, "convert absent.ply a.ply", 1, "absent.ply: no such file");
     checkRefused(work, "convert builtin:one-splat", 2, "OUT");

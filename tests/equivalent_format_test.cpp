@@ -1,11 +1,15 @@
 // The same scene as SOG and as PLY: what each format keeps of it.
+#include "engine/picture/webp.h"
 #include "engine/reference/reference.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/sog.h"
+#include "engine/scene/sog_files.h"
 #include "engine/scene/spz.h"
 #include "tests/ply_files.h"
 #include "tests/shared_data.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +93,33 @@ Scene throughSpz(const Scene& scene) {
     return loadFlat(folder.file("scene.spz"));
 }
 
+// Likewise SOG, of discs and of 3D Gaussians.
+Scene throughSog(const Scene& scene) {
+    const Folder folder;
+    writeSog(scene, folder.file("scene.sog"));
+    return loadScene(folder.file("scene.sog"));
+}
+
+struct Place {
+    glm::dvec3 eye, look;
+};
+constexpr Place kPlaybotPlaces[]{{{0, -0.6, -1.6}, {0, -0.4, 0}}, {{0.3, -0.7, -0.8}, {0, -0.6, 0}}, {{1.5, -0.6, 0.3}, {0, -0.4, 0}}};
+
+// Whether every key of `theirs` is one of `ours`, with a value of the same kind, and files have the same names.
+void checkSameKeys(const nlohmann::json& theirs, const nlohmann::json& ours, const std::string& place) {
+    CAPTURE(place);
+    CHECK(theirs.is_number() == ours.is_number());
+    CHECK(theirs.is_array() == ours.is_array());
+    if (theirs.is_string() && !place.ends_with(".generator")) { CHECK(theirs == ours); }
+    if (theirs.is_array()) { CHECK(theirs.size() == ours.size()); }
+    if (theirs.is_array() && theirs[0].is_string()) { CHECK(theirs == ours); }
+    if (!theirs.is_object()) { return; }
+    for (const auto& [key, value] : theirs.items()) {
+        REQUIRE(ours.contains(key));
+        checkSameKeys(value, ours[key], place + "." + key);
+    }
+}
+
 }  // namespace
 
 TEST_CASE("playbot LOD 3 is the same scene as SOG and as PLY" * needsSharedData()) {
@@ -125,7 +156,44 @@ TEST_CASE("angel is the same scene as a SOG bundle and as PLY" * needsSharedData
     CHECK(differences.disc < 1e-4);
     CHECK(differences.other_axis_dropped < sog.size() / 100);
     const double as_sog = psnrDb(ply, sog, {0, -2, -5}, {0, -2, 0}), as_spz = psnrDb(ply, throughSpz(ply), {0, -2, -5}, {0, -2, 0});
-    MESSAGE(fmt::format("rendered, against the PLY: SOG {:.1f} dB, SPZ {:.1f} dB", as_sog, as_spz));
+    MESSAGE(fmt::format("rendered, against the PLY: SOG {:.1f} dB, SPZ {:.1f} dB, through SOG and back {:.1f} dB", as_sog, as_spz,
+                        psnrDb(ply, throughSog(ply), {0, -2, -5}, {0, -2, 0})));
     CHECK(as_sog > 55.0);
     CHECK(as_spz > 42.0);
+}
+
+TEST_CASE("playbot is the same picture through SOG and back, as discs and as 3D Gaussians, from three places" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    for (const char* file : {"playbot/playbot_lod3_2dgs_sh2.ply", "playbot/playbot_lod3_sog"}) {
+        const Scene scene = loadScene((*data / file).string()), back = throughSog(scene);
+        CHECK(back.isGaussian3d() == scene.isGaussian3d());
+        for (const Place& place : kPlaybotPlaces) {
+            const double db = psnrDb(scene, back, place.eye, place.look);
+            MESSAGE(fmt::format("{} through SOG and back: {:.1f} dB", file, db));
+            CHECK(db > 45.0);
+        }
+    }
+}
+
+TEST_CASE("a bundle has the files and keys that other writers' have" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Folder folder;
+    writeSog(loadScene((*data / "playbot/playbot_lod3_sog").string()), folder.file("a.sog"));
+    const InputFile bundle(folder.file("a.sog"));
+    const auto metaOf = [](SogFiles& files) {
+        const std::vector<std::byte> text = files.read("meta.json", 1 << 22);
+        return nlohmann::json::parse(reinterpret_cast<const char*>(text.data()), reinterpret_cast<const char*>(text.data() + text.size()));
+    };
+    const std::unique_ptr<SogFiles> theirs = openSogFolder((*data / "playbot/playbot_lod3_sog").string()), ours = openSogBundle(bundle);
+    checkSameKeys(metaOf(*theirs), metaOf(*ours), "meta.json");
+    for (const char* picture : {"means_l", "means_u", "scales", "quats", "sh0", "shN_centroids", "shN_labels"}) {
+        const auto sizeIn = [&](SogFiles& files) {
+            const std::string name = std::string(picture) + ".webp";
+            return webpSize(files.read(name, 1 << 24), name);
+        };
+        CAPTURE(picture);
+        CHECK(sizeIn(*theirs) == sizeIn(*ours));
+    }
 }

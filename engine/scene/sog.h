@@ -1,4 +1,5 @@
-// SOG scenes, version 1 and 2: attributes as WebP pictures beside a meta.json, in a directory or bundled as .sog.
+// SOG scenes, version 1 and 2: attributes as WebP pictures beside a meta.json, in a directory or bundled as .sog. Bundles of version 2 are
+// written.
 #pragma once
 
 #include "engine/scene/input_file.h"
@@ -17,5 +18,12 @@ bool isSogFile(InputFile& file);
 // Throws Error in a build that cannot decode WebP.
 Scene readSogFolder(const std::string& folder, LoadNotes& notes, const Progress& progress);
 Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress);
+
+// Splats go along a Morton curve. Positions keep 16 bits of their logarithms' range, rotations and opacities bytes; scales, colours and
+// harmonics are one of 256 values each, and harmonics one of up to 65536 rows. Discs stay discs where readers know "model": "2dgs". The
+// file appears whole or not at all. Throws Error in a build that cannot encode WebP, and for more splats than pictures have pixels.
+void writeSog(const Scene& scene, const std::string& path, const Progress& progress = {});
+// How many rows of harmonics at most.
+std::size_t sogPaletteSize(const Scene& scene);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// A directory through InputFile, an archive through libzip.
+// A directory through InputFile, an archive through libzip, which also makes one.
 #include "engine/scene/sog_files.h"
 
 #include "engine/error.h"
@@ -57,6 +57,10 @@ struct ArchiveCloser {
 struct EntryCloser {
     void operator()(zip_file_t* entry) const { zip_fclose(entry); }
 };
+struct SourceCloser {
+    void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+constexpr zip_uint16_t kFirstDosDate = 1 << 5 | 1;  // 1 January 1980
 
 class BundleFiles final : public SogFiles {
 public:
@@ -128,9 +132,49 @@ private:
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) { return std::make_unique<FolderFiles>(folder); }
 
 #ifdef BINOSPLAT_OPENIMAGEIO
+
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { return std::make_unique<BundleFiles>(file.name(), file.sizeBytes()); }
+
+std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const std::string& place) {
+    const auto require = [&](bool done) { check(done, "{}: libzip cannot make the archive", place); };
+    zip_error_t error;
+    zip_error_init(&error);
+    const std::unique_ptr<zip_source_t, SourceCloser> target(zip_source_buffer_create(nullptr, 0, 0, &error));
+    require(target != nullptr);
+    zip_source_keep(target.get());  // one for the archive, which gives its own back even if it is not opened
+    std::unique_ptr<zip_t, ArchiveCloser> archive(zip_open_from_source(target.get(), ZIP_TRUNCATE, &error));
+    if (archive == nullptr) { zip_source_free(target.get()); }
+    require(archive != nullptr);
+    for (const NamedBytes& file : files) {
+        zip_source_t* bytes = zip_source_buffer(archive.get(), file.bytes.data(), file.bytes.size(), 0);
+        require(bytes != nullptr);
+        const zip_int64_t entry = zip_file_add(archive.get(), file.name.c_str(), bytes, ZIP_FL_ENC_UTF_8);
+        if (entry < 0) { zip_source_free(bytes); }
+        require(entry >= 0);
+        const auto index = static_cast<zip_uint64_t>(entry);
+        require(zip_set_file_compression(archive.get(), index, ZIP_CM_STORE, 0) == 0);
+        require(zip_file_set_dostime(archive.get(), index, 0, kFirstDosDate, 0) == 0);
+    }
+    require(zip_close(archive.get()) == 0);
+    (void)archive.release();  // closed
+    zip_stat_t size;
+    zip_stat_init(&size);
+    require(zip_source_stat(target.get(), &size) == 0 && (size.valid & ZIP_STAT_SIZE) != 0 && zip_source_open(target.get()) == 0);
+    std::vector<std::byte> bundle(size.size);
+    const zip_int64_t got = zip_source_read(target.get(), bundle.data(), bundle.size());
+    zip_source_close(target.get());
+    require(got == static_cast<zip_int64_t>(bundle.size()));
+    return bundle;
+}
+
 #else
+
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { fail("{}: cannot be read, this build is without libzip", file.name()); }
+
+std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>&, const std::string& place) {
+    fail("{}: cannot be written, this build is without libzip", place);
+}
+
 #endif
 
 }  // namespace binosplat

@@ -26,4 +26,11 @@ std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
 // Only in a build with OpenImageIO, as all of SOG. Throws Error if `file` is no zip archive or holds no meta.json.
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file);
 
+struct NamedBytes {
+    std::string name;
+    std::vector<std::byte> bytes;
+};
+// A bundle of such files, stored as they are; the same for the same files. `place` is for messages.
+std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const std::string& place);
+
 }  // namespace binosplat

@@ -22,6 +22,8 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress);
 // Positions get as many fractional bits, 16 at most, as the scene's extent leaves; SH keep eight bits in every band; the third scale of
 // discs is the smallest there is. The file appears whole or not at all. Throws Error for positions beyond 2^23 units.
 void writeSpz(const Scene& scene, const std::string& path, const Progress& progress = {});
+// Of the positions as written.
+int spzFractionalBits(const Scene& scene);
 
 namespace spz {
 

@@ -17,15 +17,12 @@ constexpr float kMaxFixed = 8388607.0f;  // 2^23 - 1
 
 std::byte nearestByte(float value) { return static_cast<std::byte>(std::lround(std::clamp(value, 0.0f, 255.0f))); }
 
-int chooseFractionalBits(const Scene& scene, const std::string& path) {
+float furthestCoordinate(const Scene& scene) {
     float furthest = 0.0f;
     for (const glm::vec3& position : scene.positions) {
         furthest = std::max({furthest, std::abs(position.x), std::abs(position.y), std::abs(position.z)});
     }
-    check(furthest <= kMaxFixed, "{}: cannot hold positions up to {} units, SPZ ends at {}", path, furthest, kMaxFixed);
-    int bits = kMaxFractionalBits;
-    while (std::ldexp(furthest, bits) > kMaxFixed) { --bits; }
-    return bits;
+    return furthest;
 }
 
 std::byte* putWord(std::byte* at, std::uint32_t word, int bytes) {
@@ -82,10 +79,19 @@ std::byte* putSh(const float* sh, int coefficients, std::byte* at) {
 
 }  // namespace
 
+int spzFractionalBits(const Scene& scene) {
+    const float furthest = furthestCoordinate(scene);
+    int bits = kMaxFractionalBits;
+    while (bits > 0 && std::ldexp(furthest, bits) > kMaxFixed) { --bits; }
+    return bits;
+}
+
 void writeSpz(const Scene& scene, const std::string& path, const Progress& progress) {
     check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
     check(scene.size() <= 0xffffffffu, "{}: cannot hold {} splats, SPZ counts in 32 bits", path, scene.size());
-    const int fractional_bits = chooseFractionalBits(scene, path);
+    const float furthest = furthestCoordinate(scene);
+    check(furthest <= kMaxFixed, "{}: cannot hold positions up to {} units, SPZ ends at {}", path, furthest, kMaxFixed);
+    const int fractional_bits = spzFractionalBits(scene);
     PartFile file(path);
     GzipWriter stream(file);
     std::array<std::byte, spz::kHeaderBytes> header{};

@@ -1,0 +1,26 @@
+// 256 values that stand for many numbers: what SOG keeps of scales, colours and harmonics.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace binosplat {
+
+class Codebook {
+public:
+    // The values that come nearest to `numbers`, in squares: Lloyd's algorithm along one axis. As many different numbers as there are
+    // values are kept as they are. `apart`, less than all numbers, is the first value.
+    explicit Codebook(std::span<const float> numbers, std::optional<float> apart = {});
+
+    // Ascending; the last one fills what is left over.
+    [[nodiscard]] const std::array<float, 256>& values() const { return values_; }
+    [[nodiscard]] std::uint8_t nearest(float number) const;
+
+private:
+    std::array<float, 256> values_{};
+    std::array<float, 255> borders_{};  // between a value and the next
+};
+
+}  // namespace binosplat
