@@ -44,6 +44,9 @@ std::multimap<std::string, std::string> makeSeeds() {
     SpzText container = makeSpz(3);
     container.version = 4;
     seeds.emplace("scene", makeSpzContainer(container));
+    container.flags = 2;
+    seeds.emplace("scene", makeSpzContainer(container, spzRecord(7, "another's") + spzAxesRecord(10)));
+    seeds.emplace("scene", makeSpz(2).bytes());
 #ifdef BINOSPLAT_GLTF
     GltfText gltf = makeGltf(9);
     gltf.nodes = R"([{"children":[1]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3],"translation":[1,2,3]}])";

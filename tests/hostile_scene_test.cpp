@@ -124,6 +124,15 @@ TEST_CASE("broken SPZ containers") {
     truncate(good, attempts.attempt());
     flipBits(good, 1000, attempts.attempt());
     spliceBytes(good, 1000, attempts.attempt());
+    // Records of extensions, alone.
+    spz.flags = 2;
+    const std::string records = spzRecord(7, "another's") + spzAxesRecord(10);
+    const Attempt around = [&](const std::string& what, const std::string& bytes) {
+        attempts.attempt()("records, " + what, makeSpzContainer(spz, bytes));
+    };
+    truncate(records, around);
+    flipBits(records, 400, around);
+    spliceBytes(records, 400, around);
 }
 
 TEST_CASE("broken SPZ files") {
@@ -139,6 +148,10 @@ TEST_CASE("broken SPZ files") {
         truncate(plain, within);
         flipBits(plain, 1000, within);
         spliceBytes(plain, 1000, within);
+        // And bare.
+        truncate(plain, attempt);
+        flipBits(plain, 500, attempt);
+        spliceBytes(plain, 500, attempt);
     }
 }
 

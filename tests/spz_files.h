@@ -101,4 +101,16 @@ inline std::string makeSpzContainer(const SpzText& spz, const std::string& exten
     return file + std::string(12, '\0') + extension + table + data;
 }
 
+// A record of an extension.
+inline std::string spzRecord(std::uint32_t type, const std::string& content) {
+    std::string bytes;
+    for (const auto value : {type, static_cast<std::uint32_t>(content.size())}) {
+        for (int i = 0; i < 4; ++i) { bytes.push_back(static_cast<char>(value >> 8 * i & 0xff)); }
+    }
+    return bytes + content;
+}
+
+// Of the one that names axes.
+inline std::string spzAxesRecord(int system) { return spzRecord(0xadbe0003u, std::string{static_cast<char>(system), '\0', '\0', '\0'}); }
+
 }  // namespace binosplat::test

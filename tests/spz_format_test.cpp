@@ -104,6 +104,105 @@ TEST_CASE("a container that does not fit is named") {
     }
 }
 
+TEST_CASE("bytes behind the last stream of a container do not matter") {
+    const Folder folder;
+    SpzText spz = makeSpz(3);
+    spz.version = 4;
+    checkSameScene(loadBytes(folder, makeSpzContainer(spz)), loadBytes(folder, makeSpzContainer(spz) + "and whatever follows"));
+}
+
+TEST_CASE("versions 2 and 3 are read without gzip, too") {
+    const Folder folder;
+    for (const std::uint32_t version : {2u, 3u}) {
+        const std::string bytes = makeSpz(version).bytes();
+        checkSameScene(loadBytes(folder, gzip(bytes)), loadBytes(folder, bytes));
+        checkSameScene(loadBytes(folder, gzip(bytes)), loadBytes(folder, bytes + "and whatever follows"));
+        for (std::size_t length = 4; length < bytes.size(); ++length) {
+            CHECK(contains(loadError(folder, bytes.substr(0, length)), length < 16 ? "header: ends after" : "data: ends after"));
+        }
+    }
+}
+
+namespace {
+
+// The directions that the letters of the format's names stand for, in axes right, down, forward.
+glm::dvec3 directionOf(char letter) {
+    switch (letter) {
+        case 'R':
+            return {1, 0, 0};
+        case 'L':
+            return {-1, 0, 0};
+        case 'D':
+            return {0, 1, 0};
+        case 'U':
+            return {0, -1, 0};
+        case 'F':
+            return {0, 0, 1};
+        default:
+            return {0, 0, -1};
+    }
+}
+
+glm::dmat3 covarianceOf(const glm::dmat3& axes, const glm::dvec3& scales) {
+    glm::dmat3 sum(0.0);
+    for (int i = 0; i < 3; ++i) { sum += glm::outerProduct(axes[i] * scales[i], axes[i] * scales[i]); }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the axes that an extension names are honoured: places, ellipsoids and colours") {
+    const Folder folder;
+    const char* const names[] = {"",    "LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
+                                 "LBD", "RBD", "LBU", "RBU", "LFD", "RFD", "LFU", "RFU"};
+    SpzText spz = makeSpz(3);
+    spz.sh_degree = 3;
+    spz.sh.clear();
+    for (int i = 0; i < 90; ++i) { spz.sh.push_back(128 + (i * 37 % 100) - 50); }
+    spz.rotations = {0x12, 0x7a, 0x55, 0xc3, 0xf1, 0x02, 0xa8, 0x41};
+    spz.version = 4, spz.flags = 2;
+    // As stored: RDF changes nothing.
+    const Scene stored = loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(6)));
+    CHECK(stored.positions[0] == glm::vec3(1.0f, -2.0f, 0.5f));
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.5, 0.8));
+    for (int system = 1; system <= 16; ++system) {
+        CAPTURE(names[system]);
+        const glm::dmat3 ours_from_file(directionOf(names[system][0]), directionOf(names[system][1]), directionOf(names[system][2]));
+        const Scene scene = loadBytes(folder, makeSpzContainer(spz, spzRecord(7, "someone else's") + spzAxesRecord(system)));
+        for (std::size_t i = 0; i < 2; ++i) {
+            CHECK(glm::distance(glm::dvec3(scene.positions[i]), ours_from_file * glm::dvec3(stored.positions[i])) < 1e-6);
+            const auto axes = [&](const Scene& of) { return glm::dmat3(glm::mat3_cast(of.rotations[i])); };
+            const glm::dvec3 scales(stored.scales[i], stored.thicknesses[i]), same(scene.scales[i], scene.thicknesses[i]);
+            const glm::dmat3 expected = covarianceOf(ours_from_file * axes(stored), scales), got = covarianceOf(axes(scene), same);
+            for (int k = 0; k < 9; ++k) { CHECK(std::abs(expected[k / 3][k % 3] - got[k / 3][k % 3]) < 1e-5 * glm::dot(scales, scales)); }
+            const glm::dvec3 before = reference::evaluateHarmonics(stored.sh.data() + 48 * i, 3, direction),
+                             after = reference::evaluateHarmonics(scene.sh.data() + 48 * i, 3, ours_from_file * direction);
+            CHECK(glm::distance(before, after) < 1e-5);
+        }
+    }
+}
+
+TEST_CASE("files that name no axes, or unknown ones, are right, up, back") {
+    const Folder folder;
+    SpzText spz = makeSpz(3);
+    const Scene usual = loadBytes(folder, gzip(spz.bytes()));
+    spz.flags = 2;
+    LoadNotes notes;
+    checkSameScene(usual, loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(4))));
+    CHECK(loadBytes(folder, gzip(spz.bytes() + spzAxesRecord(6))).positions[0] == glm::vec3(1.0f, -2.0f, 0.5f));
+    spz.version = 4;
+    for (const std::string& records : {std::string(), spzAxesRecord(0), spzAxesRecord(4), spzRecord(0xadbe0003u, "abc"),
+                                       spzAxesRecord(6).substr(0, 10), spzRecord(0xadbe0003u, "").substr(0, 4) + std::string(8, '\xff')}) {
+        checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, records), &notes));
+        CHECK(notes.lines.empty());
+    }
+    checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(17)), &notes));
+    REQUIRE(notes.lines.size() == 1);
+    CHECK(contains(notes.lines[0], "names axes 17, which are not known; taken as x right, y up, z back; right-handed"));
+    spz.flags = 0;  // then these are no records
+    checkSameScene(usual, loadBytes(folder, makeSpzContainer(spz, spzAxesRecord(6))));
+}
+
 TEST_CASE("SH turned with the axes give the same colours") {
     const Scene scene = makeScene(3, 20);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.5, 0.8)), turned(direction.x, -direction.y, -direction.z);
@@ -224,7 +323,8 @@ TEST_CASE("an SPZ that does not fit is named") {
     spz.version = 4;
     CHECK(contains(errorOf(spz), "SPZ version 4 within gzip"));
     spz.version = 3;
-    CHECK(contains(loadError(folder, makeSpzContainer(spz)), "SPZ version 3 without gzip"));
+    spz.version = 5;
+    CHECK(contains(loadError(folder, makeSpzContainer(spz)), "SPZ version 5 without gzip, expected 2 or 3, or 4 without gzip"));
     spz = makeSpz(3), spz.sh_degree = 5;
     CHECK(contains(errorOf(spz), "SH degree 5"));
     spz = makeSpz(3), spz.fractional_bits = 24;

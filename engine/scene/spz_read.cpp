@@ -4,12 +4,15 @@
 #include "engine/scene/quantized.h"
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/spz.h"
+#include "engine/scene/spz_axes.h"
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 namespace binosplat {
 
@@ -20,6 +23,8 @@ constexpr std::uint64_t kMaxExpansion = 256;
 // How much is unpacked at a time, so that loading can be stopped; and unpacking's share of loading.
 constexpr std::size_t kPieceBytes = std::size_t{4} << 20;
 constexpr double kUnpackingShare = 0.5;
+// As much of the extensions' records is looked at.
+constexpr std::size_t kMostRecords = std::size_t{1} << 16;
 
 struct Header {
     std::uint32_t version = 0;
@@ -27,18 +32,19 @@ struct Header {
     int sh_degree = 0;  // kept; see sh_bytes for what is there
     int fractional_bits = 0;
     bool antialiased = false;
+    bool has_extensions = false;
     std::size_t rotation_bytes = 0, sh_bytes = 0;  // per splat
 
     [[nodiscard]] std::uint64_t bytesPerSplat() const { return 16 + rotation_bytes + sh_bytes; }
 };
 
-Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bool container) {
+Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bool gzipped) {
     check(bytes.size() == spz::kHeaderBytes, "{}: header: ends after {} bytes, expected {}", file, bytes.size(), spz::kHeaderBytes);
     Header header;
     header.version = loadLittle<std::uint32_t>(bytes, 4);
-    const bool known = container ? header.version == 4 : header.version == 2 || header.version == 3;
-    check(known, "{}: header: SPZ version {} {}, expected 2 or 3 within gzip or 4 without", file, header.version,
-          container ? "without gzip" : "within gzip");
+    const bool known = header.version >= 2 && header.version <= (gzipped ? 3u : 4u);
+    check(known, "{}: header: SPZ version {} {}, expected 2 or 3, or 4 without gzip", file, header.version,
+          gzipped ? "within gzip" : "without gzip");
     header.splats = loadLittle<std::uint32_t>(bytes, 8);
     const int degree = std::to_integer<int>(bytes[12]);
     check(degree <= 4, "{}: header: SH degree {}, expected 0 to 4", file, degree);
@@ -47,13 +53,14 @@ Header parseHeader(const std::string& file, std::span<const std::byte> bytes, bo
     header.rotation_bytes = header.version == 2 ? 3 : 4;
     header.fractional_bits = std::to_integer<int>(bytes[13]);
     header.antialiased = (std::to_integer<int>(bytes[14]) & spz::kAntialiased) != 0;
+    header.has_extensions = (std::to_integer<int>(bytes[14]) & spz::kHasExtensions) != 0;
     check(header.fractional_bits <= 23, "{}: header: {} fractional bits of 24, expected 0 to 23", file, header.fractional_bits);
     return header;
 }
 
-// All attributes, one after the other.
+// All attributes, one after the other, and the beginning of the extensions' records.
 struct Attributes {
-    std::vector<std::byte> bytes;
+    std::vector<std::byte> bytes, records;
     const std::byte *positions, *alphas, *colours, *scales, *rotations, *sh;
 };
 
@@ -74,20 +81,39 @@ Attributes reserveAttributes(const InputFile& file, const Header& header) {
     return attributes;
 }
 
-// Versions 2 and 3: one stream.
-Attributes readStream(InputFile& file, GzipReader& stream, const Header& header, const Progress& progress) {
+// Fills its target as far as there is something to read, and says how far.
+using ReadSome = std::function<std::size_t(std::span<std::byte> target)>;
+
+ReadSome readBare(InputFile& file) {
+    return [&file](std::span<std::byte> target) {
+        std::size_t done = 0;
+        while (done < target.size()) {
+            const std::span<const std::byte> block = file.readBlock(std::min<std::size_t>(target.size() - done, kPieceBytes));
+            if (block.empty()) { break; }
+            std::ranges::copy(block, target.begin() + static_cast<std::ptrdiff_t>(done));
+            done += block.size();
+        }
+        return done;
+    };
+}
+
+// Versions 2 and 3: one stream, within gzip or bare.
+Attributes readStream(InputFile& file, const ReadSome& read, const Header& header, const Progress& progress) {
     Attributes attributes = reserveAttributes(file, header);
     const std::size_t total = attributes.bytes.size();
     std::size_t got = 0;
     for (std::size_t more = 1; got < total && more > 0; got += more) {
         if (progress) { progress(kUnpackingShare * static_cast<double>(got) / static_cast<double>(total)); }
-        more = stream.read(std::span(attributes.bytes).subspan(got, std::min(total - got, kPieceBytes)));
+        more = read(std::span(attributes.bytes).subspan(got, std::min(total - got, kPieceBytes)));
     }
     check(got == total, "{}: data: ends after {} bytes, expected {} for {} splats", file.name(), got, total, header.splats);
-    // The checksum is compared where the stream ends; records of extensions may lie before that.
+    // The checksum is compared where a gzip stream ends; records of extensions may lie before that.
     std::array<std::byte, 4096> behind;
     std::uint64_t extra = 0;
-    for (std::size_t more = 0; (more = stream.read(behind)) > 0;) {
+    for (std::size_t more = 0; (more = read(behind)) > 0;) {
+        if (attributes.records.size() < kMostRecords) {
+            attributes.records.insert(attributes.records.end(), behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(more));
+        }
         extra += more;
         check(extra <= kMaxExpansion * file.sizeBytes() + 65536, "{}: data: {} bytes and more behind the last splat", file.name(), extra);
     }
@@ -103,12 +129,15 @@ Attributes readContainer(InputFile& file, const Header& header, std::size_t stre
     check(table_at >= file.positionBytes() && table_at <= file.sizeBytes(),
           "{}: header: the table of streams is at byte {}, expected it from {} to {}", file.name(), table_at, file.positionBytes(),
           file.sizeBytes());
+    const std::span<const std::byte> start = file.readBlock(std::min<std::uint64_t>(table_at - file.positionBytes(), kMostRecords));
+    std::vector<std::byte> records(start.begin(), start.end());
     file.skip(table_at - file.positionBytes());
     const std::span<const std::byte> table_bytes = file.readBlock(16 * streams);
     check(table_bytes.size() == 16 * streams, "{}: ends within the table of streams, at byte {}", file.name(), file.positionBytes());
     const std::vector<std::byte> table(table_bytes.begin(), table_bytes.end());
 
     Attributes attributes = reserveAttributes(file, header);
+    attributes.records = std::move(records);
     std::byte* target = attributes.bytes.data();
     for (std::size_t i = 0; i < streams; ++i) {
         const auto packed = loadLittle<std::uint64_t>(table, 16 * i), plain = loadLittle<std::uint64_t>(table, 16 * i + 8);
@@ -160,30 +189,43 @@ std::array<float, 4> loadRotation3(const std::byte* at) {
     return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
 }
 
-void unpackSplat(const Header& header, const Attributes& attributes, std::size_t splat, StoredBlock& block, std::size_t row) {
+void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& attributes, std::size_t splat, StoredBlock& block,
+                 std::size_t row) {
     const auto put = [&](int attribute, float value) { block.put(attribute, row, value); };
+    glm::vec3 position;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const int offset = static_cast<int>(axis);
-        const float position = loadFixed(attributes.positions + 9 * splat + 3 * axis, header.fractional_bits);
-        put(kStoredX + offset, axis == 0 ? position : 0.0f - position);
+        position[offset] = loadFixed(attributes.positions + 9 * splat + 3 * axis, header.fractional_bits);
         put(kStoredScale0 + offset, loadByte(attributes.scales + 3 * splat + axis) / 16.0f - 10.0f);
         put(kStoredDc0 + offset, (loadByte(attributes.colours + 3 * splat + axis) / 255.0f - 0.5f) / spz::kColourScale);
     }
+    position = axes.turn(position);
+    for (int axis = 0; axis < 3; ++axis) { put(kStoredX + axis, position[axis] + 0.0f); }  // no -0
     put(kStoredOpacity, storedOpacity(loadByte(attributes.alphas + splat) / 255.0f));
     const std::byte* packed = attributes.rotations + header.rotation_bytes * splat;
-    const std::array<float, 4> rotation = header.version == 2 ? loadRotation2(packed) : loadRotation3(packed);
-    // Turning the axes by half a turn about x turns the quaternion's y and z round.
-    for (int i = 0; i < 4; ++i) {
-        const float component = rotation[static_cast<std::size_t>(i)];
-        put(kStoredRot0 + i, i < 2 ? component : -component);
-    }
+    const std::array<float, 4> wxyz = header.version == 2 ? loadRotation2(packed) : loadRotation3(packed);
+    const glm::quat rotation = axes.turn(glm::quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]));
+    const std::array<float, 4> turned{rotation.w, rotation.x, rotation.y, rotation.z};
+    for (int i = 0; i < 4; ++i) { put(kStoredRot0 + i, turned[static_cast<std::size_t>(i)]); }
     const int coefficients = shCoefficientCount(header.sh_degree) - 1;
-    for (int k = 0; k < coefficients; ++k) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const float value = (loadByte(attributes.sh + header.sh_bytes * splat + 3 * k + channel) - 128.0f) / 128.0f;
-            put(kStoredRest0 + channel * coefficients + k, spz::kShChangesSign[k + 1] ? 0.0f - value : value);
+    for (int channel = 0; channel < 3; ++channel) {
+        float* rest = block.rest(row) + channel * coefficients;
+        for (int k = 0; k < coefficients; ++k) {
+            rest[k] = (loadByte(attributes.sh + header.sh_bytes * splat + 3 * k + channel) - 128.0f) / 128.0f;
         }
+        axes.turnSh(rest, header.sh_degree);
     }
+}
+
+// What the file says of its axes, or what files mean that say nothing.
+SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, std::vector<std::string>& lines) {
+    const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
+    if (!said || *said == 0) { return SpzAxes(); }
+    if (*said > SpzAxes::kLast) {
+        lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said, SpzAxes().describe()));
+        return SpzAxes();
+    }
+    return SpzAxes(*said);
 }
 
 }  // namespace
@@ -199,20 +241,21 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     if (progress) { progress(0.0); }
     Header header;
     Attributes attributes{};
-    if (file.peek(4) == "NGSP") {
-        std::array<std::byte, 32> bytes{};
-        const std::span<const std::byte> block = file.readBlock(bytes.size());
-        check(block.size() == bytes.size(), "{}: header: ends after {} bytes, expected {}", file.name(), block.size(), bytes.size());
-        std::copy(block.begin(), block.end(), bytes.begin());
-        header = parseHeader(file.name(), std::span(bytes).first(spz::kHeaderBytes), true);
-        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(bytes, 16), progress);
+    std::optional<GzipReader> stream;
+    if (file.peek(4) != "NGSP") { stream.emplace(file); }
+    const ReadSome read = stream ? ReadSome([&](std::span<std::byte> target) { return stream->read(target); }) : readBare(file);
+    std::array<std::byte, spz::kHeaderBytes> bytes{}, more{};
+    header = parseHeader(file.name(), std::span(bytes).first(read(bytes)), stream.has_value());
+    if (header.version == 4) {
+        const std::size_t size = read(more);
+        check(size == more.size(), "{}: header: ends after {} bytes, expected {}", file.name(), bytes.size() + size,
+              bytes.size() + more.size());
+        attributes = readContainer(file, header, std::to_integer<std::size_t>(bytes[15]), loadLittle<std::uint32_t>(more, 0), progress);
     } else {
-        GzipReader stream(file);
-        std::array<std::byte, spz::kHeaderBytes> bytes{};
-        const std::size_t size = stream.read(bytes);
-        header = parseHeader(file.name(), std::span(bytes).first(size), false);
-        attributes = readStream(file, stream, header, progress);
+        attributes = readStream(file, read, header, progress);
     }
+    std::vector<std::string> lines;
+    const SpzAxes axes = chooseAxes(file.name(), header, attributes, lines);
 
     SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
     StoredBlock block;
@@ -221,11 +264,12 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
             progress(kUnpackingShare + (1.0 - kUnpackingShare) * static_cast<double>(done) / static_cast<double>(header.splats));
         }
         block.rows = static_cast<std::size_t>(std::min<std::uint64_t>(StoredBlock::kRows, header.splats - done));
-        for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(header, attributes, done + row, block, row); }
+        for (std::size_t row = 0; row < block.rows; ++row) { unpackSplat(header, axes, attributes, done + row, block, row); }
         builder.append(block);
     }
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
+    notes.lines.insert(notes.lines.end(), lines.begin(), lines.end());
     scene.antialiased = header.antialiased;
     if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
     return scene;

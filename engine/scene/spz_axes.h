@@ -1,0 +1,47 @@
+// The axes of an SPZ file, which its extension SPZ_ADOBE_coordinate_system may name, and what turns splats into those of trained PLY
+// scenes.
+#pragma once
+
+#include "engine/scene/sh_turn.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace binosplat {
+
+class SpzAxes {
+public:
+    static constexpr std::uint32_t kUsual = 4, kLast = 16;  // right, up, back; what the extension knows ends with right, front, up
+
+    // `system` is the extension's number, 1 to kLast.
+    explicit SpzAxes(std::uint32_t system = kUsual);
+
+    // Where x, y and z lead, and whether they are right-handed.
+    [[nodiscard]] std::string describe() const;
+
+    // To axes right, down, forward.
+    [[nodiscard]] glm::vec3 turn(const glm::vec3& position) const;
+    [[nodiscard]] glm::quat turn(const glm::quat& rotation) const;
+    // One channel from band 1 on, in place.
+    void turnSh(float* rest, int sh_degree) const;
+
+private:
+    std::uint32_t system_;
+    glm::vec3 signs_;  // of right, down, forward
+    bool z_is_up_;     // or down: y and z have changed places
+    ShTurn sh_turn_;
+    std::array<float, 15> sh_signs_{};  // all that it is where y and z keep their places
+};
+
+// The number that the records of a file's extensions say, if they say one: type, length and content, one behind the other. What is broken
+// ends the search.
+std::optional<std::uint32_t> findSpzAxes(std::span<const std::byte> records);
+
+}  // namespace binosplat
