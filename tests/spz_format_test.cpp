@@ -277,7 +277,7 @@ TEST_CASE("whoever waits for a large scene hears how much is unpacked, and may s
     for (auto* column : {&spz.colours, &spz.scales}) { column->assign(3 * spz.splats, 128); }
     SpzText later = spz;
     later.version = 4;
-    for (const std::string& bytes : {gzip(spz.bytes()), makeSpzContainer(later)}) {
+    for (const std::string& bytes : {gzip(spz.bytes()), spz.bytes(), makeSpzContainer(later)}) {
         const std::string file = folder.write("scene.bin", bytes);
         std::vector<double> told;
         REQUIRE(loadScene(file, 0, nullptr, [&](double share) { told.push_back(share); }).size() == spz.splats);

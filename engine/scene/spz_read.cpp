@@ -88,7 +88,7 @@ ReadSome readBare(InputFile& file) {
     return [&file](std::span<std::byte> target) {
         std::size_t done = 0;
         while (done < target.size()) {
-            const std::span<const std::byte> block = file.readBlock(std::min<std::size_t>(target.size() - done, kPieceBytes));
+            const std::span<const std::byte> block = file.readBlock(std::min(target.size() - done, std::size_t{1} << 20));
             if (block.empty()) { break; }
             std::ranges::copy(block, target.begin() + static_cast<std::ptrdiff_t>(done));
             done += block.size();
