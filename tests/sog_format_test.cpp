@@ -225,6 +225,24 @@ TEST_CASE("pictures and archives that are there to fill the memory are refused")
     CHECK(contains(loadError(writeSogFolder(folder, "scene", files)), "meta.json: is 50"));
 }
 
+TEST_CASE("a bundle's files may come in any order, and among others") {
+    const Folder folder;
+    const SogText files = makeSog();
+    std::vector<std::pair<std::string, std::string>> entries(files.begin(), files.end());
+    const Scene scene = loadScene(writeSogFolder(folder, "scene", files));
+    for (int turn = 0; turn < 8; ++turn) {
+        std::ranges::rotate(entries, entries.begin() + 1);
+        checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0))));
+        std::ranges::reverse(entries);
+        checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries, turn % 2 == 0, "in/a folder/"))));
+    }
+    // The scene is where the path of meta.json is shortest.
+    entries.insert(entries.begin(), {"older/meta.json", "{}"});
+    entries.emplace_back("__MACOSX/meta.json", "");
+    entries.emplace_back("not-meta.json", "");
+    checkSameScene(scene, loadScene(folder.write("a.sog", makeZip(entries))));
+}
+
 TEST_CASE("archives that are not whole are refused") {
     const Folder folder;
     const SogText files = makeSog();

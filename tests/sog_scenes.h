@@ -8,6 +8,8 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace binosplat::test {
 
@@ -84,8 +86,9 @@ inline std::string writeSogFolder(const Folder& folder, const std::string& name,
     return folder.file(name);
 }
 
-// A zip archive of stored entries, or deflated ones; names get `prefix`.
-inline std::string makeZip(const SogText& files, bool deflated = false, const std::string& prefix = "") {
+// A zip archive of stored entries, or deflated ones, in the order of `files`; names get `prefix`.
+inline std::string makeZip(const std::vector<std::pair<std::string, std::string>>& files, bool deflated = false,
+                           const std::string& prefix = "") {
     std::string archive, directory;
     for (const auto& [plain_name, bytes] : files) {
         const std::string name = prefix + plain_name;
@@ -117,6 +120,10 @@ inline std::string makeZip(const SogText& files, bool deflated = false, const st
     return archive + directory + "PK\x05\x06" + littleWord(0, 2) + littleWord(0, 2) + littleWord(count, 2) + littleWord(count, 2) +
            littleWord(static_cast<std::uint32_t>(directory.size())) + littleWord(static_cast<std::uint32_t>(archive.size())) +
            littleWord(0, 2);
+}
+
+inline std::string makeZip(const SogText& files, bool deflated = false, const std::string& prefix = "") {
+    return makeZip(std::vector<std::pair<std::string, std::string>>(files.begin(), files.end()), deflated, prefix);
 }
 
 }  // namespace binosplat::test

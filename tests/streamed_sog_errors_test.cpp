@@ -65,8 +65,12 @@ TEST_CASE("names that are not those of chunks within the folder are refused") {
         CHECK(contains(broken.with("\"b/meta.json\"", fmt::format("\"{}\"", path)), "expected a path within the folder of this file"));
     }
     for (const char* path : {"", "a", "a/other.json", "a/meta.json/"}) {
-        CHECK(contains(broken.with("\"b/meta.json\"", fmt::format("\"{}\"", path)), "expected the meta.json of a chunk"));
+        CHECK(contains(broken.with("\"b/meta.json\"", fmt::format("\"{}\"", path)), "expected the meta.json or the .sog of a chunk"));
     }
+    for (const char* path : {"../b.sog", "/b.sog", "x\\\\b.sog"}) {
+        CHECK(contains(broken.with("\"b/meta.json\"", fmt::format("\"{}\"", path)), "expected a path within the folder of this file"));
+    }
+    CHECK(contains(broken.with("b/meta.json", "b.sog"), "b.sog is not there, expected a chunk of the scene"));
     CHECK(contains(broken.with("\"b/meta.json\"", "7"), "filenames[1]: is number, expected a text"));
     CHECK(contains(broken.with("env/meta.json", "../env/meta.json"), "environment: names \"../env/meta.json\""));
 }

@@ -2,6 +2,8 @@
 #include "tests/run_program.h"
 #include "tests/streamed_scenes.h"
 
+#include <sys/resource.h>
+
 TEST_SUITE_BEGIN("streamed_sog");
 
 using namespace binosplat;
@@ -56,6 +58,71 @@ TEST_CASE("a level is its chunks in their order, with the environment behind") {
     std::filesystem::rename(source + "/lod-meta.json", source + "/other");
     checkSameScene(loadScene(source + "/other"), finest);
     CHECK(loadScene(source + "/other").name == source + "/other");
+}
+
+namespace {
+
+// Makes bundles of some of the chunks' folders, and names them in lod-meta.json.
+void bundleChunks(const Folder& folder, const std::string& name, const std::vector<std::string>& chunks) {
+    std::string meta = makeLodMeta();
+    for (const std::string& chunk : chunks) {
+        SogText files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder.file(name + "/" + chunk))) {
+            std::ifstream file(entry.path(), std::ios::binary);
+            files[entry.path().filename().string()] = std::string(std::istreambuf_iterator<char>(file), {});
+        }
+        std::filesystem::remove_all(folder.file(name + "/" + chunk));
+        std::filesystem::create_directories(folder.file(name + "/packed"));
+        (void)folder.write(name + "/packed/" + chunk + ".sog", makeZip(files, chunk == "b"));
+        meta = replaced(meta, "\"" + chunk + "/meta.json\"", "\"packed/" + chunk + ".sog\"");
+    }
+    (void)folder.write(name + "/lod-meta.json", meta);
+}
+
+}  // namespace
+
+TEST_CASE("chunks and the environment may be bundles") {
+    const Folder folder;
+    const std::string source = writeStreamed(folder, "scene", makeLodMeta());
+    const Scene fine = loadLevel(source, 0), coarse = loadLevel(source, 1);
+    for (const std::vector<std::string>& chunks : {std::vector<std::string>{"a"}, {"env"}, {"a", "b", "c", "env"}}) {
+        (void)writeStreamed(folder, "scene", makeLodMeta());
+        bundleChunks(folder, "scene", chunks);
+        LoadNotes notes;
+        checkSameScene(loadLevel(source, 0, &notes), fine);
+        CHECK(notes.environment_splats == 8);
+        checkSameScene(loadLevel(source, 1), coarse);
+    }
+    std::filesystem::remove(source + "/packed/b.sog");
+    std::filesystem::create_symlink("a.sog", source + "/packed/b.sog");
+    CHECK(contains(loadError(source), "b.sog is a link to a chunk that is named already"));
+    std::filesystem::remove(source + "/packed/b.sog");
+    (void)folder.write("scene/packed/b.sog", "no archive");
+    CHECK(contains(loadError(source), "packed/b.sog: not a whole zip archive"));
+}
+
+TEST_CASE("a scene may have more bundles than a program may have open files") {
+    constexpr int kChunks = 100;
+    const Folder folder;
+    std::string names, leaves;
+    for (int i = 0; i < kChunks; ++i) {
+        (void)folder.write(fmt::format("{}.sog", i), makeZip(makeChunk(2)));
+        names += fmt::format("{}\"{}.sog\"", i == 0 ? "" : ",", i);
+        leaves += fmt::format(R"({}{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"lods":{{"0":{{"file":{},"offset":0,"count":8}}}}}})",
+                              i == 0 ? "" : ",", i);
+    }
+    (void)folder.write(
+        "lod-meta.json",
+        fmt::format(R"({{"lodLevels":1,"filenames":[{}],"tree":{{"bound":{{"min":[0,0,0],"max":[1,1,1]}},"children":[{}]}}}})", names,
+                    leaves));
+    rlimit before{};
+    REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
+    const rlimit few{64, before.rlim_max};
+    REQUIRE(setrlimit(RLIMIT_NOFILE, &few) == 0);
+    const std::string message = loadError(folder.file("."));
+    REQUIRE(setrlimit(RLIMIT_NOFILE, &before) == 0);
+    CHECK(message == "");
+    CHECK(loadScene(folder.file(".")).size() == 8 * kChunks);
 }
 
 TEST_CASE("a leaf without the level has no splats there") {

@@ -27,7 +27,8 @@ std::string readChunkPath(const JsonNode& node) {
     const bool within = path.is_relative() && text.find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: names \"{}\", expected a path within the folder of this file", node.place(), text);
-    check(path.filename() == "meta.json", "{}: names \"{}\", expected the meta.json of a chunk", node.place(), text);
+    check(path.filename() == "meta.json" || path.extension() == ".sog", "{}: names \"{}\", expected the meta.json or the .sog of a chunk",
+          node.place(), text);
     return path.lexically_normal().string();
 }
 

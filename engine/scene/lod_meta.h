@@ -20,7 +20,7 @@ struct LodLevel {
 };
 
 struct LodMeta {
-    std::vector<std::string> files;  // the meta.json of each chunk, relative to the folder of lod-meta.json and within it
+    std::vector<std::string> files;  // the meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it
     std::string environment;         // likewise, of splats that belong to every level; empty: none
     std::vector<LodLevel> levels;    // at least one
     std::uint64_t leaves = 0;

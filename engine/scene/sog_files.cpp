@@ -4,6 +4,8 @@
 #include "engine/error.h"
 
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 #ifdef BINOSPLAT_OPENIMAGEIO
 #include <zip.h>
@@ -64,32 +66,15 @@ constexpr zip_uint16_t kFirstDosDate = 1 << 5 | 1;  // 1 January 1980
 
 class BundleFiles final : public SogFiles {
 public:
-    BundleFiles(std::string path, std::uint64_t size_bytes) : path_(std::move(path)), size_bytes_(size_bytes) {
-        int code = 0;
-        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
-        if (archive_ == nullptr) {
-            zip_error_t error;
-            zip_error_init_with_code(&error, code);
-            const std::string reason = zip_error_strerror(&error);
-            zip_error_fini(&error);
-            fail("{}: not a whole zip archive ({}), expected a .sog bundle", path_, reason);
-        }
-        // Some archives hold the folder, not its files: all are looked for where meta.json is.
-        const zip_int64_t meta = zip_name_locate(archive_.get(), "meta.json", ZIP_FL_NODIR);
-        check(meta >= 0, "{}: a zip archive without a meta.json, expected a .sog bundle", path_);
-        const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(meta), 0);
-        check(name != nullptr, "{}: meta.json: its name cannot be read", path_);
-        prefix_ = name;
-        prefix_.resize(prefix_.size() - std::string_view("meta.json").size());
-    }
+    BundleFiles(std::string path, std::uint64_t size_bytes) : path_(std::move(path)), size_bytes_(size_bytes) { findPrefix(); }
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
         const zip_stat_t entry = find(name);
         // Pictures are compressed already and meta.json is text: what grows a hundredfold is there to fill the memory.
         const std::uint64_t bound = std::min(max_bytes, 100 * size_bytes_);
         check(entry.size <= bound, "{}: is {} bytes long, expected at most {}", place(name), entry.size, bound);
-        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive_.get(), entry.index, 0));
-        check(opened != nullptr, "{}: cannot be read ({})", place(name), zip_strerror(archive_.get()));
+        const std::unique_ptr<zip_file_t, EntryCloser> opened(zip_fopen_index(archive(), entry.index, 0));
+        check(opened != nullptr, "{}: cannot be read ({})", place(name), zip_strerror(archive()));
         std::vector<std::byte> bytes(entry.size);
         std::uint64_t done = 0;
         while (done < entry.size) {
@@ -104,17 +89,46 @@ public:
         return bytes;
     }
     std::uint64_t sizeBytes(const std::string& name) const override { return find(name).size; }
+    void close() override { archive_.reset(); }
     std::string place(const std::string& name) const override { return path_ + ": " + prefix_ + name; }
 
 private:
+    zip_t* archive() const {
+        if (archive_ != nullptr) { return archive_.get(); }
+        int code = 0;
+        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
+        if (archive_ == nullptr) {
+            zip_error_t error;
+            zip_error_init_with_code(&error, code);
+            const std::string reason = zip_error_strerror(&error);
+            zip_error_fini(&error);
+            fail("{}: not a whole zip archive ({}), expected a .sog bundle", path_, reason);
+        }
+        return archive_.get();
+    }
+
+    // Some archives hold the folder, not its files: all are looked for where meta.json is, and that is the one with the shortest path.
+    void findPrefix() {
+        constexpr std::string_view kMeta = "meta.json";
+        std::optional<std::string> found;
+        for (zip_int64_t i = 0; i < zip_get_num_entries(archive(), 0); ++i) {
+            const char* text = zip_get_name(archive(), static_cast<zip_uint64_t>(i), 0);
+            const std::string_view name = text != nullptr ? text : "";
+            const bool is_meta = name.ends_with(kMeta) && (name.size() == kMeta.size() || name[name.size() - kMeta.size() - 1] == '/');
+            if (is_meta && (!found || name.size() < found->size())) { found = name; }
+        }
+        check(found.has_value(), "{}: a zip archive without a meta.json, expected a .sog bundle", path_);
+        prefix_ = found->substr(0, found->size() - kMeta.size());
+    }
+
     // Where an entry is and how long it says it is.
     zip_stat_t find(const std::string& name) const {
         requirePlainName(place("meta.json"), name);
-        const zip_int64_t index = zip_name_locate(archive_.get(), (prefix_ + name).c_str(), 0);
+        const zip_int64_t index = zip_name_locate(archive(), (prefix_ + name).c_str(), 0);
         check(index >= 0, "{}: not in the archive", place(name));
         zip_stat_t entry;
         zip_stat_init(&entry);
-        check(zip_stat_index(archive_.get(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
+        check(zip_stat_index(archive(), static_cast<zip_uint64_t>(index), 0, &entry) == 0 && (entry.valid & ZIP_STAT_SIZE) != 0,
               "{}: its size cannot be read", place(name));
         entry.index = static_cast<zip_uint64_t>(index);
         return entry;
@@ -122,7 +136,7 @@ private:
 
     std::string path_, prefix_;
     std::uint64_t size_bytes_;
-    std::unique_ptr<zip_t, ArchiveCloser> archive_;
+    mutable std::unique_ptr<zip_t, ArchiveCloser> archive_;
 };
 
 #endif

@@ -17,6 +17,8 @@ public:
     [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
     // Of a file that could be read. Throws Error as `read` does.
     [[nodiscard]] virtual std::uint64_t sizeBytes(const std::string& name) const = 0;
+    // Gives back what is held open between reads: a scene may have thousands of chunks.
+    virtual void close() {}
     // How messages call a file: path and name.
     [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
 };

@@ -153,9 +153,14 @@ void SogSplats::requirePlausibleCount() const {
     if (meta_.palette) { total_bytes += files_->sizeBytes(meta_.palette->centroids_file) + files_->sizeBytes(meta_.palette->labels_file); }
     check(count() <= mostPixels(total_bytes), "{}: count: is {}, expected fewer than 256 for each of the {} bytes of its pictures",
           files_->place("meta.json"), count(), total_bytes);
+    files_->close();
 }
 
-SogPictures SogSplats::decode() { return decodePictures(*files_, meta_); }
+SogPictures SogSplats::decode() {
+    SogPictures pictures = decodePictures(*files_, meta_);
+    files_->close();
+    return pictures;
+}
 
 void SogSplats::append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder,
                        const Progress& progress) const {

@@ -63,7 +63,8 @@ public:
               "{}: {} is a link to {}, expected a place within {}", place, file.string(), real.string(), folder.string());
         check(opened_.insert(real).second, "{}: {} is a link to a chunk that is named already, expected each chunk once", place,
               file.string());
-        SogSplats splats(openSogFolder(file.parent_path().string()));
+        const bool is_bundle = file.extension() == ".sog";
+        SogSplats splats(is_bundle ? openSogBundle(InputFile(file.string())) : openSogFolder(file.parent_path().string()));
         splats.requirePlausibleCount();
         return splats;
     }

@@ -1,4 +1,5 @@
-// Streamed SOG scenes: a lod-meta.json beside folders that are SOG scenes themselves, in levels of detail. One level is read, whole.
+// Streamed SOG scenes: a lod-meta.json beside folders or bundles that are SOG scenes themselves, in levels of detail. One level is read,
+// whole.
 #pragma once
 
 #include "engine/scene/input_file.h"
