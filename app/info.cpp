@@ -3,8 +3,13 @@
 #include "app/load.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/describe.h"
+#include "engine/scene/survey.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace binosplat {
 
@@ -25,6 +30,51 @@ std::string nameKind(const Scene& scene, const LoadNotes& notes) {
                             : scene.antialiased   ? "drawn as 3D Gaussians, antialiased"
                                                   : "drawn as 3D Gaussians";
     return fmt::format("3DGS: {}; the median splat is {:.3g} times as thick as its second axis", how, notes.median_flatness);
+}
+
+double mebibytes(std::uint64_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
+
+void printOrigin(const Scene& scene, const LoadNotes& notes) {
+    printRow("axes", "{}",
+             notes.axes.empty() ? "the file does not say; taken as a training's: x right, y down, z front; right-handed" : notes.axes);
+    printRow("colour space", "{}",
+             !notes.colour_space.empty() ? notes.colour_space : "the file does not say; taken as a training's: display-encoded (sRGB)");
+    if (scene.is_linear) { printRow("", "blended as light, encoded at the end"); }
+}
+
+void printSurvey(const Scene& scene, const SceneSurvey& survey) {
+    const auto share = [&](const char* name, std::uint64_t splats, const std::string& what) {
+        printRow(name, "{:>6.2f} %  {} splats: {}",
+                 100.0 * static_cast<double>(splats) / static_cast<double>(std::max<std::size_t>(scene.size(), 1)), splats, what);
+    };
+    printRow("size", "{:.4g}: the longest side of the box with the middle 90 % of the centres along each axis", survey.size);
+    share("made of", survey.transparent, "opacity under 1/255, never seen");
+    share("", survey.opaque, "over 99 % opaque");
+    share("", survey.thin,
+          fmt::format("thinner than a millimetre ({}, one standard deviation; a unit is a metre)",
+                      scene.isGaussian3d() ? "the shortest axis" : "the shorter axis of a disc"));
+    share("", survey.large, "larger than a tenth of the size");
+    share("", survey.floaters,
+          fmt::format("floaters: seen, but alone (fewer than {} splats within one to two fiftieths of the size)", kFewNeighbours));
+}
+
+// What the scene takes on the GPU, and what would take less.
+void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSurvey& survey) {
+    const auto bytesOf = [&](std::uint64_t splats, int sh_degree) { return splats * deviceBytesPerSplat(sh_degree, scene.isGaussian3d()); };
+    const std::uint64_t bytes = bytesOf(scene.size(), scene.sh_degree);
+    printRow("", "{} bytes ({:.1f} MiB) on the GPU, {} a splat; a frame's own lists come on top", bytes, mebibytes(bytes),
+             deviceBytesPerSplat(scene.sh_degree, scene.isGaussian3d()));
+    std::vector<std::string> ways;
+    if (notes.level + 1 < notes.level_splats.size()) {
+        const std::uint64_t splats = notes.level_splats[notes.level + 1] + notes.environment_splats;
+        ways.push_back(fmt::format("--lod {}: {:.1f} MiB", notes.level + 1, mebibytes(bytesOf(splats, scene.sh_degree))));
+    }
+    if (scene.sh_degree > 0) { ways.push_back(fmt::format("--sh-degree 0: {:.1f} MiB", mebibytes(bytesOf(scene.size(), 0)))); }
+    if (scene.size() > 1) {
+        ways.push_back(fmt::format("convert --crop={:.3g},{:.3g},{:.3g},{:.3g} keeps half of the splats", survey.middle.x, survey.middle.y,
+                                   survey.middle.z, survey.half_radius));
+    }
+    for (std::size_t i = 0; i < ways.size(); ++i) { printRow(i == 0 ? "  if too much" : "", "{}", ways[i]); }
 }
 
 }  // namespace
@@ -50,16 +100,15 @@ void runInfo(const InfoOptions& options) {
         printRow("", "band {}: {} splats", band, summary.splats_using_band[static_cast<std::size_t>(band)]);
     }
     printRow("kind", "{}", nameKind(scene, notes));
-    printRow("invisible splats", "{} (opacity under 1/255)", summary.invisible_splats);
+    printOrigin(scene, notes);
+    const SceneSurvey survey = surveyScene(scene);
+    printSurvey(scene, survey);
     printRow("quantiles", "0, 5, 50, 95, 100 % of the splats");
     printQuantiles("  opacity", summary.opacity_quantiles);
     printQuantiles("  scale", summary.scale_quantiles);
     printQuantiles("  aspect", summary.aspect_quantiles);
-    printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes,
-             static_cast<double>(summary.host_bytes) / (1024.0 * 1024.0));
-    const std::uint64_t device_bytes = summary.splats * deviceBytesPerSplat(summary.sh_degree, summary.gaussian_3d);
-    printRow("", "{} bytes ({:.1f} MiB) on the GPU, {} a splat", device_bytes, static_cast<double>(device_bytes) / (1024.0 * 1024.0),
-             deviceBytesPerSplat(summary.sh_degree, summary.gaussian_3d));
+    printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes, mebibytes(summary.host_bytes));
+    printDeviceMemory(scene, notes, survey);
     for (const std::string& phrase : summary.left_out) { printRow("left out", "{}", phrase); }
     for (const std::string& line : notes.lines) { printRow("note", "{}", line); }
 }

@@ -196,6 +196,8 @@ Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNot
             Scene scene = makeBuiltin(source, builtin_splats, progress);
             met.splats_in_file = scene.size();
             met.sh_degree_in_file = scene.sh_degree;
+            met.axes = "x right, y down, z front; right-handed";
+            met.colour_space = "display-encoded (sRGB)";
             return scene;
         }
         Source opened{source, std::filesystem::is_directory(source, unreadable) ? nullptr : std::make_unique<InputFile>(source), level};

@@ -46,6 +46,8 @@ struct LoadNotes {
     bool sh_limited = false;                  // or were left out as asked
     bool three_scales = false;                // a 3DGS scene
     double median_flatness = 0.0;             // 3DGS only: median of shortest / second shortest axis
+    std::string axes;                         // where x, y and z lead and which hand they are of, as the file says; empty: it does not
+    std::string colour_space;                 // as the file says; empty: it does not
     std::vector<std::uint64_t> level_splats;  // of each level of detail, the finest first; empty: a scene without levels
     std::uint32_t level = 0;                  // the one that was loaded
     std::uint64_t environment_splats = 0;     // loaded with every level

@@ -218,14 +218,15 @@ void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& at
 }
 
 // What the file says of its axes, or what files mean that say nothing.
-SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, std::vector<std::string>& lines) {
+SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes) {
     const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
-    if (!said || *said == 0) { return SpzAxes(); }
-    if (*said > SpzAxes::kLast) {
-        lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said, SpzAxes().describe()));
-        return SpzAxes();
+    if (said && *said > SpzAxes::kLast) {
+        notes.lines.push_back(fmt::format("{}: names axes {}, which are not known; taken as {}", file, *said, SpzAxes().describe()));
     }
-    return SpzAxes(*said);
+    const bool known = said && *said > 0 && *said <= SpzAxes::kLast;
+    const SpzAxes axes(known ? *said : SpzAxes::kUsual);
+    notes.axes = axes.describe() + (known ? " (named by the file)" : " (SPZ's own: the file names none)");
+    return axes;
 }
 
 }  // namespace
@@ -254,8 +255,8 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     } else {
         attributes = readStream(file, read, header, progress);
     }
-    std::vector<std::string> lines;
-    const SpzAxes axes = chooseAxes(file.name(), header, attributes, lines);
+    LoadNotes of_axes;
+    const SpzAxes axes = chooseAxes(file.name(), header, attributes, of_axes);
 
     SceneBuilder builder(file.name(), header.splats, header.sh_degree, true);
     StoredBlock block;
@@ -269,7 +270,8 @@ Scene readSpz(InputFile& file, LoadNotes& notes, const Progress& progress) {
     }
     if (progress) { progress(1.0); }
     Scene scene = builder.finish(notes);
-    notes.lines.insert(notes.lines.end(), lines.begin(), lines.end());
+    notes.axes = of_axes.axes;
+    notes.lines.insert(notes.lines.end(), of_axes.lines.begin(), of_axes.lines.end());
     scene.antialiased = header.antialiased;
     if (header.sh_bytes > 45) { notes.lines.push_back(fmt::format("{}: SH of degree 4 were left out, degree 3 is kept", file.name())); }
     return scene;
