@@ -45,8 +45,11 @@ std::multimap<std::string, std::string> makeSeeds() {
     container.version = 4;
     seeds.emplace("scene", makeSpzContainer(container));
     container.flags = 2;
-    seeds.emplace("scene", makeSpzContainer(container, spzRecord(7, "another's") + spzAxesRecord(10)));
-    seeds.emplace("scene", makeSpz(2).bytes());
+    seeds.emplace("spz_bare", makeSpzContainer(container, spzRecord(7, "another's") + spzAxesRecord(10)).substr(4));
+    seeds.emplace("spz_bare", makeSpz(2).bytes().substr(4));
+    seeds.emplace("convert", makeSplatFile());
+    seeds.emplace("convert", makePly(9, true).bytes());
+    seeds.emplace("convert", makeSpz(3).bytes());
 #ifdef BINOSPLAT_GLTF
     GltfText gltf = makeGltf(9);
     gltf.nodes = R"([{"children":[1]},{"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[1,2,-3],"translation":[1,2,3]}])";

@@ -1,4 +1,5 @@
 // Broken SOG scenes: each loads or is refused in one line.
+#include "engine/scene/sog.h"
 #include "tests/hostile.h"
 #include "tests/streamed_scenes.h"
 
@@ -88,6 +89,39 @@ TEST_CASE("broken pictures") {
                  [&](const std::string& what, const std::string& head) { attempt("head, " + what, head + bytes.substr(60)); });
         spliceBytes(bytes, 300, attempt);
     }
+}
+
+TEST_CASE("broken bundles as convert writes them, alone and as chunks") {
+    SogAttempts attempts("written bundle", 40);
+    const SogText text = makeSog();
+    const Scene scene = loadScene(writeSogFolder(attempts.folder, "scene", text));
+    const std::string path = attempts.folder.file("a.sog");
+    writeSog(scene, path);
+    std::ifstream file(path, std::ios::binary);
+    const std::string good{std::istreambuf_iterator<char>(file), {}};
+    const Attempt attempt = [&](const std::string& what, const std::string& bytes) {
+        attempts.load(what, attempts.folder.write("broken.sog", bytes));
+    };
+    for (std::size_t length = 0; length < good.size(); length += 13 * kStep) {
+        attempt(fmt::format("the first {} bytes", length), good.substr(0, length));
+    }
+    flipBits(good, 600, attempt);
+    spliceBytes(good, 600, attempt);
+
+    std::string meta = makeLodMeta();
+    for (const char* chunk : {"a", "b", "c", "env"}) {
+        meta = replaced(meta, fmt::format("\"{}/meta.json\"", chunk), fmt::format("\"{}.sog\"", chunk));
+    }
+    std::filesystem::create_directories(attempts.folder.file("streamed"));
+    for (const char* chunk : {"a", "b", "c", "env"}) { (void)attempts.folder.write(fmt::format("streamed/{}.sog", chunk), good); }
+    const std::string source = attempts.folder.write("streamed/lod-meta.json", meta);
+    REQUIRE(loadScene(source).size() == 24);
+    const Attempt as_chunk = [&](const std::string& what, const std::string& bytes) {
+        (void)attempts.folder.write("streamed/b.sog", bytes);
+        attempts.load("a chunk, " + what, source);
+    };
+    flipBits(good, 300, as_chunk);
+    spliceBytes(good, 300, as_chunk);
 }
 
 TEST_CASE("broken bundles") {

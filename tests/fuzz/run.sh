@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-60}
 shift || true
 targets=("$@")
-((${#targets[@]} > 0)) || targets=(scene ply spz ksplat gltf sog_meta lod_meta sog_bundle settings headset cameras motion script)
+((${#targets[@]} > 0)) || targets=(scene ply spz spz_bare convert ksplat gltf sog_meta lod_meta sog_bundle settings headset cameras motion script)
 
 [[ -e build/fuzz/build.ninja ]] ||
     cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON

@@ -2,9 +2,12 @@
 #include "tests/fuzz/targets.h"
 
 #include "engine/error.h"
+#include "engine/platform.h"
 #include "engine/scene/lod_meta.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_targets.h"
 #include "engine/scene/sog_meta.h"
+#include "engine/scene/survey.h"
 #include "engine/setup/camera_file.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/headset.h"
@@ -17,10 +20,12 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -75,6 +80,55 @@ void readSpz(Bytes input) {
     readScene(packed);
 }
 
+// Without gzip: versions 2 and 3, and the container of version 4.
+void readBareSpz(Bytes input) {
+    std::vector<std::uint8_t> file{'N', 'G', 'S', 'P'};
+    file.insert(file.end(), input.begin(), input.end());
+    readScene(file);
+}
+
+// A folder that goes away with its files.
+class WrittenFiles {
+public:
+    WrittenFiles() : path_(createFolder(std::filesystem::temp_directory_path(), "binosplat_fuzz")) {}
+    ~WrittenFiles() { std::filesystem::remove_all(path_); }
+    WrittenFiles(const WrittenFiles&) = delete;
+    WrittenFiles& operator=(const WrittenFiles&) = delete;
+    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+private:
+    std::filesystem::path path_;
+};
+
+bool isFinite(const Scene& scene) {
+    const auto finite = [](float value) { return std::isfinite(value); };
+    return std::all_of(scene.sh.begin(), scene.sh.end(), finite) && std::all_of(scene.opacities.begin(), scene.opacities.end(), finite) &&
+           std::all_of(scene.positions.begin(), scene.positions.end(),
+                       [&](const glm::vec3& p) { return finite(p.x) && finite(p.y) && finite(p.z); });
+}
+
+// What is read can be written in every format, and read again with as many splats.
+void convert(Bytes input) {
+    const Scene scene = loadScene(MemoryFile(input).path());
+    (void)surveyScene(scene);
+    const WrittenFiles files;
+    for (const char* name : {"a.ply", "a.spz", "a.sog"}) {
+        const SceneTarget& target = findSceneTarget(name);
+        try {
+            target.write(scene, files.file(name), {});
+        } catch (const Error&) {
+            if (std::filesystem::exists(files.file(name))) { std::abort(); }
+            continue;
+        }
+        if (target.describeLoss(scene).empty()) { std::abort(); }
+        const Scene back = loadScene(files.file(name));
+        if (back.size() != scene.size() || !isFinite(back)) {
+            std::fprintf(stderr, "%s: %zu splats of %zu\n", name, back.size(), scene.size());
+            std::abort();
+        }
+    }
+}
+
 void readSogMeta(Bytes input) { (void)parseSogMeta(std::as_bytes(input), "meta.json"); }
 void readLodMeta(Bytes input) {
     const LodMeta meta = parseLodMeta(std::as_bytes(input), "lod-meta.json");
@@ -118,6 +172,8 @@ constexpr auto kTargets = std::to_array<Target>({
     {"scene", readScene},
     {"ply", readPly},
     {"spz", readSpz},
+    {"spz_bare", readBareSpz},
+    {"convert", convert},
     {"ksplat", readScene},
 #ifdef BINOSPLAT_GLTF
     {"gltf", readScene},
