@@ -11,7 +11,7 @@ targets=("$@")
 ((${#targets[@]} > 0)) || targets=(scene ply spz spz_bare convert ksplat gltf sog_meta lod_meta sog_bundle settings headset cameras motion script)
 
 [[ -e build/fuzz/build.ninja ]] ||
-    cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON
+    cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo -DBINOSPLAT_FUZZ=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" --parallel 2
 
 mkdir -p build/fuzz/findings
