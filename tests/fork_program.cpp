@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <regex>
 
 namespace binosplat::test {
 namespace {
@@ -64,9 +65,22 @@ int runInFork(const std::string& arguments, const std::string& environment, cons
     return status;
 }
 
-// What the loaders of Vulkan load in every run, where it is there: to link LLVM alone takes as long as a small frame.
+// What the loaders of Vulkan and OpenXR load in every run, where it is there: to link LLVM alone takes as long as a small frame. Drivers
+// and layers are found as the loaders find them, by their manifests.
 bool loadAhead() {
-    for (const char* library : {"libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) { dlopen(library, RTLD_LAZY | RTLD_NODELETE); }
+    dlopen("libVkLayer_khronos_validation.so", RTLD_NOW | RTLD_NODELETE);
+    for (const char* folder :
+         {"/usr/share/vulkan/icd.d", "/usr/share/vulkan/implicit_layer.d", "/usr/share/openxr/1/api_layers/explicit.d"}) {
+        std::error_code missing;
+        for (const auto& manifest : std::filesystem::directory_iterator(folder, missing)) {
+            std::ifstream file(manifest.path());
+            const std::string text(std::istreambuf_iterator<char>(file), {});
+            std::smatch path;
+            if (std::regex_search(text, path, std::regex(R"-("library_path"\s*:\s*"([^"]+)")-"))) {
+                dlopen(path[1].str().c_str(), RTLD_NOW | RTLD_NODELETE);
+            }
+        }
+    }
     return true;
 }
 
