@@ -337,7 +337,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
     const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
     const auto click = [&](const std::string& name, const std::string& folder) {
-        const ViewRun run = runView(work, name, script, kWall + " --mode shared --shaders '" + folder + "'");
+        const ViewRun run = runView(work, name, script, kScene + " --shaders '" + folder + "'");
         checkClean(run);
         return run;
     };
@@ -368,18 +368,18 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     CHECK_FALSE(sameAfterwards(black));
     CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/sort/cull.comp is not there"));
     // A pipe would keep the compiler, and the wearer, waiting.
-    REQUIRE(work.runCommand("rm broken/present/present.comp && mkfifo broken/present/present.comp").exit_code == 0);
-    CHECK(says(click("pipe", "broken"), "shaders stay as they were: broken/present/present.comp is not a file"));
+    REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull.comp").exit_code == 0);
+    CHECK(says(click("pipe-run", "pipe"), "shaders stay as they were: pipe/sort/cull.comp is not a file"));
 }
 
 TEST_CASE("nobody reloads shaders who was not told where they are") {
     const Workplace work;
     const Panel panel = startPanel(work);
     const std::string script = kBlind + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
-    const ViewRun run = runView(work, "none", script, kWall + " --mode shared", kValidated + " BINOSPLAT_SHADERS=");
+    const ViewRun run = runView(work, "none", script, kScene, kValidated + " BINOSPLAT_SHADERS=");
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
-    const ViewRun told = runView(work, "told", script, kWall + " --mode shared", kValidated + " BINOSPLAT_SHADERS=nowhere");
+    const ViewRun told = runView(work, "told", script, kScene, kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK(says(told, "shaders stay as they were: nowhere/sort/cull.comp is not there"));
 }
 
