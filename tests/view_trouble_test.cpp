@@ -13,10 +13,9 @@ namespace {
 
 const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
 
-const std::string kBothEyes = "builtin:slanted-wall --load-first --mode shared";
+const std::string kOneEye = "builtin:one-splat --load-first --mode mono", kBothEyes = "builtin:one-splat --load-first --mode shared";
 
-ViewRun runTrouble(const Workplace& work, const std::string& lines,
-                   const std::string& arguments = "builtin:slanted-wall --load-first --mode mono") {
+ViewRun runTrouble(const Workplace& work, const std::string& lines, const std::string& arguments = kOneEye) {
     CAPTURE(lines);
     // Without the end that the script brings about, the frames would.
     const ViewRun run = runView(work, "trouble", kSmall + lines, arguments + " --frames 200");
@@ -50,7 +49,7 @@ TEST_CASE("sessions that are lost again and again before they show anything are 
     const Workplace work;
     std::string script = kSmall;
     for (int i = 0; i < 12; ++i) { script += fmt::format("at {} lose-session\n", 0.001 + 0.015 * i); }
-    const ViewRun run = runView(work, "again", script, "builtin:slanted-wall --load-first --mode mono --frames 200", "");
+    const ViewRun run = runView(work, "again", script, kOneEye + " --frames 200", "");
     CHECK(run.outcome.exit_code == 3);
     CHECK(run.outcome.errors.find("times in a row") != std::string::npos);
     CHECK(std::count(run.outcome.errors.begin(), run.outcome.errors.end(), '\n') == 1);
@@ -61,7 +60,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
     std::ofstream(work.path / "wishes.toml") << "[view]\nrefresh-rate = 72\neye-tracking = true\n";
     // The hand points at the panel, which pulses; the fifth action space is the gaze's, the tenth frame has layers.
     const std::string script = kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
-    const std::string arguments = "builtin:slanted-wall --load-first --mode mono --frames 200 --config wishes.toml";
+    const std::string arguments = kOneEye + " --frames 200 --config wishes.toml";
     const auto runFaulty = [&](const std::string& name, const std::string& faults) {
         return runView(work, name, script, arguments,
                        "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
@@ -107,8 +106,8 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
 TEST_CASE("a lost runtime gives one line and exit code 3") {
     const Workplace work;
     for (const char* time : {"0", "0.02", "0.2"}) {
-        const ViewRun run = runView(work, "gone", kSmall + fmt::format("at {} lose-instance\n", time),
-                                    "builtin:slanted-wall --load-first --mode mono --frames 200", "DISPLAY= BINOSPLAT_VALIDATION=1");
+        const ViewRun run = runView(work, "gone", kSmall + fmt::format("at {} lose-instance\n", time), kOneEye + " --frames 200",
+                                    "DISPLAY= BINOSPLAT_VALIDATION=1");
         INFO(run.outcome.errors);
         CHECK(run.outcome.exit_code == 3);
         CHECK(run.outcome.errors == "binosplat: the OpenXR runtime is going away\n");
@@ -124,12 +123,10 @@ TEST_CASE("a runtime that ends whoever asks it for the mask is bearable without"
     const Workplace work;
     std::ofstream(work.path / "no-mask.toml") << "[view]\nvisibility-mask = false\n";
     const std::string lines = "visibility-mask broken\nat 0.1 exit\n";
-    runTrouble(work, lines, "builtin:slanted-wall --load-first --mode mono --config no-mask.toml");
-    checkClean(runView(work, "environment", kSmall + lines, "builtin:slanted-wall --load-first --mode mono --frames 200",
-                       kValidated + " BINOSPLAT_VISIBILITY_MASK=0"));
+    runTrouble(work, lines, kOneEye + " --config no-mask.toml");
+    checkClean(runView(work, "environment", kSmall + lines, kOneEye + " --frames 200", kValidated + " BINOSPLAT_VISIBILITY_MASK=0"));
     // Which is what it would be with it.
-    CHECK(runView(work, "with", kSmall + lines, "builtin:slanted-wall --load-first --mode mono --frames 200", "2>/dev/null")
-              .outcome.exit_code != 0);
+    CHECK(runView(work, "with", kSmall + lines, kOneEye + " --frames 200", "2>/dev/null").outcome.exit_code != 0);
 }
 
 TEST_CASE("a headset that is not there yet is waited for, with one line") {
@@ -286,7 +283,7 @@ TEST_CASE("it is hidden, loses the input, and comes back") {
 TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
     const Workplace work;
     // 13 x 13 tiles of which the corners lie outside the lens; wider on one side from 0.12 s on, with another mask.
-    const std::string script = "rate 90\nsize 200 200\nframes every 4\n", end = "at 0.12 eye left angles -45 60 45 -45\nat 0.25 exit\n";
+    const std::string script = "rate 90\nsize 200 200\nframes every 12\n", end = "at 0.12 eye left angles -45 60 45 -45\nat 0.18 exit\n";
     for (const std::string mode : {"shared", "predicted", "mono"}) {
         CAPTURE(mode);
         const std::string arguments = "builtin:slanted-wall --load-first --hide-panel --hide-hands --mode " + mode;

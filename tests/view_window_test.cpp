@@ -318,7 +318,8 @@ public:
         : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
           connection_(screen_),
           program_((connection_.setDpi(dpi), work.path),
-                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first " + options}, screen_.name) {
+                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono " + options},
+                   screen_.name) {
         // While it loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
         // The keys go to the window that the mouse is in.
