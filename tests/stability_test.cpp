@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 TEST_SUITE_BEGIN("stability");
@@ -17,15 +18,30 @@ using test::Gpu;
 
 namespace {
 
-std::vector<Image> renderPair(const Context& context, const Stage& stage, Mode mode) {
-    const GpuScene scene(context, stage.scene);
-    StereoFrame frame(context, scene);
-    FrameSettings settings;
-    settings.mode = mode;
-    settings.near = stage.near;
-    frame.render(stage.eyes, settings);
-    return {frame.readPicture(kLeft), frame.readPicture(kRight)};
-}
+// Pictures of one stage after another, by kernels that are compiled once.
+class Pairs {
+public:
+    explicit Pairs(const Context& context) : context_(context) {}
+
+    std::vector<Image> render(const Stage& stage, Mode mode) {
+        scene_.emplace(context_, stage.scene);
+        if (frame_) {
+            frame_->show(*scene_);
+        } else {
+            frame_.emplace(context_, *scene_);
+        }
+        FrameSettings settings;
+        settings.mode = mode;
+        settings.near = stage.near;
+        frame_->render(stage.eyes, settings);
+        return {frame_->readPicture(kLeft), frame_->readPicture(kRight)};
+    }
+
+private:
+    const Context& context_;
+    std::optional<GpuScene> scene_;
+    std::optional<StereoFrame> frame_;
+};
 
 // The first `count` splats of a scene without SH bands.
 Stage keepFirst(Stage stage, std::size_t count) {
@@ -71,13 +87,13 @@ TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes se
 }
 
 TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is, of discs and of 3D Gaussians") {
+    Pairs pairs(context());
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const bool gaussians : {false, true}) {
             const Stage stage = gaussians ? makeBrokenGaussians(broken) : makeBrokenAttributes(broken);
             const std::size_t count = stage.scene.size(), broken_splats = 3 + 3 + 4 + 2 + 1 + (gaussians ? 1 : 0);
             for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-                const auto with = renderPair(context(), stage, mode),
-                           without = renderPair(context(), keepFirst(stage, count - broken_splats), mode);
+                const auto with = pairs.render(stage, mode), without = pairs.render(keepFirst(stage, count - broken_splats), mode);
                 CHECK(with[kLeft].values == without[kLeft].values);
                 CHECK(with[kRight].values == without[kRight].values);
             }
@@ -86,12 +102,13 @@ TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever
 }
 
 TEST_CASE_FIXTURE(Gpu, "what dimming leaves nothing of changes no byte") {
+    Pairs pairs(context());
     // Points and lines, after the wall and the clutter.
     for (const double flat_axes : {2.0, 3.0}) {
         const Stage stage = asDimmed(makeFlatAxes(flat_axes));
         const std::size_t room = stage.scene.size() - 60;
         for (const Mode mode : {Mode::kShared, Mode::kPredicted}) {
-            const auto with = renderPair(context(), stage, mode), without = renderPair(context(), keepFirst(stage, room), mode);
+            const auto with = pairs.render(stage, mode), without = pairs.render(keepFirst(stage, room), mode);
             CHECK(with[kLeft].values == without[kLeft].values);
             CHECK(with[kRight].values == without[kRight].values);
         }
@@ -99,9 +116,10 @@ TEST_CASE_FIXTURE(Gpu, "what dimming leaves nothing of changes no byte") {
 }
 
 TEST_CASE_FIXTURE(Gpu, "rotations of any length are those of length one") {
-    const auto unit = renderPair(context(), makeQuaternions(1.0), Mode::kShared);
+    Pairs pairs(context());
+    const auto unit = pairs.render(makeQuaternions(1.0), Mode::kShared);
     for (const double length : {std::ldexp(1.0, -60), 0.25, std::ldexp(1.0, 60)}) {  // powers of two round nothing
-        CHECK(renderPair(context(), makeQuaternions(length), Mode::kShared)[kLeft].values == unit[kLeft].values);
+        CHECK(pairs.render(makeQuaternions(length), Mode::kShared)[kLeft].values == unit[kLeft].values);
     }
 }
 
