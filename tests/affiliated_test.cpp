@@ -260,9 +260,12 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the other eye's 
     for (const FrameSettings& settings : makeReprojecting()) {
         CAPTURE(static_cast<int>(settings.mode));
         CAPTURE(settings.per_eye);
-        StereoFrame roomy(context(), scene, {.first_capacity = {20000, 1u << 20}, .threads_per_cell = 0});
-        StereoFrame tight(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
-        const AffiliatedFrame expected = makeAffiliated(roomy, eyes, settings), grown = makeAffiliated(tight, eyes, settings);
+        const auto makeFrom = [&](const FrameCapacity& first) {
+            StereoFrame frame(context(), scene, {.first_capacity = first, .threads_per_cell = 0});
+            const test::KeptKernels kept(context(), frame);
+            return makeAffiliated(frame, eyes, settings);
+        };
+        const AffiliatedFrame expected = makeFrom({20000, 1u << 20}), grown = makeFrom({1, 1});
         CHECK(grown.pictures[kLeft].values == expected.pictures[kLeft].values);
         CHECK(grown.pictures[kRight].values == expected.pictures[kRight].values);
         CHECK(grown.tile_kinds == expected.tile_kinds);
@@ -274,6 +277,7 @@ TEST_CASE_FIXTURE(Gpu, "a predicted frame of parallel eyes keeps to 36 commands 
     const ViewedScene view = viewAtelier({512, 512});
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
     FrameSettings settings = makeSettings(Mode::kPredicted);
     settings.keep_depth = false;
     for (const bool half_floats : {false, true}) {

@@ -44,9 +44,15 @@ TEST_CASE_FIXTURE(Gpu, "a frame that is not waited for is the one that is, byte 
     const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(static_cast<int>(mode));
-        StereoFrame waited(context(), scene), ahead(context(), scene);
-        for (int step = 0; step < 4; ++step) { ahead.renderAhead(eyesAt(view.eye, step), makeSettings(mode)); }
-        const std::array<Image, 2> pictures{ahead.readPicture(kLeft), ahead.readPicture(kRight)};
+        std::array<Image, 2> pictures;
+        {
+            StereoFrame ahead(context(), scene);
+            const test::KeptKernels kept(context(), ahead);
+            for (int step = 0; step < 4; ++step) { ahead.renderAhead(eyesAt(view.eye, step), makeSettings(mode)); }
+            pictures = {ahead.readPicture(kLeft), ahead.readPicture(kRight)};
+        }
+        StereoFrame waited(context(), scene);
+        const test::KeptKernels kept(context(), waited);
         // `predicted` looks at the frame before for whether moving pays.
         for (int step = 2; step < 4; ++step) { waited.render(eyesAt(view.eye, step), makeSettings(mode)); }
         for (const int eye : {kLeft, kRight}) { CHECK(pictures[static_cast<std::size_t>(eye)].values == waited.readPicture(eye).values); }
@@ -57,6 +63,7 @@ TEST_CASE_FIXTURE(Gpu, "what a frame says of itself comes two frames later, the 
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame waited(context(), scene), frame(context(), scene);
+    const test::KeptKernels kept_waited(context(), waited), kept(context(), frame);
     std::vector<std::uint64_t> visible;
     for (int step = 0; step < 6; ++step) {
         visible.push_back(count(waited.render(eyesAt(view.eye, step), makeSettings(Mode::kShared)), "splats_visible_left"));
@@ -98,6 +105,7 @@ TEST_CASE_FIXTURE(Gpu, "lists have room ahead of what eyes need, so that a view 
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    const test::KeptKernels kept(context(), frame);
     for (int step = 0; step < 30; ++step) {
         const auto result = frame.renderAhead(eyesAt(view.eye, step), makeSettings(Mode::kShared));
         if (step == 0) { CHECK(count(*result, "frames_done_again") == 1); }  // nothing was known yet
@@ -110,6 +118,7 @@ TEST_CASE_FIXTURE(Gpu, "after a jump a frame is waited for, and done again befor
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame waited(context(), scene), frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    const test::KeptKernels kept_waited(context(), waited), kept(context(), frame);
     // From a look away from everything to a look at it.
     Eye away = view.eye;
     away.world_from_camera.orientation = away.world_from_camera.orientation * glm::angleAxis(3.1, glm::dvec3(0, 1, 0));
@@ -159,7 +168,15 @@ TEST_CASE_FIXTURE(Gpu, "whatever lists have no room, a frame is done again once 
     away.world_from_camera.orientation = away.world_from_camera.orientation * glm::angleAxis(3.1, glm::dvec3(0, 1, 0));
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared, Mode::kReproject, Mode::kPaper, Mode::kPredicted}) {
         CAPTURE(nameOf(mode));
-        StereoFrame waited(context(), scene), frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+        std::array<Image, 2> expected;
+        {
+            StereoFrame waited(context(), scene);
+            const test::KeptKernels kept(context(), waited);
+            for (int step = 0; step < 2; ++step) { waited.render(eyesAt(view.eye, 0), makeSettings(mode)); }
+            expected = {waited.readPicture(kLeft), waited.readPicture(kRight)};
+        }
+        StereoFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+        const test::KeptKernels kept(context(), frame);
         std::uint64_t before = 0, short_before = 0;
         // The first frame, a jump to where there is nothing, and one back.
         for (const Eye& eye : {view.eye, away, view.eye}) {
@@ -175,8 +192,7 @@ TEST_CASE_FIXTURE(Gpu, "whatever lists have no room, a frame is done again once 
             CHECK(count(last, "frames_cut_short") == short_before);
             before = count(last, "frames_done_again");
         }
-        for (int step = 0; step < 2; ++step) { waited.render(eyesAt(view.eye, 0), makeSettings(mode)); }
-        for (const int eye : {kLeft, kRight}) { CHECK(frame.readPicture(eye).values == waited.readPicture(eye).values); }
+        for (const int eye : {kLeft, kRight}) { CHECK(frame.readPicture(eye).values == expected[static_cast<std::size_t>(eye)].values); }
     }
 }
 
@@ -185,6 +201,7 @@ TEST_CASE_FIXTURE(Gpu, "kernels that were made before change nothing in a pictur
     const GpuScene scene(context(), view.scene);
     for (const Mode mode : {Mode::kShared, Mode::kPaper, Mode::kPredicted}) {
         StereoFrame plain(context(), scene), ready(context(), scene);
+        const test::KeptKernels kept(context(), plain);
         Eye small = view.eye;
         small.size_px = {128, 16};
         ready.makeKernels(stereoPair(small, 0.063), makeSettings(mode));
@@ -199,6 +216,7 @@ TEST_CASE_FIXTURE(Gpu, "a frame that finds no room although its eyes did not jum
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);
     StereoFrame waited(context(), scene), frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0});
+    const test::KeptKernels kept_waited(context(), waited), kept(context(), frame);
     FrameSettings blind = makeSettings(Mode::kShared), seeing = makeSettings(Mode::kShared);
     blind.near = 1e4;
     for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, 0), blind); }
@@ -221,6 +239,7 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
     const std::uint64_t before = context().memoryUse().current_bytes;
     const GpuScene roomy_scene(context(), view.scene);
     StereoFrame roomy(context(), roomy_scene, small);
+    const test::KeptKernels kept(context(), roomy);
     roomy.render(eyesAt(view.eye, 0), blind);
     const std::uint64_t least = context().memoryUse().current_bytes - before;
     roomy.render(eyesAt(view.eye, 0), seeing);
@@ -302,8 +321,12 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
         frame.render(eyesAt(eye, 0), makeSettings(Mode::kPredicted));
         return frame.readPicture(kRight).values;
     };
-    StereoFrame alone(context(), scene), other_alone(context(), other_scene);
-    const auto expected = pictureOf(alone, view.eye), other_expected = pictureOf(other_alone, other_view.eye);
+    const auto pictureAlone = [&](const GpuScene& of, const Eye& eye) {
+        StereoFrame alone(context(), of);
+        const test::KeptKernels kept(context(), alone);
+        return pictureOf(alone, eye);
+    };
+    const auto expected = pictureAlone(scene, view.eye), other_expected = pictureAlone(other_scene, other_view.eye);
     auto before = std::make_unique<StereoFrame>(context(), other_scene);
     for (int step = 0; step < 2; ++step) { before->renderAhead(eyesAt(other_view.eye, step), makeSettings(Mode::kPredicted)); }
     StereoFrame frame(context(), scene);
