@@ -1,0 +1,24 @@
+// The error to expect of a pixel that is moved. For resample.
+
+// How uncertain a pixel's inverse depth is, as a variance: it blends several, and where its neighbours have others it may belong to these.
+float uncertaintyOf(uint row, uint x, uint width, Resolved resolved) {
+    const float own = kSpreadWeight * resolved.inverse_depth;
+    float step = 0;
+    [[unroll]] for (uint side = 0; side < 2; ++side) {
+        const uint beside = x + 2 * side - 1;  // beyond either end: no column
+        const uint arrival = beside < width ? arrivalAt(row, beside) : 0;
+        if (arrival != 0) { step = max(step, abs(inverseDepthOf(arrival) - resolved.inverse_depth)); }
+    }
+    return resolved.variance_share * (own * own) + step * step;
+}
+
+// The expected squared error of a hole's pixel, which repeats what lies `repeated_px` away: what is hidden differs from that as
+// much as what is seen equally far on the other side.
+float holeError(WarpView warp, vec2 source_px, int repeated_px) {
+    const ivec2 last = ivec2(warp.size_px) - 1;
+    const ivec2 source = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6))));
+    const ivec2 here = clamp(source, ivec2(0), last), beyond = clamp(source + ivec2(repeated_px, 0), ivec2(0), last);
+    const int width = last.x + 1;
+    const vec3 difference = warp.hole_error * (sourceAt(uint(beyond.y * width + beyond.x)).rgb - sourceAt(uint(here.y * width + here.x)).rgb);
+    return dot(difference, difference) + kLeastHoleError;
+}
