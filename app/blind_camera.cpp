@@ -11,8 +11,7 @@
 namespace binosplat {
 
 bool seesNothing(const FrameResult& frame) {
-    return std::ranges::none_of(frame.counters,
-                                [](const auto& counter) { return counter.first.starts_with("tile_pairs") && counter.second > 0; });
+    return std::ranges::none_of(frame.counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; });
 }
 
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions) {

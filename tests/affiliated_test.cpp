@@ -94,9 +94,9 @@ void checkSameForBothEyes(Gpu& gpu, const ViewedScene& view) {
             const AffiliatedFrame made = makeAffiliated(frame, stereoPair(view.eye, 0.0), settings);
             CHECK(made.pictures[kLeft].values == made.pictures[kRight].values);
             // Tiles that nothing is seen in are not worth moving.
-            CHECK(made.result.counters.at("pixels_covered") == countMoved(made));
+            CHECK(made.result.counters.named().at("pixels_covered") == countMoved(made));
             CHECK(std::ranges::all_of(made.tile_kinds, [](std::uint32_t kind) { return kind == 0 || kind == gpu::kTileCheap; }));
-            CHECK(made.result.counters.at("tiles_patched") == std::ranges::count(made.tile_kinds, gpu::kTileCheap));
+            CHECK(made.result.counters.named().at("tiles_patched") == std::ranges::count(made.tile_kinds, gpu::kTileCheap));
         }
     }
 }
@@ -165,7 +165,7 @@ TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, 
                     CHECK(flaws == Flaws{});
                     const double psnr_db = compare(made.pictures[1 - dominant], full).psnrDb();
                     CHECK(psnr_db >= (settings.mode == Mode::kReproject ? 15.0 : 20.0));
-                    const auto& counters = made.result.counters;
+                    const auto& counters = made.result.counters.named();
                     CHECK(counters.at("pixels_covered") + counters.at("pixels_gap") + counters.at("pixels_hole") == countMoved(made));
                 }
             }
@@ -192,10 +192,10 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are rendered again are those of the full rend
             CHECK(test::keepTiles(made.pictures[kRight], made.tile_kinds).values == test::keepTiles(full, made.tile_kinds).values);
             std::size_t tiles = 0;
             for (const std::uint32_t kind : made.tile_kinds) { tiles += kind != 0 ? 1 : 0; }
-            CHECK(tiles == made.result.counters.at("tiles_patched"));
+            CHECK(tiles == made.result.counters.named().at("tiles_patched"));
             CHECK(tiles > 0);
             if (mode == Mode::kPredicted) {
-                const auto& counters = made.result.counters;
+                const auto& counters = made.result.counters.named();
                 if (counters.at("tiles_edge") + counters.at("tiles_cheap") == 0) {
                     CHECK(static_cast<double>(counters.at("work_patched")) <= budget * static_cast<double>(counters.at("work_full")));
                 }
@@ -221,10 +221,10 @@ TEST_CASE_FIXTURE(Gpu,
         FrameSettings settings = makeLetterSettings();
         const AffiliatedFrame alone = makeAffiliated(frame, eyes, settings);
         CHECK(test::keepTiles(alone.pictures[kRight], alone.tile_kinds).values == test::keepTiles(full, alone.tile_kinds).values);
-        CHECK(alone.result.counters.at("splats_visible_left") != alone.result.counters.at("splats_visible_right"));
+        CHECK(alone.result.counters.named().at("splats_visible_left") != alone.result.counters.named().at("splats_visible_right"));
         settings.per_eye = false;
         const AffiliatedFrame together = makeAffiliated(frame, eyes, settings);
-        CHECK(together.result.counters.at("splats_visible_left") >= alone.result.counters.at("splats_visible_left"));
+        CHECK(together.result.counters.named().at("splats_visible_left") >= alone.result.counters.named().at("splats_visible_left"));
         CHECK(together.tile_kinds == alone.tile_kinds);
         CHECK(together.pictures[kRight].values == alone.pictures[kRight].values);
         CHECK(together.pictures[kLeft].values == alone.pictures[kLeft].values);
@@ -283,8 +283,8 @@ TEST_CASE_FIXTURE(Gpu, "a predicted frame of parallel eyes keeps to 36 commands 
     for (const bool half_floats : {false, true}) {
         settings.half_floats = half_floats;
         const FrameResult result = frame.render(stereoPair(view.eye, 0.063), settings);
-        CHECK(result.counters.at("tiles_patched") > 0);
-        CHECK(result.counters.at("commands") == 36);
+        CHECK(result.counters.named().at("tiles_patched") > 0);
+        CHECK(result.counters.named().at("commands") == 36);
         REQUIRE(result.stereo_bytes_per_pixel.back().first == "all");
         CHECK(result.stereo_bytes_per_pixel.back().second > 8.0);
         CHECK(result.stereo_bytes_per_pixel.back().second <= 48.0);

@@ -149,13 +149,14 @@ TEST_CASE_FIXTURE(
             }
             CHECK(lost_near == 0);
             CHECK(gained_far == 0);
-            MESSAGE(everywhere.result.counters.at("tiles_predicted")
-                    << " and " << there.result.counters.at("tiles_predicted") << " tiles, " << everywhere.result.counters.at("work_patched")
-                    << " and " << there.result.counters.at("work_patched") << " pairs, " << gained_far << " gained far; "
-                    << room.psnrNear(everywhere, gaze, gaze.clear_rad) << " and " << room.psnrNear(there, gaze, gaze.clear_rad)
-                    << " dB near, " << room.psnrNear(everywhere, gaze, 4.0) << " and " << room.psnrNear(there, gaze, 4.0) << " dB in all");
-            CHECK(there.result.counters.at("tiles_predicted") < everywhere.result.counters.at("tiles_predicted"));
-            CHECK(there.result.counters.at("work_patched") < everywhere.result.counters.at("work_patched"));
+            MESSAGE(everywhere.result.counters.named().at("tiles_predicted")
+                    << " and " << there.result.counters.named().at("tiles_predicted") << " tiles, "
+                    << everywhere.result.counters.named().at("work_patched") << " and " << there.result.counters.named().at("work_patched")
+                    << " pairs, " << gained_far << " gained far; " << room.psnrNear(everywhere, gaze, gaze.clear_rad) << " and "
+                    << room.psnrNear(there, gaze, gaze.clear_rad) << " dB near, " << room.psnrNear(everywhere, gaze, 4.0) << " and "
+                    << room.psnrNear(there, gaze, 4.0) << " dB in all");
+            CHECK(there.result.counters.named().at("tiles_predicted") < everywhere.result.counters.named().at("tiles_predicted"));
+            CHECK(there.result.counters.named().at("work_patched") < everywhere.result.counters.named().at("work_patched"));
             CHECK(room.psnrNear(there, gaze, gaze.clear_rad) >= room.psnrNear(everywhere, gaze, gaze.clear_rad));
         }
     }
@@ -204,8 +205,8 @@ TEST_CASE_FIXTURE(Gpu, "the device's choice for a gaze is the twin's") {
             mean_tiles += made.tile_kinds[t] == 0 && most < 1e-6 ? 1 : 0;
         }
         means += mean_tiles;
-        chosen += made.result.counters.at("tiles_predicted");
-        chosen_everywhere += everywhere.result.counters.at("tiles_predicted");
+        chosen += made.result.counters.named().at("tiles_predicted");
+        chosen_everywhere += everywhere.result.counters.named().at("tiles_predicted");
         // The dominant eye's gaze says nothing of the affiliated eye's tiles.
         settings.gazes = {};
         settings.gazes[static_cast<std::size_t>(dominant)] = gaze;

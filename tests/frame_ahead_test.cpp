@@ -33,8 +33,8 @@ std::array<Eye, 2> eyesAt(const Eye& middle, int step) {
 }
 
 std::uint64_t count(const FrameResult& result, const char* name) {
-    const auto found = result.counters.find(name);
-    return found == result.counters.end() ? 0 : found->second;
+    const auto counters = result.counters.named();
+    return counters.contains(name) ? counters.at(name) : 0;
 }
 
 }  // namespace

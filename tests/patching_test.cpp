@@ -105,10 +105,11 @@ void checkNewcomers(Scenery& scenery, double budget) {
     const Outcome with = scenery.render(settings);
     settings.stereo.newcomer_error = 0.0;
     const Outcome without = scenery.render(settings);
-    MESSAGE("newcomers " << with.made.result.counters.at("splats_newcomers") << ", tiles " << with.made.result.counters.at("tiles_patched")
-                         << " and " << without.made.result.counters.at("tiles_patched") << ": " << without.psnr_db << " dB without, "
+    MESSAGE("newcomers " << with.made.result.counters.named().at("splats_newcomers") << ", tiles "
+                         << with.made.result.counters.named().at("tiles_patched") << " and "
+                         << without.made.result.counters.named().at("tiles_patched") << ": " << without.psnr_db << " dB without, "
                          << with.psnr_db << " dB with");
-    CHECK(with.made.result.counters.at("splats_newcomers") > 0);
+    CHECK(with.made.result.counters.named().at("splats_newcomers") > 0);
     CHECK(with.psnr_db >= without.psnr_db + 3.0);
 }
 
@@ -154,7 +155,7 @@ TEST_CASE_FIXTURE(Gpu, "what both eyes see is no newcomer") {
     addWall(splats, 8.0f, 3.5f, 0.07f);
     addVeil(splats, 0.4f, 0.032f, 60, 200);
     Scenery scenery(*this, test::makeScene(splats), parallelEyes(0.064));
-    CHECK(scenery.render(Mode::kPredicted).made.result.counters.at("splats_newcomers") == 0);
+    CHECK(scenery.render(Mode::kPredicted).made.result.counters.named().at("splats_newcomers") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs render all of them again") {
@@ -200,8 +201,8 @@ TEST_CASE_FIXTURE(Gpu, "a near edge uncovers holes beside it; centre ROIs render
         CHECK(predicted.psnr_db >= filled.psnr_db + 3.0);
         MESSAGE("screen, dominant " << static_cast<int>(dominant) << ": " << beside << " hole pixels; reproject " << filled.psnr_db
                                     << ", edges " << edges.psnr_db << ", centres " << centers.psnr_db << " dB with "
-                                    << centers.made.result.counters.at("tiles_patched") << " tiles; predicted " << predicted.psnr_db
-                                    << " dB with " << predicted.made.result.counters.at("tiles_patched") << " tiles");
+                                    << centers.made.result.counters.named().at("tiles_patched") << " tiles; predicted " << predicted.psnr_db
+                                    << " dB with " << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
     }
 }
 
@@ -220,9 +221,9 @@ TEST_CASE_FIXTURE(Gpu, "bars of a fence: centre ROIs leave no hole, and every pa
         CHECK(centers.psnr_db > edges_db);
         CHECK(predicted.psnr_db > filled_db);
         MESSAGE("fence, dominant " << static_cast<int>(dominant) << ": reproject " << filled_db << ", edges " << edges_db << ", centres "
-                                   << centers.psnr_db << " dB with " << centers.made.result.counters.at("tiles_patched")
+                                   << centers.psnr_db << " dB with " << centers.made.result.counters.named().at("tiles_patched")
                                    << " tiles; predicted " << predicted.psnr_db << " dB with "
-                                   << predicted.made.result.counters.at("tiles_patched") << " tiles");
+                                   << predicted.made.result.counters.named().at("tiles_patched") << " tiles");
     }
 }
 
@@ -265,7 +266,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     const auto isWhole = [&](const AffiliatedFrame& made, const std::array<Eye, 2>& of) {
         const AffiliatedFrame shared = makeAffiliated(plain, of, makeSettings(Mode::kShared));
         CHECK(countKind(made, gpu::kTileCheap) == made.tile_kinds.size());
-        CHECK(made.result.counters.at("tiles_patched") == made.tile_kinds.size());
+        CHECK(made.result.counters.named().at("tiles_patched") == made.tile_kinds.size());
         CHECK(made.result.tiles_rendered == 1.0);
         CHECK(made.result.work_rendered == 1.0);
         return made.pictures[kLeft].values == shared.pictures[kLeft].values &&
@@ -280,7 +281,7 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     CHECK_FALSE(reprojects(first));
     CHECK(isWhole(first, eyes));
     CHECK(reprojects(second));
-    CHECK(second.result.counters.at("tiles_weighed_as_moved") > 0);
+    CHECK(second.result.counters.named().at("tiles_weighed_as_moved") > 0);
     CHECK(second.result.work_rendered < 0.5);
     // Whoever asks for something else is answered at once.
     CHECK_FALSE((render(outside), reprojects(render(outside))));

@@ -96,14 +96,15 @@ TEST_CASE_FIXTURE(Gpu, "eyes in full lose their hidden tiles and the pairs of th
             CAPTURE(static_cast<int>(dominant));
             const FrameResult whole = frame.render(eyes, makeSettings(mode, dominant, false));
             const std::array<Image, 2> expected{frame.readPicture(kLeft), frame.readPicture(kRight)};
-            CHECK_FALSE(whole.counters.contains("tiles_hidden_left"));
+            CHECK_FALSE(whole.counters.named().contains("tiles_hidden_left"));
             const FrameResult masked = frame.render(eyes, makeSettings(mode, dominant, true));
             for (const Side side : {kLeft, kRight}) {
                 CHECK(countHidden(side) > 20);
                 checkPicture(frame.readPicture(side), expected[side], frame.readDepth(side), side);
                 const std::string suffix = side == kLeft ? "_left" : "_right";
-                CHECK(masked.counters.at("tiles_hidden" + suffix) == countHidden(side));
-                CHECK(masked.counters.at("tile_pairs" + suffix) < 0.95 * static_cast<double>(whole.counters.at("tile_pairs" + suffix)));
+                CHECK(masked.counters.named().at("tiles_hidden" + suffix) == countHidden(side));
+                CHECK(masked.counters.named().at("tile_pairs" + suffix) <
+                      0.95 * static_cast<double>(whole.counters.named().at("tile_pairs" + suffix)));
             }
             const auto& left_out = masked.left_out;
             CHECK(std::ranges::count_if(left_out, [](const std::string& s) { return s.find("its lens never shows them") != s.npos; }) == 2);
@@ -126,7 +127,8 @@ TEST_CASE_FIXTURE(Gpu, "a masked eye is the twin's, pair for pair but for what l
     StereoFrame frame(context(), scene);
     const test::KeptKernels kept(context(), frame);
     const FrameResult result = frame.render({&view.eye, 1}, makeSettings(Mode::kMono, kLeft, true));
-    CHECK(static_cast<double>(result.counters.at("tile_pairs")) == doctest::Approx(static_cast<double>(pairs.size())).epsilon(0.02));
+    CHECK(static_cast<double>(result.counters.named().at("tile_pairs")) ==
+          doctest::Approx(static_cast<double>(pairs.size())).epsilon(0.02));
     CHECK(compare(frame.readPicture(0), test::toImage(twin), 4).psnrDb() >= 80.0);
 }
 
@@ -170,9 +172,9 @@ TEST_CASE_FIXTURE(Gpu, "an eye made from the other under masks is the twin's, in
             }
             // Measured: five in one frame, where a splat that is large for its tiles is seen by the dominant eye within a hair, or is not.
             CHECK(std::ranges::count(same_kind, 0u) <= (method == TileChoice::kPredicted ? 6 : 0));
-            CHECK(made.result.counters.at("tiles_patched") == again);
+            CHECK(made.result.counters.named().at("tiles_patched") == again);
             // The budget is a share of what is shown. The device's pairs are the twin's and few more.
-            const auto& counters = made.result.counters;
+            const auto& counters = made.result.counters.named();
             std::uint64_t predicted_cost = 0;
             for (std::size_t t = 0; t < twin.tile_costs.size(); ++t) {
                 predicted_cost += made.tile_kinds[t] == gpu::kTilePredicted ? twin.tile_costs[t] : 0;
@@ -229,7 +231,7 @@ TEST_CASE_FIXTURE(Gpu, "what one lens hides and the other shows is rendered for 
         }
         CHECK(beyond > 0);
         CHECK(wrong == 0);
-        CHECK(made.result.counters.at("tiles_edge") >= 5 * kTiles.y);
+        CHECK(made.result.counters.named().at("tiles_edge") >= 5 * kTiles.y);
     }
 }
 
@@ -266,8 +268,8 @@ TEST_CASE_FIXTURE(Gpu, "masks come, change and go between frames") {
     FrameSettings settings = makeSettings(Mode::kPredicted, kLeft, false);
     settings.hidden_tiles = {all, all};
     const FrameResult nothing = frame.render(eyes, settings);
-    CHECK(nothing.counters.at("tile_pairs_left") + nothing.counters.at("tile_pairs_right") == 0);
-    CHECK(nothing.counters.at("tiles_patched") == 0);
+    CHECK(nothing.counters.named().at("tile_pairs_left") + nothing.counters.named().at("tile_pairs_right") == 0);
+    CHECK(nothing.counters.named().at("tiles_patched") == 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "the affiliated eye's depth is there in every mode, the rendered one's where tiles are rendered again") {

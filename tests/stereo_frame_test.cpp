@@ -179,7 +179,7 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the picture is t
         renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono), {.first_capacity = {1, 1}, .threads_per_cell = 0});
     CHECK(grown.picture.values == roomy.picture.values);
     CHECK(grown.depth.values == roomy.depth.values);
-    CHECK(grown.result.counters.at("tile_pairs") == roomy.result.counters.at("tile_pairs"));
+    CHECK(grown.result.counters.named().at("tile_pairs") == roomy.result.counters.named().at("tile_pairs"));
 }
 
 TEST_CASE("a scene split over several allocations gives the same picture") {
@@ -226,7 +226,7 @@ TEST_CASE_FIXTURE(Gpu, "where no splat is seen there is the background, without 
                 std::equal(&frame.picture.values[4 * i], &frame.picture.values[4 * i] + 4, std::array{0.25f, 0.5f, 0.75f, 0.0f}.begin()));
             REQUIRE(frame.depth.values[i] == 0.0f);
         }
-        CHECK(frame.result.counters.at("tile_pairs") == 0);
+        CHECK(frame.result.counters.named().at("tile_pairs") == 0);
     }
     for (const Mode mode : {Mode::kTwoPass, Mode::kShared}) {
         const auto pair = renderPair(context(), empty, stereoPair(test::eyeOf(*builtinView("fence"), {40, 24}), 0.063), makeSettings(mode));
@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(Gpu, "walls beside the eye are finite along their horizon, whe
     const auto frame = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono));
     CHECK(allFinite(frame.depth));
     CHECK(isAlike(frame.picture, test::toImage(reference::render(view.scene, view.eye, {}))));
-    CHECK(frame.result.counters.at("tile_pairs") > 0);
+    CHECK(frame.result.counters.named().at("tile_pairs") > 0);
 }
 
 TEST_CASE_FIXTURE(Gpu, "eyes may differ in size") {
@@ -295,7 +295,7 @@ TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
         double square_boxes = 0.0;
         for (const reference::ProjectedSplat& splat : splats) { square_boxes += static_cast<double>(splat.square_box_tiles); }
         const auto pairs = static_cast<double>(reference::bin(splats, view.eye.size_px, settings).size());
-        const auto counters = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono)).result.counters;
+        const auto counters = renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono)).result.counters.named();
         CHECK(static_cast<double>(counters.at("square_box_tile_pairs")) == doctest::Approx(square_boxes).epsilon(0.01));
         // Outlines are widened by 1/64 px (measured: 1.06 % more pairs here, where tiles are many times as large as splats).
         CHECK(static_cast<double>(counters.at("tile_pairs")) == doctest::Approx(pairs).epsilon(0.015));
@@ -312,7 +312,7 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
         CAPTURE(view.name);
         const auto counters =
             renderMono(context(), view.scene, view.eye, makeSettings(Mode::kMono), {.first_capacity = capacity, .threads_per_cell = 0})
-                .result.counters;
+                .result.counters.named();
         const auto splats = static_cast<double>(view.scene.size());
         CHECK(static_cast<double>(counters.at("scene_bytes")) <= most_bytes * splats);
         // Lists grow in steps of 1024.

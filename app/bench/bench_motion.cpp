@@ -39,18 +39,16 @@ struct FullRender {
 };
 
 double pairsOf(const FrameResult& frame) {
-    return static_cast<double>(frame.counters.at("tile_pairs_left") + frame.counters.at("tile_pairs_right"));
+    double pairs = 0.0;
+    for (const TargetCounters& target : frame.counters.targets) { pairs += static_cast<double>(target.tile_pairs); }
+    return pairs;
 }
 
 // In tiles of the affiliated eye that are shown and were not rendered.
 std::uint64_t pixelsWarped(const FrameResult& frame, int affiliated) {
-    const std::string suffix = affiliated == kLeft ? "_left" : "_right";
-    const auto count = [&](const std::string& name) {
-        const auto found = frame.counters.find(name);
-        return found == frame.counters.end() ? std::uint64_t{0} : static_cast<std::uint64_t>(found->second);
-    };
-    const std::uint64_t tiles = count("tiles" + suffix), rendered = count("tiles_hidden" + suffix) + count("tiles_patched");
-    return std::min(count("pixels" + suffix), 256 * (tiles - std::min(tiles, rendered)));
+    const TargetCounters& target = frame.counters.targets[static_cast<std::size_t>(affiliated)];
+    const std::uint64_t rendered = target.tiles_hidden + (frame.counters.warped ? frame.counters.warped->tiles_patched : 0);
+    return std::min(target.pixels, 256 * (target.tiles - std::min(target.tiles, rendered)));
 }
 
 // R, G and B of a less those of b.

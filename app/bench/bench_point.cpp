@@ -51,8 +51,8 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.frame_ms = runner.total_ms;
     result.least_ms = std::ranges::min(runner.total_ms);
     result.most_ms = std::ranges::max(runner.total_ms);
-    result.counters = runner.last.counters;
-    result.counters.insert(runner.compared.counters.begin(), runner.compared.counters.end());  // those that cost time
+    result.counters = runner.last.counters.named();
+    result.counters.merge(runner.compared.counters.named());  // those that cost time
     result.peak_gpu_bytes = runner.peak_gpu_bytes;
     result.tiles_rendered = runner.last.tiles_rendered;
     result.work_rendered = runner.last.work_rendered;

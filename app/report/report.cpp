@@ -70,7 +70,7 @@ Json eyesJson(const Cameras& cameras, bool mono) {
 Json withCosts(Json json, const FrameResult& frame) {
     Json passes = Json::object(), counters = Json::object(), bytes = Json::object();
     for (const auto& [label, ms] : addUp(frame.gpu_ms)) { passes[label.text()] = ms; }
-    for (const auto& [name, count] : frame.counters) { counters[name] = count; }
+    for (const auto& [name, count] : frame.counters.named()) { counters[name] = count; }
     for (const auto& [name, count] : frame.stereo_bytes_per_pixel) { bytes[name] = count; }
     json["gpu_ms"] = passes;
     json["gpu_total_ms"] = frame.gpu_total_ms;
@@ -147,7 +147,7 @@ std::string reportTable(const FrameReport& report) {
         table += fmt::format("  {:<28} {:>14.3f} ms {:>5.1f} %\n", label.text(), ms, ms * percent);
     }
     table += fmt::format("  {:<28} {:>14.3f} ms\n", "total", report.frame.gpu_total_ms);
-    for (const auto& [name, count] : report.frame.counters) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
+    for (const auto& [name, count] : report.frame.counters.named()) { table += fmt::format("  {:<28} {:>14}\n", name, count); }
     if (!report.frame.stereo_bytes_per_pixel.empty()) {
         table += fmt::format("  {:<28} {:>14.1f} bytes\n", "memory traffic per pixel", report.frame.stereo_bytes_per_pixel.back().second);
         table += fmt::format("  {:<28} {:>14.1f} %, {:.1f} % of the work\n", "tiles rendered again", 100.0 * report.frame.tiles_rendered,

@@ -168,20 +168,17 @@ void SceneRenderer::sayGoverned() {
 }
 
 void SceneRenderer::sayShort() {
-    const auto found = last_.counters.find("frames_cut_short");
-    const std::uint64_t now = found == last_.counters.end() ? 0 : found->second;
+    const std::uint64_t now = last_.counters.ahead ? last_.counters.ahead->frames_cut_short : 0;
     if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
 }
 
 void SceneRenderer::sayHidden(bool one_eye) {
-    const auto count = [&](const char* name) {
-        const auto found = last_.counters.find(name);
-        return found == last_.counters.end() ? 0 : found->second;
-    };
-    const std::array<std::uint64_t, 2> hidden{count("tiles_hidden_left"), count("tiles_hidden_right")};
+    const std::vector<TargetCounters>& targets = last_.counters.targets;
+    if (one_eye || targets.size() != 2) { return; }
+    const std::array<std::uint64_t, 2> hidden{targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden};
     // None, where the lenses hid some before: that frame was for a picture.
-    if (one_eye || hidden == std::array<std::uint64_t, 2>{} || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
-    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], count("tiles_left")));
+    if (hidden == std::array<std::uint64_t, 2>{} || std::exchange(hidden_tiles_, hidden) == hidden) { return; }
+    log_.say(fmt::format("the lenses hide {} and {} of {} tiles", hidden[kLeft], hidden[kRight], targets[kLeft].tiles));
 }
 
 }  // namespace binosplat

@@ -29,7 +29,7 @@ void ShownPanel::keepFrameTime() {
 
 void ShownPanel::showTimes(const FrameResult& last, const std::string& governor, double step_seconds) {
     times_age_s_ += step_seconds;
-    const bool has_times = !last.counters.empty();
+    const bool has_times = !last.counters.targets.empty();
     if (has_times && status_.frame != nullptr && times_age_s_ < kTimesSeconds) { return; }
     times_age_s_ = 0.0;
     shown_frame_ = last;

@@ -74,7 +74,7 @@ void Viewer::reloadShaders() {
 }
 
 void Viewer::takePicture() {
-    if (scenes_.get() == nullptr || renderer_.lastFrame().counters.empty()) { return; }
+    if (scenes_.get() == nullptr || renderer_.lastFrame().counters.targets.empty()) { return; }
     try {
         std::error_code error;
         const std::filesystem::path folder = std::filesystem::current_path(error);

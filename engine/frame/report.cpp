@@ -1,4 +1,4 @@
-// Counters by name, and sentences.
+// From what the device reported to counters and sentences.
 #include "engine/frame/report.h"
 
 #include <fmt/format.h>
@@ -9,10 +9,6 @@
 namespace binosplat {
 namespace {
 
-std::string suffixOf(const FramePlan& plan, std::size_t target) {
-    return plan.targets.size() == 1 ? "" : target == kLeft ? "_left" : "_right";
-}
-
 void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
     const TargetPlan& target = frame.plan.targets[index];
     const TargetPlan& source = frame.plan.targets[static_cast<std::size_t>(target.warp->source)];
@@ -21,26 +17,22 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     const gpu::WarpCounters& warp = state.warp_counters;
     const WarpBuffers& buffers = frame.room.warp(static_cast<int>(index));
     const bool has_classes = buffers.classesBuffer().bytes() > 0;
-    auto& counters = result.counters;
-    if (has_classes) {
-        counters["pixels_covered"] = warp.covered_pixels;
-        counters["pixels_gap"] = warp.gap_pixels;
-        counters["pixels_hole"] = warp.hole_pixels;
-    }
-    counters["tiles_patched"] = state.chosen_tiles.count;
-    counters["tiles_edge"] = warp.edge_tiles;
-    counters["tiles_center"] = warp.center_tiles;
-    counters["tiles_predicted"] = warp.predicted_tiles;
+    WarpedCounters& counters = result.counters.warped.emplace();
+    if (has_classes) { counters.pixels = {warp.covered_pixels, warp.gap_pixels, warp.hole_pixels}; }
+    counters.tiles_patched = state.chosen_tiles.count;
+    counters.tiles_edge = warp.edge_tiles;
+    counters.tiles_center = warp.center_tiles;
+    counters.tiles_predicted = warp.predicted_tiles;
     if (settings.choice == TileChoice::kPredicted) {
-        counters["tiles_cheap"] = warp.cheap_tiles;
-        counters["tiles_weighed_as_moved"] = warp.moved_tiles;
-        counters["work_full"] = warp.picture_cost;
-        counters["work_patched"] = warp.chosen_cost;
-        counters["work_saved_by_moving"] = warp.saved_cost;
+        counters.work = {.tiles_cheap = warp.cheap_tiles,
+                         .tiles_weighed_as_moved = warp.moved_tiles,
+                         .full = warp.picture_cost,
+                         .patched = warp.chosen_cost,
+                         .saved_by_moving = warp.saved_cost};
     }
-    counters["hole_components"] = warp.components;
-    counters["splats_newcomers"] = warp.newcomers;
-    counters["stereo_bytes"] = buffers.bytes();
+    counters.hole_components = warp.components;
+    counters.splats_newcomers = warp.newcomers;
+    counters.bytes = buffers.bytes();
     const bool rectified = target.warp->relation.rectified;
     result.stereo_bytes_per_pixel = warpTraffic({.settings = settings,
                                                  .may_move = target.warp->may_move,
@@ -111,30 +103,28 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
     result.gpu_ms = frame.commands.times();
     result.gpu_total_ms = frame.commands.totalMs();
     result.peak_gpu_bytes = frame.context.memoryUse().peak_bytes;
-    auto& counters = result.counters;
-    counters["commands"] = frame.commands.count();
-    counters["splats_read"] = frame.scene.splatCount();
-    counters["scene_bytes"] = frame.scene.bytes();
-    counters["visible_bytes"] = lists.visible.bytes();
-    counters["pair_bytes"] = lists.pairs.bytes();
-    counters["scratch_bytes"] = lists.scratch.bytes();
+    FrameCounters& counters = result.counters;
+    counters.commands = frame.commands.count();
+    counters.splats_read = frame.scene.splatCount();
+    counters.scene_bytes = frame.scene.bytes();
+    counters.visible_bytes = lists.visible.bytes();
+    counters.pair_bytes = lists.pairs.bytes();
+    counters.scratch_bytes = lists.scratch.bytes();
     for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
         const TargetPlan& target = frame.plan.targets[t];
         const TargetState& state = frame.state.targets[t];
-        const std::string suffix = suffixOf(frame.plan, t);
         const glm::uvec2 size_px = target.eye.size_px, tiles = tilesOf(size_px);
-        const ShownTiles& shown = frame.room.shown(static_cast<int>(t));
         const Picture& picture = frame.room.picture(static_cast<int>(t));
-        counters["splats_visible" + suffix] = frame.state.visible[static_cast<std::size_t>(target.list)].count;
-        counters["tile_pairs" + suffix] = state.pairs.count;
+        TargetCounters& its = counters.targets.emplace_back();
+        its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
+        its.tile_pairs = state.pairs.count;
         if (frame.plan.square_boxes) {
-            counters["square_box_tile_pairs" + suffix] =
-                (std::uint64_t{state.counters.square_box_pairs_high} << 32) | state.counters.square_box_pairs_low;
+            its.square_box_tile_pairs = (std::uint64_t{state.counters.square_box_pairs_high} << 32) | state.counters.square_box_pairs_low;
         }
-        counters["tiles" + suffix] = std::uint64_t{tiles.x} * tiles.y;
-        if (shown.hideAny()) { counters["tiles_hidden" + suffix] = shown.hiddenCount(); }
-        counters["pixels" + suffix] = std::uint64_t{size_px.x} * size_px.y;
-        counters["pixel_bytes" + suffix] = picture.colours.bytes() + picture.depths.bytes();
+        its.tiles = std::uint64_t{tiles.x} * tiles.y;
+        its.tiles_hidden = frame.room.shown(static_cast<int>(t)).hiddenCount();
+        its.pixels = std::uint64_t{size_px.x} * size_px.y;
+        its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes();
         if (target.warp) { countWarp(frame, t, result); }
     }
     explainLeftOut(frame, result);

@@ -1,6 +1,7 @@
 // What a frame is asked for, and what it says of itself.
 #pragma once
 
+#include "engine/frame/counters.h"
 #include "engine/geometry.h"
 #include "engine/gpu/commands.h"
 #include "engine/mode.h"
@@ -9,7 +10,6 @@
 #include "engine/passes/warp_traffic.h"
 
 #include <array>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -48,7 +48,7 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings);
 struct FrameResult {
     PassTimes gpu_ms;
     double gpu_total_ms = 0.0;  // from the first pass to the last
-    std::map<std::string, std::uint64_t> counters;
+    FrameCounters counters;
     Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, where the mode has any
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
     std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time

@@ -84,8 +84,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     done_again_ += renderAtMostTwice(settings, append);
     if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
     result = take(flight());
-    result->counters["frames_cut_short"] = cut_short_;
-    result->counters["frames_done_again"] = done_again_;
+    result->counters.ahead = {cut_short_, done_again_};
     room_.makeRoomAhead(plan_, state_);
     if (signals) {
         const std::lock_guard lock(context_.queueMutex());
@@ -105,8 +104,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     state_ = flight.readback.mapped<FrameState>()[0];
     if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
     FrameResult result = take(flight);
-    result.counters["frames_cut_short"] = cut_short_;
-    result.counters["frames_done_again"] = done_again_;
+    result.counters.ahead = {cut_short_, done_again_};
     return result;
 }
 

@@ -127,30 +127,30 @@ void drawTimes(const OverlayStatus& status) {
     ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, std::max(highest, 33.3f),
                      ImVec2(0.0f, 60.0f));
     if (status.frame == nullptr) { return; }
-    const auto count = [&](const std::string& name) {
-        const auto found = status.frame->counters.find(name);
-        return found == status.frame->counters.end() ? 0.0 : static_cast<double>(found->second);
-    };
-    const double tiles = std::max(count("tiles_left"), count("tiles_right"));
-    const double hidden = count("tiles_hidden_left") + count("tiles_hidden_right");
-    const double made = count("pixels_covered") + count("pixels_gap") + count("pixels_hole");
+    const FrameCounters& counters = status.frame->counters;
+    std::uint64_t tiles = 0, hidden = 0, splats = 0;
+    for (const TargetCounters& target : counters.targets) {
+        tiles = std::max(tiles, target.tiles);
+        hidden += target.tiles_hidden;
+        splats = std::max(splats, target.splats_visible);
+    }
+    const WarpedCounters warped = counters.warped.value_or(WarpedCounters{});
+    const WarpedCounters::Classes pixels = warped.pixels.value_or(WarpedCounters::Classes{});
+    const auto percent = [](std::uint64_t part, double whole) { return 100.0 * static_cast<double>(part) / std::max(whole, 1.0); };
     text(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
-                     100.0 * count("tiles_patched") / std::max(tiles - 0.5 * hidden, 1.0),
-                     100.0 * count("pixels_hole") / std::max(made, 1.0),
-                     std::max({count("splats_visible"), count("splats_visible_left"), count("splats_visible_right")}) / 1000.0));
+                     percent(warped.tiles_patched, static_cast<double>(tiles) - 0.5 * static_cast<double>(hidden)),
+                     percent(pixels.hole, static_cast<double>(pixels.covered + pixels.gap + pixels.hole)),
+                     static_cast<double>(splats) / 1000.0));
 }
 
 void drawStages(const FrameResult& frame) {
-    const auto count = [&](const std::string& name) {
-        const auto found = frame.counters.find(name);
-        return found == frame.counters.end() ? std::uint64_t{0} : found->second;
-    };
-    if (count("tiles_hidden_left") + count("tiles_hidden_right") > 0) {
-        text(fmt::format("the lenses hide {} and {} of {} tiles", count("tiles_hidden_left"), count("tiles_hidden_right"),
-                         std::max(count("tiles_left"), count("tiles_right"))));
+    const std::vector<TargetCounters>& targets = frame.counters.targets;
+    if (targets.size() == 2 && targets[kLeft].tiles_hidden + targets[kRight].tiles_hidden > 0) {
+        text(fmt::format("the lenses hide {} and {} of {} tiles", targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden,
+                         std::max(targets[kLeft].tiles, targets[kRight].tiles)));
     }
-    if (const std::uint64_t cut_short = count("frames_cut_short"); cut_short > 0) {
-        text(fmt::format("{} frames had no room in their lists, {} were drawn again", cut_short, count("frames_done_again")));
+    if (const auto& ahead = frame.counters.ahead; ahead && ahead->frames_cut_short > 0) {
+        text(fmt::format("{} frames had no room in their lists, {} were drawn again", ahead->frames_cut_short, ahead->frames_done_again));
     }
     ImGui::BeginChild("stages", ImVec2(0.0f, 0.0f), true);
     ImGui::Columns(2, "stages", false);

@@ -1,0 +1,52 @@
+// What a frame counted.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+// Of one picture.
+struct TargetCounters {
+    std::uint64_t splats_visible = 0;  // in its list
+    std::uint64_t tile_pairs = 0;
+    std::optional<std::uint64_t> square_box_tile_pairs;  // those that the customary square bound would make
+    std::uint64_t tiles = 0, tiles_hidden = 0;           // of these nobody sees
+    std::uint64_t pixels = 0, pixel_bytes = 0;
+};
+
+// Of the picture that is made from another.
+struct WarpedCounters {
+    // What made its pixels, before tiles are rendered again; where that was kept.
+    struct Classes {
+        std::uint64_t covered = 0, gap = 0, hole = 0;
+    };
+    // In pairs of tile and splat; where tiles are weighed.
+    struct Work {
+        std::uint64_t tiles_cheap = 0, tiles_weighed_as_moved = 0, full = 0, patched = 0, saved_by_moving = 0;
+    };
+    std::optional<Classes> pixels;
+    std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
+    std::optional<Work> work;
+    std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;
+};
+
+struct FrameCounters {
+    std::uint64_t commands = 0, splats_read = 0;
+    std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
+    std::vector<TargetCounters> targets;  // one for each eye
+    std::optional<WarpedCounters> warped;
+    // Since the program began; of frames that are not waited for.
+    struct Ahead {
+        std::uint64_t frames_cut_short = 0, frames_done_again = 0;
+    };
+    std::optional<Ahead> ahead;
+
+    // As reports name them.
+    [[nodiscard]] std::map<std::string, std::uint64_t> named() const;
+};
+
+}  // namespace binosplat
