@@ -2,9 +2,11 @@
 #include "engine/picture/webp.h"
 #include "engine/reference/reference.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/scene_targets.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/sog_files.h"
 #include "engine/scene/spz.h"
+#include "engine/scene/survey.h"
 #include "tests/ply_files.h"
 #include "tests/shared_data.h"
 
@@ -195,5 +197,35 @@ TEST_CASE("a bundle has the files and keys that other writers' have" * needsShar
         };
         CAPTURE(picture);
         CHECK(sizeIn(*theirs) == sizeIn(*ours));
+    }
+}
+
+TEST_CASE("scenes of every format that is read go through every format that is written, as the same pictures" * needsSharedData()) {
+    const auto data = sharedData();
+    if (!data) { return; }
+    const Folder folder;
+    std::vector<std::string> sources{"guitar/guitar.compressed.ply", "formats/minimal.ksplat", "formats/minimal.splat", "statues/angel.sog",
+                                     "playbot/playbot_streamed"};
+#ifdef BINOSPLAT_GLTF
+    sources.emplace_back("formats/khr_extensible_fallback.gltf");
+#endif
+    for (const std::string& source : sources) {
+        CAPTURE(source);
+        const Scene scene = loadScene((*data / source).string(), 0, nullptr, {},
+                                      {source.ends_with("streamed") ? std::optional<std::uint32_t>(4) : std::nullopt, {}});
+        const SceneSurvey survey = surveyScene(scene);
+        const double away = 1.5 * std::max(survey.size, 0.5);
+        std::string told;
+        for (const auto& [name, least_db] : {std::pair("a.ply", 100.0), std::pair("a.spz", 40.0), std::pair("a.sog", 45.0)}) {
+            findSceneTarget(name).write(scene, folder.file(name), {});
+            const Scene back = loadScene(folder.file(name));
+            REQUIRE(back.size() == scene.size());
+            for (const glm::dvec3& direction : {glm::dvec3(0, -0.3, -1), glm::dvec3(0.8, -0.5, 0.5), glm::dvec3(-1, 0.2, 0.3)}) {
+                const double db = psnrDb(scene, back, survey.middle + away * glm::normalize(direction), survey.middle);
+                told += fmt::format(" {} {:.1f} dB", name + 2, db);
+                CHECK(db > least_db);
+            }
+        }
+        MESSAGE(fmt::format("{}:{}", source, told));
     }
 }

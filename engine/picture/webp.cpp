@@ -23,8 +23,6 @@ std::uint32_t loadWord(std::span<const std::byte> bytes, std::size_t offset) {
 
 // The stream of a lossless picture: one byte 0x2f, 14 bits width - 1, 14 bits height - 1, a bit that says whether alpha is used.
 constexpr std::size_t kStreamHeaderBytes = 5;
-constexpr std::size_t kAlphaByte = 4;
-constexpr std::byte kAlphaBit{0x10};
 
 // The chunk VP8L of a file, alone or among others.
 std::span<const std::byte> findStream(std::span<const std::byte> file, const std::string& name) {
