@@ -16,8 +16,8 @@ using namespace binosplat::test;
 
 namespace {
 
-const std::string kRender = "render builtin:fence --size 64x48 --out out/pictures";
-const std::string kBench = "bench builtin:fence --size 64x48 --out out/tables --config one.toml";
+const std::string kRender = "render builtin:slanted-wall --mode shared --size 64x48 --out out/pictures";
+const std::string kBench = "bench builtin:slanted-wall --size 64x48 --out out/tables --config one.toml";
 
 // The Nth call fails, or a signal comes with it.
 std::string fault(const std::string& call, int number, const std::string& what) {
@@ -27,7 +27,7 @@ std::string fault(const std::string& call, int number, const std::string& what) 
 }
 
 struct Machine : Workplace {
-    Machine() { std::ofstream(path / "one.toml") << "[bench]\nmodes = [\"predicted\"]\nscores = [\"psnr\"]\nwarm-up = 1\nrepeats = 2\n"; }
+    Machine() { std::ofstream(path / "one.toml") << "[bench]\nmodes = [\"shared\"]\nscores = [\"psnr\"]\nwarm-up = 1\nrepeats = 2\n"; }
 
     // One line on stderr that holds `part`, and of the output nothing.
     void checkFails(const std::string& arguments, const std::string& environment, int exit_code, const std::string& part) const {
@@ -120,8 +120,9 @@ TEST_CASE("faults end the viewer in its own line, behind what the runtime says")
     std::ofstream(machine.path / "small.script") << "size 64 64\n";
     const auto checkEnds = [&](const std::string& environment, int exit_code, const std::string& part) {
         CAPTURE(environment);
-        const Outcome outcome = machine.run("view builtin:fence --simulate small.script --load-first --frames 6 --out seen",
-                                            "DISPLAY= WAYLAND_DISPLAY= " + environment);
+        const Outcome outcome =
+            machine.run("view builtin:slanted-wall --mode mono --simulate small.script --load-first --frames 6 --out seen",
+                        "DISPLAY= WAYLAND_DISPLAY= " + environment);
         INFO("stdout: " << outcome.output << " stderr: " << outcome.errors);
         CHECK(outcome.exit_code == exit_code);
         CHECK(outcome.errors.find(part) != std::string::npos);
@@ -145,7 +146,7 @@ TEST_CASE("faults end the viewer in its own line, behind what the runtime says")
 TEST_CASE("SIGTERM ends the viewer as its wearer would") {
     const Machine machine;
     std::ofstream(machine.path / "small.script") << "size 64 64\n";
-    const Outcome outcome = machine.run("view builtin:fence --simulate small.script --load-first --out seen",
+    const Outcome outcome = machine.run("view builtin:slanted-wall --mode mono --simulate small.script --load-first --out seen",
                                         "DISPLAY= WAYLAND_DISPLAY= " + fault("submit", 30, "SIGTERM"));
     INFO("stdout: " << outcome.output << " stderr: " << outcome.errors);
     CHECK(outcome.exit_code == 0);
