@@ -2,6 +2,17 @@
 #include "app/program.h"
 #include "tests/run_program.h"
 
+#ifdef BINOSPLAT_OPENIMAGEIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <OpenImageIO/imageio.h>
+#pragma GCC diagnostic pop
+#endif
+
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <wordexp.h>
@@ -84,7 +95,16 @@ bool loadAhead() {
     return true;
 }
 
-const bool is_set = loadAhead() && (run_in_fork = runInFork) != nullptr;
+// OpenEXR's threads would stay after the first picture that a test reads, and then there would be no fork any more.
+bool readWithoutThreads() {
+#ifdef BINOSPLAT_OPENIMAGEIO
+    return OIIO::attribute("exr_threads", -1);
+#else
+    return true;
+#endif
+}
+
+const bool is_set = loadAhead() && readWithoutThreads() && (run_in_fork = runInFork) != nullptr;
 
 }  // namespace
 }  // namespace binosplat::test
