@@ -61,11 +61,13 @@ const fs::path& installedManifest() {
         fs::remove_all(kWork / "source");
         fs::remove_all(kWork / "installed");
         fs::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/xr/simulated", kWork / "source", fs::copy_options::recursive);
+        // Each target from one file, that reads the headers once: half the work of a build.
         const std::string cache = std::system("command -v ccache > /dev/null") == 0 ? " -DCMAKE_CXX_COMPILER_LAUNCHER=ccache" : "";
         const std::string work = kWork.string();
-        const Run run = shell("cmake -S " + work + "/source -B " + work +
-                              "/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-g0 -DCMAKE_UNITY_BUILD=ON" + cache +
-                              " && cmake --build " + work + "/build && cmake --install " + work + "/build --prefix " + work + "/installed");
+        const Run run = shell(
+            "cmake -S " + work + "/source -B " + work +
+            "/build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-g0 -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0" +
+            cache + " && cmake --build " + work + "/build && cmake --install " + work + "/build --prefix " + work + "/installed");
         CHECK_MESSAGE(run.exit_code == 0, run.output);
         return kWork / "installed/share/openxr/1/simulated_openxr_runtime.json";
     }();

@@ -12,9 +12,9 @@
 namespace simulated {
 namespace {
 
-constexpr XrCompositionLayerFlags kKnownFlags = XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT |
-                                                XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT |
-                                                XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
+constexpr XrCompositionLayerFlags kKnownLayerFlags = XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT |
+                                                     XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT |
+                                                     XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
 
 Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& image) {
     Swapchain& swapchain = getSwapchain(session, image.swapchain);
@@ -172,7 +172,7 @@ void checkLayer(const Session& session, const XrCompositionLayerBaseHeader* subm
     require(is_known, XR_ERROR_LAYER_INVALID, layer.type,
             " is neither a projection nor a quad, nor a layer of an extension that is enabled");
     checkChain(layer.next);
-    require((layer.layerFlags & ~kKnownFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
+    require((layer.layerFlags & ~kKnownLayerFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
     getSpace(session, layer.space);
     if (is_surrounding)
         checkSurrounding(session, layer);
