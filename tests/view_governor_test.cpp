@@ -21,11 +21,12 @@ struct Governed : ViewRun {
     Governed(const std::string& quality, const std::string& load, int most_frames) {
         const Workplace work;
         std::ofstream(work.path / "view.toml") << fmt::format("[view]\nquality = \"{}\"\n", quality);
-        const ViewRun run = runView(work, "load", fmt::format("rate {0}\nsize {1} {1}\nframes none\n{2}", kRate, kWhole, load),
-                                    fmt::format("builtin:one-splat --load-first --hide-panel --frames {} --config view.toml", most_frames),
-                                    kValidated + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                                 "' "
-                                                 "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_TICKS=1");
+        const ViewRun run =
+            runView(work, "load", fmt::format("rate {0}\nsize {1} {1}\nframes none\n{2}", kRate, kWhole, load),
+                    fmt::format("builtin:one-splat --load-first --hide-panel --hide-hands --frames {} --config view.toml", most_frames),
+                    kValidated + " VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                 "' "
+                                 "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_TICKS=1");
         outcome = run.outcome;
         frames = run.frames;
         for (std::size_t i = 0; i < run.frames.size(); ++i) {

@@ -87,7 +87,7 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
         // From side by side to angles of their own.
         const ViewRun run =
             runView(work, "ready", fmt::format("rate 90\nsize 96 96\nframes none\n{}at 0.3 eye left angles -50 40 40 -50\n", lines),
-                    "builtin:one-splat --load-first --hide-panel --mode predicted --move-cost 0 --frames 60",
+                    "builtin:one-splat --load-first --hide-panel --hide-hands --mode predicted --move-cost 0 --frames 60",
                     fmt::format("{} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER "' "
                                 "VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}'",
                                 kValidated, alive));

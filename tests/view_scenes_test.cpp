@@ -32,7 +32,8 @@ const glm::dvec2 kBeside(0.9, 0.95);
 bool says(const ViewRun& run, const std::string& words) { return run.outcome.output.find(words) != std::string::npos; }
 
 const Panel& startPanel(const Workplace& work) {
-    static const Panel panel = panelOf(runView(work, "look", kDense + "at 0.1 exit\n", "builtin:one-splat --load-first --mode mono"), 8);
+    static const Panel panel =
+        panelOf(runView(work, "look", kDense + "at 0.1 exit\n", "builtin:one-splat --load-first --mode mono --hide-hands"), 8);
     return panel;
 }
 
@@ -49,7 +50,7 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     const ViewRun run =
         runView(work, "next",
                 kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, next, 0.4) + clickAt(panel, next, 1.5) + "at 3 exit\n",
-                "a.ply --load-first --mode mono", kWhileLoading);
+                "a.ply --load-first --mode mono --hide-hands", kWhileLoading);
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::size_t first = output.find("shows a.ply"), broken = output.find("b.ply:"), third = output.find("shows c.ply");
@@ -74,7 +75,7 @@ TEST_CASE("a scene is chosen on the panel, in the folder of the one that is show
     const ViewRun run =
         runView(work, "choose",
                 kSmall + clickAt(panel, placeOf("Scenes"), 0.2) + clickAt(panel, broken, 0.4) + clickAt(panel, other, 1.5) + "at 3 exit\n",
-                name + "/room10.ply --load-first --mode mono", kWhileLoading);
+                name + "/room10.ply --load-first --mode mono --hide-hands", kWhileLoading);
     checkClean(run);
     const std::string& output = run.outcome.output;
     const std::string place = (folder / "room9.ply").string(), bad = (folder / "room1.ply").string();
@@ -101,7 +102,7 @@ TEST_CASE("a picture of both eyes is a file that is not overwritten") {
     const ViewRun run =
         runView(work, "shots",
                 "rate 45\nsize 160 160\nframes every 5\n" + kLeftHand + clickOn(panel, {placeOf("Picture"), placeOf("Picture"), kBeside}),
-                "builtin:slanted-wall --load-first --mode shared");
+                "builtin:slanted-wall --load-first --mode shared --hide-hands");
     checkClean(run);
     CHECK(says(run, "picture binosplat-0001.png"));
     CHECK(says(run, "picture binosplat-0002.png"));
@@ -130,7 +131,7 @@ TEST_CASE("what the lenses hide is there in a picture all the same") {
         const ViewRun run = runView(work, "whole",
                                     "rate 45\nsize 160 160\nframes none\nvisibility-mask " + mask + "\n" + kLeftHand +
                                         clickOn(startPanel(work), {placeOf("Picture"), kBeside}),
-                                    "builtin:slanted-wall --load-first --mode shared");
+                                    "builtin:slanted-wall --load-first --mode shared --hide-hands");
         checkClean(run);
         CHECK(says(run, "the lenses hide ") == (mask == "on"));
         Image both = readPicture(work.path / "binosplat-0001.png");
@@ -158,7 +159,7 @@ TEST_CASE("the wearer recentres by the panel's button") {
     const Panel panel = startPanel(work);
     const std::string head = "head 0 position 0 1.6 0\nhead 0.1 position 0 1.6 0\nhead 0.15 position 0.4 1.5 0.3 turn 50 0\n";
     const ViewRun run = runView(work, "recentre", kSmall + head + clickOn(panel, {placeOf("Recentre"), kBeside}),
-                                "builtin:one-splat --load-first --mode mono");
+                                "builtin:one-splat --load-first --mode mono --hide-hands");
     checkClean(run);
     CHECK(says(run, "the room now begins where the wearer stands, 1.50 m above the floor"));
     const std::size_t last = run.frames.size() - 5;
@@ -178,7 +179,7 @@ TEST_CASE("a scene that two hands tilted is levelled again") {
         "controller right 0 position 0.2 1.2 -0.35 turn 0 -80\ncontroller right 0.1 position 0.2 1.2 -0.35 turn 0 -80\n"
         "controller right 0.3 position 0.17 1.3 -0.35 turn 0 -80\ncontroller right 0.35 position 0.17 1.3 -0.35 turn 0 -80\n"
         "press left squeeze 0.05 0.32\npress right squeeze 0.05 0.32\n";
-    const std::string scene = "builtin:one-splat --load-first --mode mono --config tilt.toml";
+    const std::string scene = "builtin:one-splat --load-first --mode mono --hide-hands --config tilt.toml";
     // How much of the turn is not about the vertical, as it was saved.
     const auto tiltAfter = [&](const std::string& name, const std::string& clicks) {
         const ViewRun run = runView(work, name, roll + clicks + "at 1 exit\n", scene);

@@ -18,7 +18,7 @@ namespace {
 const std::string kSmall = "rate 90\nsize 192 192\n";
 const std::string kScene = "builtin:fence --load-first";
 // Where nobody looks at the picture.
-const std::string kBlind = "rate 90\nsize 64 64\nframes none\n", kWall = "builtin:slanted-wall --load-first --mode ";
+const std::string kBlind = "rate 90\nsize 64 64\nframes none\n", kWall = "builtin:slanted-wall --load-first --hide-hands --mode ";
 
 // An asymmetric, canted headset.
 const char* const kHeadset =

@@ -13,7 +13,8 @@ namespace {
 
 const std::string kSmall = "rate 90\nsize 64 64\nframes none\n";
 
-const std::string kOneEye = "builtin:one-splat --load-first --mode mono", kBothEyes = "builtin:one-splat --load-first --mode shared";
+const std::string kWithHands = "builtin:one-splat --load-first --mode mono", kOneEye = kWithHands + " --hide-hands",
+                  kBothEyes = "builtin:one-splat --load-first --mode shared --hide-hands";
 
 ViewRun runTrouble(const Workplace& work, const std::string& lines, const std::string& arguments = kOneEye) {
     CAPTURE(lines);
@@ -60,7 +61,7 @@ TEST_CASE("what only decorates and fails is said once and done without, and a fi
     std::ofstream(work.path / "wishes.toml") << "[view]\nrefresh-rate = 72\neye-tracking = true\n";
     // The hand points at the panel, which pulses; the fifth action space is the gaze's, the tenth frame has layers.
     const std::string script = kSmall + "controller right 0 position 0.2 1.2 -0.35 look -0.45 1.5 -0.9\nat 0.3 exit\n";
-    const std::string arguments = kOneEye + " --frames 200 --config wishes.toml";
+    const std::string arguments = kWithHands + " --frames 200 --config wishes.toml";
     const auto runFaulty = [&](const std::string& name, const std::string& faults) {
         return runView(work, name, script, arguments,
                        "DISPLAY= WAYLAND_DISPLAY= BINOSPLAT_VALIDATION=1 XR_ENABLE_API_LAYERS=XR_APILAYER_BINOSPLAT_faults "
@@ -320,7 +321,8 @@ TEST_CASE("what the lenses hide is not rendered, and nothing else changes") {
 TEST_CASE("lost controllers, a visibility mask and missing extensions are no trouble") {
     const Workplace work;
     runTrouble(work,
-               "visibility-mask on\nat 0.05 controller right off\nat 0.06 controller left off\nat 0.1 controller right on\nat 0.15 exit\n");
+               "visibility-mask on\nat 0.05 controller right off\nat 0.06 controller left off\nat 0.1 controller right on\nat 0.15 exit\n",
+               kWithHands);
     runTrouble(work, "extension XR_KHR_visibility_mask off\nextension XR_KHR_composition_layer_depth off\nat 0.1 exit\n");
 }
 
