@@ -92,7 +92,6 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(DepthBoundsPass, FIELD(warp), FIELD(colours), FIELD(half_colours), FIELD(moving), FIELD(bins)),
         LAYOUT(EdgeRoisPass, FIELD(warp), FIELD(bins), FIELD(tile_kinds), FIELD(shown_mask), FIELD(counters)),
         LAYOUT(ReprojectPass, FIELD(warp), FIELD(moving), FIELD(arrivals), FIELD(shown_mask)),
-        LAYOUT(SettlePass, FIELD(tile_kinds), FIELD(tile_count)),
         LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(warp), FIELD(tile_depths), FIELD(order), FIELD(visible),
                FIELD(source_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
         LAYOUT(ResamplePass, FIELD(warp), FIELD(source), FIELD(half_source), FIELD(moving), FIELD(target), FIELD(half_target),

@@ -64,7 +64,6 @@ KernelTable warpKernels(const Context& context) {
                if (k.row_source == gpu::kWholeRowMoved && (!k.predict_errors || k.classes)) { return false; }
                return (k.row_source != gpu::kArrivalsGiven) == (k.rectified && k.row_steps > 0);
            }));
-    append(table, everyVariant<SettleKernel>());
     append(table, everyVariant<NewcomersKernel>());
     append(table, everyVariant<ComponentsKernel>());
     append(table, everyVariant<PriceKernel>());
@@ -92,7 +91,6 @@ public:
     // Of every row or, where errors are predicted, of the even ones; resampleOdd: of the others.
     void resample();
     void resampleOdd();
-    void settle();
     void findNewcomers();
     void groupHoles();
     void price();
@@ -233,11 +231,6 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
     dispatchByCounter(resample_kernel, pass, offsetof(gpu::WarpCounters, per_row));
 }
 
-void WarpRecorder::settle() {
-    begin<SettleKernel>();
-    dispatch(SettleKernel{}, {.tile_kinds = in_.warp.tileKinds(), .tile_count = in_.warp.tileCount()}, tileGroups());
-}
-
 void WarpRecorder::findNewcomers() {
     begin<NewcomersKernel>();
     const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
@@ -316,7 +309,6 @@ void WarpPasses::record(Commands& commands, const WarpInputs& in) {
     }
     passes.reproject();
     passes.resample();
-    passes.settle();
     if (passes.predicts()) { passes.findNewcomers(); }
     if (passes.groupsHoles()) { passes.groupHoles(); }
     if (passes.predicts()) { passes.price(); }

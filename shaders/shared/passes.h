@@ -169,12 +169,6 @@ struct ResamplePass {
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
-// settle: tiles of a kind that nobody knows are moved.
-struct SettlePass {
-    Uints tile_kinds;  // in and out
-    uint tile_count;
-};
-
 // newcomers: predicted: splats that only the target sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
