@@ -1,6 +1,7 @@
 // Facts about the viewer's panel and controls: a ray points, the trigger clicks, sticks and grips move, as a script's hands do it.
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
+#include "tests/light_fence.h"
 #include "tests/panel_sketch.h"
 #include "tests/view_panel.h"
 #include "xr/simulated/extensions.h"
@@ -25,7 +26,7 @@ const std::string kSmall = "rate 45\nsize 160 160\nframes every 2\n" + kLeftHand
 const std::string kBlind = "rate 45\nsize 64 64\nframes none\n" + kLeftHand, kDense = "rate 90\nsize 64 64\nframes none\n" + kLeftHand;
 // Few splats where any picture will do; bars with holes between them where it is looked at.
 const std::string kWall = "builtin:slanted-wall --load-first --hide-hands", kScene = kWall + " --mode mono",
-                  kFence = "builtin:fence --load-first --hide-hands";
+                  kFence = "fence.ply --load-first --hide-hands";
 
 // Where the panel hangs at the start.
 const Panel& startPanel(const Workplace& work) {
@@ -86,7 +87,7 @@ void checkAgreesWithRender(const Workplace& work, const ViewRun& run, std::size_
     const glm::dvec3 look = eye + inScene(left.orientation * glm::dvec3(0, 0, -1)), up = inScene(left.orientation * glm::dvec3(0, 1, 0));
     const auto numbers = [](const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.9f}", v.x, v.y, v.z); };
     const Outcome rendered =
-        work.run(fmt::format("render builtin:fence --out expected --size 160x160 --fov-x 90 --ipd 0.063 --eye {} --look {} --up {} {}",
+        work.run(fmt::format("render fence.ply --out expected --size 160x160 --fov-x 90 --ipd 0.063 --eye {} --look {} --up {} {}",
                              numbers(eye), numbers(look), numbers(up), stereo));
     INFO(rendered.errors);
     REQUIRE(rendered.exit_code == 0);
@@ -119,8 +120,9 @@ double shareTinted(const Image& before, const Image& after) {
 TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture shows it") {
     const Workplace work;
     const Panel panel = startPanel(work);
+    writeLightFence(work.path / "fence.ply");
     // Near enough to the bars that holes open inside the picture.
-    const std::string arguments = kFence + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3";
+    const std::string arguments = kFence + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0";
     const ViewRun run = runView(
         work, "click", kSmall + clickOn(panel, {placeOf("Show what made it"), placeOf("Centre ROI (paper)"), {0.9, 0.95}}), arguments);
     checkClean(run);
@@ -199,16 +201,16 @@ TEST_CASE("sliders take a click, and the resolution changes once the trigger is 
 TEST_CASE("a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
     const Workplace work;
     std::ofstream(work.path / "small.toml") << "[view]\nresolution-scale = 0.25\n";
-    const std::string large = "rate 45\nsize 1024 1024\nframes every 4\n" + kLeftHand;
+    const std::string large = "rate 45\nsize 1024 1024\nframes every 12\n" + kLeftHand;
     const ViewRun run = runView(work, "full", large + clickOn(startPanel(work), {placeOf("resolution"), {0.9, 0.95}}),
                                 kWall + " --config small.toml --memory-limit 16");
     checkClean(run);
     CHECK(says(run, "does not fit: "));
     CHECK(says(run, "the limit is 16.0 MiB (memory-limit)"));
-    const std::size_t late = run.frames.size() / 4 * 4 - 4;
+    const std::size_t late = (run.frames.size() - 1) / 12 * 12;
     const auto rect = run.layers(late, "projection").at(0).at("views").at(0).at("rect").get<std::array<int, 4>>();
     CHECK(rect[2] == 256);
-    Image before = run.eye(late / 8 * 4, kLeft), after = run.eye(late, kLeft);
+    Image before = run.eye(late / 2, kLeft), after = run.eye(late, kLeft);
     maskPanels(before, run, late, kLeft);
     maskPanels(after, run, late, kLeft);
     CHECK(compare(after, before, 3).psnrDb() > 60.0);
@@ -224,6 +226,7 @@ TEST_CASE("a resolution that the device has no memory for is refused on the pane
 TEST_CASE("a recorded walk of 100 frames, with clicks on the way, ends when the wearer leaves") {
     const Workplace work;
     const Panel panel = startPanel(work);
+    writeLightFence(work.path / "fence.ply");
     std::ofstream motion(work.path / "walk.csv");
     motion << "time_s,x,y,z,qx,qy,qz,qw\n";
     for (int i = 0; i <= 230; ++i) {
@@ -522,6 +525,7 @@ TEST_CASE("the scene that one hand holds moves with it, as far as it does and no
 
 TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method, takes clicks and knows no floor") {
     const Workplace work;
+    writeLightFence(work.path / "fence.ply");
     std::string script = "rate 45\nsize 160 160\nframes every 4\nstage off\nprofile khr/simple_controller\n";
     for (const simulated::Extension& extension : simulated::kExtensions) {
         const std::string name = extension.name;
@@ -531,7 +535,7 @@ TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method,
     for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) { places.push_back(placeOf(mode)); }
     places.emplace_back(0.9, 0.95);
     const ViewRun run = runView(work, "core", script + clickOn(startPanel(work), places, "select"),
-                                "builtin:fence --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+                                "fence.ply --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
     checkClean(run);
     CHECK(says(run, "the room now begins where the wearer stands\n"));
     std::size_t from = 0;

@@ -102,11 +102,11 @@ TEST_CASE("no frame makes a kernel, also where the eyes come to look another way
 
 TEST_CASE("what the wearer set is the most there is, and it is kept where everything fits or quality is off") {
     const Workplace work;
-    const ViewRun smaller = runQuality(work, "smaller", kSlow, 70, "quality = \"fast\"\nresolution-scale = 0.8\n");
+    const ViewRun smaller = runQuality(work, "smaller", kSlow, 70, "quality = \"fast\"\nresolution-scale = 0.8\n", "shared");
     CHECK(widthAt(smaller, 3) == 160);
     CHECK(widthAt(smaller, 60) == 64);
-    CHECK(widthAt(runQuality(work, "quick", kQuick, 40, "quality = \"fast\"\n"), 38) == 200);
-    const ViewRun off = runQuality(work, "off", kSlow, 40, "quality = \"off\"\n");
+    CHECK(widthAt(runQuality(work, "quick", kQuick, 40, "quality = \"fast\"\n", "shared"), 38) == 200);
+    const ViewRun off = runQuality(work, "off", kSlow, 40, "quality = \"off\"\n", "shared");
     CHECK(widthAt(off, 38) == 200);
     CHECK(off.outcome.output.find(" took ") == std::string::npos);
 }

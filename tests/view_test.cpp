@@ -1,6 +1,7 @@
 // Facts about `binosplat view`, driven through the standard OpenXR loader by scripts of the simulated headset.
 #include "engine/geometry.h"
 #include "engine/picture/metrics.h"
+#include "tests/light_fence.h"
 #include "tests/view_runs.h"
 
 #include <doctest/doctest.h>
@@ -16,7 +17,7 @@ namespace {
 
 // 90 frames a second; the session shows its first frame a hundredth of a second after its clock began.
 const std::string kSmall = "rate 90\nsize 192 192\n";
-const std::string kScene = "builtin:fence --load-first";
+const std::string kScene = "fence.ply --load-first";
 // Where nobody looks at the picture.
 const std::string kBlind = "rate 90\nsize 64 64\nframes none\n", kWall = "builtin:slanted-wall --load-first --hide-hands --mode ";
 
@@ -30,7 +31,7 @@ std::string numbers(const glm::dvec3& v) { return fmt::format("{:.9f},{:.9f},{:.
 
 // Both eyes of a frame against what `binosplat render` makes of the same poses and angles.
 void checkAgrees(const Workplace& work, const ViewRun& run, std::size_t frame, const std::string& render_arguments) {
-    const Outcome rendered = work.run("render builtin:fence --out expected --headset headset.toml " + render_arguments);
+    const Outcome rendered = work.run("render fence.ply --out expected --headset headset.toml " + render_arguments);
     INFO(rendered.errors);
     REQUIRE(rendered.exit_code == 0);
     for (const int side : {kLeft, kRight}) {
@@ -91,6 +92,7 @@ TEST_CASE("bad input is known by its exit code") {
 TEST_CASE("the wearer sees what render makes of the same poses and angles") {
     const Workplace work;
     std::ofstream(work.path / "headset.toml") << kHeadset;
+    writeLightFence(work.path / "fence.ply");
     // From (0.05, -0.1, 0.2) of the scene; later a step, a turn of the head and a tilt, in OpenXR's axes.
     const std::string start = "--eye 0.05,-0.1,0.2 --look 0.05,-0.1,3 --up 0,-1,0";
     const std::string script =
@@ -112,6 +114,7 @@ TEST_CASE("the wearer sees what render makes of the same poses and angles") {
 
 TEST_CASE("two runs with the virtual clock write the same files") {
     const Workplace work;
+    writeLightFence(work.path / "fence.ply");
     const std::string script = kSmall + "head 0 position 0 1.6 0\nhead 0.2 position 0.1 1.6 -0.1 turn 10 5\nframes every 3\nat 0.25 exit\n";
     const ViewRun first = runView(work, "first", script, kScene + " --hide-panel --hide-hands");
     const ViewRun second = runView(work, "second", script, kScene + " --hide-panel --hide-hands");
