@@ -12,6 +12,8 @@ using namespace binosplat::test;
 namespace {
 
 const std::string kSmall = "rate 100\nsize 128 128\nframes every 5\n";
+// Where nobody looks at what the headset shows.
+const std::string kBlind = "rate 100\nsize 64 64\nframes none\n";
 const std::string kScene = "builtin:slanted-wall --load-first --mode mono";
 const std::string kJointless = "extension XR_EXT_hand_tracking off\n";
 
@@ -46,9 +48,9 @@ std::vector<nlohmann::json> vignettes(const ViewRun& run, std::size_t frame) {
 }
 
 ViewRun runHands(const Workplace& work, const std::string& name, const std::string& lines, const std::string& options = "",
-                 const std::string& profile = "oculus/touch_controller") {
+                 const std::string& profile = "oculus/touch_controller", const std::string& headset = kSmall) {
     const ViewRun run =
-        runView(work, name, kSmall + lines + "at 0.6 exit\n", kScene + options, kValidated + " SIMULATED_OPENXR_PROFILE=" + profile);
+        runView(work, name, headset + lines + "at 0.6 exit\n", kScene + options, kValidated + " SIMULATED_OPENXR_PROFILE=" + profile);
     checkClean(run);
     for (const auto& frame : run.frames) { CHECK(frame.at("layers").size() <= 16); }
     return run;
@@ -70,7 +72,8 @@ TEST_CASE("every hand that points has a ray: to the panel where it meets it, els
     const glm::dvec3 right_at(0.2, 1.2, -0.35), left_at(-0.2, 1.2, -0.35), panel_middle(-0.45, 1.5, -0.9);
     const ViewRun run =
         runHands(work, "rays",
-                 hand("right", 0, right_at, panel_middle) + hand("left", 0, left_at, {-0.2, 0.2, -1.0}) + "at 0.4 controller right off\n");
+                 hand("right", 0, right_at, panel_middle) + hand("left", 0, left_at, {-0.2, 0.2, -1.0}) + "at 0.4 controller right off\n",
+                 "", "oculus/touch_controller", kBlind);
     const auto rays = run.rays(30);
     REQUIRE(rays.size() == 2);
     // The left one misses and fades; the right one ends on the panel.
@@ -85,7 +88,7 @@ TEST_CASE("every hand that points has a ray: to the panel where it meets it, els
 
 TEST_CASE("without the panel a ray is there while the trigger is pulled") {
     const Workplace work;
-    const ViewRun run = runHands(work, "bare", "press right trigger 0.3 0.4\n", " --hide-panel");
+    const ViewRun run = runHands(work, "bare", "press right trigger 0.3 0.4\n", " --hide-panel", "oculus/touch_controller", kBlind);
     CHECK(run.rays(20).empty());
     CHECK(run.rays(35).size() == 1);
     CHECK(run.rays(50).empty());
@@ -96,7 +99,7 @@ TEST_CASE("either hand clicks on the panel") {
     // Both point at it; the left one clicks on Quit, though the right one hovers elsewhere.
     const ViewRun run =
         runView(work, "left",
-                kSmall + hand("right", 0, {0.2, 1.2, -0.35}, {-0.45, 1.7, -0.9}) +
+                kBlind + hand("right", 0, {0.2, 1.2, -0.35}, {-0.45, 1.7, -0.9}) +
                     "controller left 0 position -0.2 1.2 -0.35 look -0.286 1.774 -1.012\npress left trigger 0.2 0.25\nat 2 exit\n",
                 kScene);
     checkClean(run);
@@ -167,12 +170,12 @@ TEST_CASE("the floor is where the runtime says, and the trigger teleports contro
     std::ofstream(work.path / "teleport.toml") << "[view]\nlocomotion = \"teleport\"\nhands = false\n";
     const std::string options = " --hide-panel --config teleport.toml", pull = "press right select 0.2 0.4\n";
     const std::string away = "head 0 position 0 1.3 0\ncontroller right 0 position 0.2 0.9 -0.35\n";
-    const ViewRun low = runHands(work, "low", away + pull, options, "khr/simple_controller");
+    const ViewRun low = runHands(work, "low", away + pull, options, "khr/simple_controller", kBlind);
     REQUIRE(targets(low, 30).size() == 1);
     // 1.3 m below the head, by STAGE; without any floor as far below as people are high.
     CHECK(targets(low, 30)[0].at("pose").at("position").at(1).get<double>() == doctest::Approx(-1.29));
-    const ViewRun floorless =
-        runHands(work, "floorless", away + pull + "stage off\nextension XR_EXT_local_floor off\n", options, "khr/simple_controller");
+    const ViewRun floorless = runHands(work, "floorless", away + pull + "stage off\nextension XR_EXT_local_floor off\n", options,
+                                       "khr/simple_controller", kBlind);
     CHECK(targets(floorless, 30).at(0).at("pose").at("position").at(1).get<double>() == doctest::Approx(-1.59));
 }
 
@@ -255,7 +258,7 @@ TEST_CASE("while the scene loads, the room shows where the wearer wants it") {
 
 TEST_CASE("how one moves and what is seen is chosen on the panel") {
     const Workplace work;
-    const std::string small = kSmall + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
+    const std::string small = kBlind + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
     const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", kScene), 8);
     const ViewRun run = runView(work, "choose", small + clickOn(panel, {{0.036, 0.7}, {0.263, 0.7}, {0.505, 0.7}, {0.7, 0.7}}), kScene);
     checkClean(run);
