@@ -101,7 +101,7 @@ std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uin
 // low-pass is what remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
 
-// Likewise 5: takes out the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
+// Likewise bin: takes out the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
 
 // sort_tiles: pairs by tile, depth order kept within; and where each tile's pairs lie.
@@ -115,7 +115,7 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 
-// 7 without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit or, if
+// rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit or, if
 // the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs` and
 // `splats` are of `order`. With a `window`, hits come in that order, so many of them wait, and the nearest of these is blended next (Radl
 // et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
