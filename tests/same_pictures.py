@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Whether two builds of the program draw the same: `tests/same_pictures.py OLD NEW [--times N] [SCENE...]`.
+"""Whether two builds of the program draw the same: `tests/same_pictures.py OLD NEW [--times N] [--modes A,B] [--size WxH] [SCENE...]`.
 
 Every mode and what changes its passes, over some scenes: pictures byte for byte, and of report.json the counters, what was left out, the
 shares that were rendered and the peak of memory (within 1 %). With --times the two take turns N times, and the median of the ratios of their
@@ -65,18 +65,26 @@ def differences(old, new, old_dir, new_dir):
         yield f"peak_gpu_bytes {old['peak_gpu_bytes']} {new['peak_gpu_bytes']}"
 
 
+def ways_of(asked):
+    ways = [w for w in WAYS if not asked.modes or w[1] in asked.modes.split(",")]
+    parallel = [["--size", asked.size, *CAMERA[2:], *w] for w in ways]
+    return parallel + [[*CANTED, *w] for w in ways if w[1] in ("paper", "predicted", "reproject") and not asked.modes]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old")
     parser.add_argument("new")
     parser.add_argument("scenes", nargs="*", default=SCENES)
     parser.add_argument("--times", type=int, default=1)
-    asked = parser.parse_args()
+    parser.add_argument("--modes", help="some alone, with a comma between them")
+    parser.add_argument("--size", default=CAMERA[1])
+    asked = parser.parse_intermixed_args()
     differing = 0
     with tempfile.TemporaryDirectory() as folder:
         dirs = [pathlib.Path(folder) / "old", pathlib.Path(folder) / "new"]
         for scene in asked.scenes:
-            for way in [[*CAMERA, *w] for w in WAYS] + [[*CANTED, *w] for w in WAYS if w[1] in ("paper", "predicted", "reproject")]:
+            for way in ways_of(asked):
                 ratios = []
                 for turn in range(asked.times):
                     reports = {}
