@@ -245,7 +245,7 @@ TEST_CASE("whoever waits for a large scene hears how far it is, may stop it, and
     std::vector<double> told;
     writeSog(scene, folder.file("a.sog"), [&](double share) { told.push_back(share); });
     CHECK(std::ranges::is_sorted(told));
-    CHECK(told.size() > 8);
+    CHECK(told.size() >= 8);
     CHECK(told.back() == 1.0);
     std::filesystem::remove(folder.file("a.sog"));
     struct Enough {};
