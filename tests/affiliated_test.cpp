@@ -19,7 +19,7 @@ using test::ViewedScene;
 
 namespace {
 
-ViewedScene viewAtelier(glm::uvec2 size_px = {256, 256}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
+ViewedScene viewAtelier(glm::uvec2 size_px = {192, 192}) { return test::viewBuiltin("builtin:atelier", size_px, 20000); }
 
 FrameSettings makeSettings(Mode mode, Side dominant = kLeft) {
     FrameSettings settings;
@@ -142,7 +142,7 @@ TEST_CASE_FIXTURE(Gpu, "every mode gives the same bytes from run to run, and on 
 }
 
 TEST_CASE_FIXTURE(Gpu, "every pixel of the other eye is written, with parallel, asymmetric and canted eyes, whichever dominates") {
-    for (const glm::uvec2 size_px : {glm::uvec2(256, 256), glm::uvec2(97, 131)}) {
+    for (const glm::uvec2 size_px : {glm::uvec2(192, 192), glm::uvec2(97, 131)}) {
         const ViewedScene view = viewAtelier(size_px);
         const GpuScene scene(context(), view.scene);
         StereoFrame frame(context(), scene);

@@ -3,6 +3,7 @@
 #include "engine/picture/metrics.h"
 #include "tests/light_fence.h"
 #include "tests/panel_sketch.h"
+#include "tests/unchanged_shaders.h"
 #include "tests/view_panel.h"
 #include "xr/simulated/extensions.h"
 
@@ -340,15 +341,7 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     copyOf("broken", line, "    const uvec3 bytes = nonsense;");
     copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
     const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
-    // A compiler that takes what nobody changed from the build, where the viewer's own command made it; the first run has no such help.
-    std::filesystem::create_directory(work.path / "tools");
-    std::ofstream(work.path / "tools" / "glslangValidator")
-        << "#!/bin/sh\nfor word; do case $last in -o) out=$word ;; esac; last=$word; done\n"
-           "name=$(basename $last .comp)\n"
-           "if cmp -s $last '" BINOSPLAT_SOURCE_DIR "/shaders/'$name.comp; then exec cp '" BINOSPLAT_BUILD
-           "/shaders/embedded/'$name.spv $out; fi\n"
-           "PATH=${PATH#*:} exec glslangValidator \"$@\"\n";
-    std::filesystem::permissions(work.path / "tools" / "glslangValidator", std::filesystem::perms::owner_all);
+    writeCompilerOfChangedShaders(work.path / "tools");  // the first run has no such help
     const auto click = [&](const std::string& name, const std::string& folder, const std::string& more = " PATH=\"$PWD/tools:$PATH\"") {
         const ViewRun run = runView(work, name, script, kScene + " --shaders '" + folder + "'", kValidated + more);
         checkClean(run);

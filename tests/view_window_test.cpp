@@ -5,6 +5,7 @@
 #include "engine/picture/metrics.h"
 #include "tests/installed.h"
 #include "tests/panel_sketch.h"
+#include "tests/unchanged_shaders.h"
 #include "tests/view_panel.h"
 #include "tests/view_runs.h"
 
@@ -318,7 +319,9 @@ public:
         : screen_((std::filesystem::create_directory(work.base / "screen"), work.base / "screen")),
           connection_(screen_),
           program_((connection_.setDpi(dpi), work.path),
-                   {"/bin/sh", "-c", "exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono " + options},
+                   {"/bin/sh", "-c",
+                    "export PATH=\"$PWD/tools:$PATH\"; exec '" BINOSPLAT_PROGRAM "' view builtin:slanted-wall --load-first --mode mono " +
+                        options},
                    screen_.name) {
         // While it loads, the panel has another layout.
         REQUIRE(program_.waitFor("shows builtin:slanted-wall") != "");
@@ -425,6 +428,7 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     if (!haveScreen()) { return; }
     const Workplace work;
     std::ofstream(work.path / "rest.script") << "rate 30\nsize 192 192\nframes all\n";
+    writeCompilerOfChangedShaders(work.path / "tools");
     Viewer viewer(work, "--simulate rest.script --out seen --shaders '" BINOSPLAT_SOURCE_DIR "/shaders'");
     Program& program = viewer.program();
 
