@@ -5,8 +5,8 @@
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
-#include "engine/passes/warp_passes.h"
 #include "engine/passes/present.h"
+#include "engine/passes/warp_passes.h"
 #include "engine/setup/output_files.h"
 
 #include <fmt/format.h>

@@ -22,8 +22,9 @@ NamedTimes byLabel(const PassTimes& pass_ms);
 // The times by bare pass, in the order in which they come: "dominant project" and "affiliated project" add up to "project".
 NamedTimes byPass(const PassTimes& pass_ms);
 
-// The times by stage: "cull+sort" (FrameStage::kSort), "dominant" (FrameStage::kSplat), "reprojection" (FrameStage::kWarp), "ROI choice" (FrameStage::kChoose),
-// and of the affiliated eye's FrameStage::kSplat "patch", or "affiliated" where it is rendered in full. Stages that did not run are left out.
+// The times by stage: "cull+sort" (FrameStage::kSort), "dominant" (FrameStage::kSplat), "reprojection" (FrameStage::kWarp), "ROI choice"
+// (FrameStage::kChoose), and of the affiliated eye's FrameStage::kSplat "patch", or "affiliated" where it is rendered in full. Stages that
+// did not run are left out.
 NamedTimes stagesOf(std::optional<Mode> mode, const PassTimes& pass_ms);
 
 // Of all times with this name; 0 of none.

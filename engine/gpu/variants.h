@@ -33,13 +33,13 @@ struct ShaderConstant {
 
 // Of a PASS line: one field a constant, in the order of their ids, and nothing else.
 #define CONSTANT(field, count) std::uint32_t field = 0;
-#define PASS(folder, shader, Name, Struct, ...)                 \
-    struct Name##Kernel {                                       \
-        using Pass = gpu::Struct;                               \
-        static constexpr const char* kShader = #shader;         \
+#define PASS(folder, shader, Name, Struct, ...)                      \
+    struct Name##Kernel {                                            \
+        using Pass = gpu::Struct;                                    \
+        static constexpr const char* kShader = #shader;              \
         static constexpr FrameStage kStage = stageOfFolder(#folder); \
-        static constexpr auto constants();                      \
-        __VA_ARGS__                                             \
+        static constexpr auto constants();                           \
+        __VA_ARGS__                                                  \
     };
 #include "shaders/passes.def"
 #undef PASS

@@ -115,10 +115,10 @@ Picture rasterize(std::span<const ProjectedSplat> splats, std::span<const TilePa
 // All passes for one eye.
 Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 
-// rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit or, if
-// the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs` and
-// `splats` are of `order`. With a `window`, hits come in that order, so many of them wait, and the nearest of these is blended next (Radl
-// et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
+// rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit
+// or, if the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs`
+// and `splats` are of `order`. With a `window`, hits come in that order, so many of them wait, and the nearest of these is blended next
+// (Radl et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
 Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
                          std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,
                          std::size_t window = SIZE_MAX);

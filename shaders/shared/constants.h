@@ -102,13 +102,14 @@ BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
 // What a tile costs to render in addition to its pairs, in pairs: a workgroup starts and 256 pixels are written.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
-// Moving costs something even where tiles are not moved, since rasterize and resample, or reproject and resample, go over all pixels: this part of what moving all
-// tiles costs.
+// Moving costs something even where tiles are not moved, since rasterize and resample, or reproject and resample, go over all pixels: this
+// part of what moving all tiles costs.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
 // Where nothing was moved in the frame before, this part of what moving saves is not counted on.
 BINOSPLAT_CONSTANT uint kResumePart = 8;
 
-// The price list of price: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words needs.
+// The price list of price: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words
+// needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
 // What a tile costs in the price list at most, in pairs: ten bits of the word say the bin, and one that the tile would be in a higher one
 // if its error were seen whole.
@@ -122,17 +123,17 @@ BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
 // A tile outside where the eye looks is never rendered for its error if the eye sees less than this of its square: a hundredth of what lies
 // between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
-// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and resample makes a row of
-// those above and below. price writes this in place of the tile's error: it is more than any error.
+// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and resample makes a row
+// of those above and below. price writes this in place of the tile's error: it is more than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 // The spread of a moving pixel's inverse depth is kept in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// resample keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where a
-// device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. reproject brings pixels there, as it
-// does for canted eyes whatever the length.
+// resample keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where
+// a device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. reproject brings pixels there,
+// as it does for canted eyes whatever the length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 2304;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
 // What resample makes a row from: arrivals in memory; the source's pixels; these where none of its tiles is hidden, as is most often so

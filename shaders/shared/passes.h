@@ -155,7 +155,7 @@ struct ResamplePass {
     WarpViews warp;
     FloatColours source;
     HalfColours half_source;
-    Uints moving;             // the source's pixels or, where reproject ran, the arrivals that it left
+    Uints moving;         // the source's pixels or, where reproject ran, the arrivals that it left
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
     Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
