@@ -1,5 +1,6 @@
 // The structs that C++ and GLSL share have the same fields at the same offsets in both: what the compiled shaders say of them is
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
+#include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
@@ -294,6 +295,19 @@ TEST_CASE("no shader copies a struct of addresses, which some compilers do not s
         CHECK(shader.copiedAddresses() == "");
         CHECK(shader.looseAddresses() == 0);
     }
+}
+
+TEST_CASE_FIXTURE(test::Gpu, "a shader that breaks off is refused, whatever the driver would make of it") {
+    const auto words = embeddedShader("bin");
+    const std::vector<std::uint32_t> whole(words.begin(), words.end());
+    for (const std::size_t length : {std::size_t{3}, std::size_t{6}}) {
+        context().replacedShaders()["bin"] = {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length)};
+        CHECK_THROWS_AS(Kernel(context(), variantOf(BinKernel{})), Error);
+    }
+    context().replacedShaders()["bin"] = whole;
+    context().replacedShaders()["bin"][5] = 0;  // an instruction of no words
+    CHECK_THROWS_AS(Kernel(context(), variantOf(BinKernel{})), Error);
+    context().replacedShaders().erase("bin");
 }
 
 TEST_CASE("push constants fit into the 128 bytes that every device has") {

@@ -1,4 +1,4 @@
-// Facts about pictures on their way to a headset: pass 10 against its float64 twin, on the device.
+// Facts about pictures on their way to a headset: the pass against its float64 twin, on the device.
 #include "engine/passes/present.h"
 #include "engine/reference/present.h"
 #include "tests/gpu_fixture.h"

@@ -286,6 +286,23 @@ TEST_CASE_FIXTURE(Gpu, "pictures shifted by a pixel, swapped eyes and another ba
     CHECK_FALSE(isAlike(left, closer.pictures[kLeft]));
 }
 
+TEST_CASE_FIXTURE(Gpu, "eyes that change their roles take over what the other was made with") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene);
+    const auto eyes = headsetEyes(view.eye, 0.0);
+    frame.render(eyes, makeSettings(Mode::kPredicted, kLeft));
+    const std::uint64_t kinds = frame.warpBuffers().tileKinds().value;
+    for (const Side dominant : {kRight, kLeft}) {
+        frame.render(eyes, makeSettings(Mode::kPredicted, dominant));
+        CHECK(frame.warpBuffers().tileKinds().value == kinds);
+        CHECK(frame.readTileKinds().size() == frame.warpBuffers().tileCount());
+    }
+    frame.render(eyes, makeSettings(Mode::kShared));
+    CHECK(frame.warpBuffers().bytes() == 0);
+    CHECK(frame.readTileKinds().empty());
+}
+
 TEST_CASE_FIXTURE(Gpu, "counters of pairs are the twin's within one percent") {
     for (const ViewedScene& view : {viewAtelier(), test::viewBuiltin("builtin:slanted-wall", {256, 256})}) {
         CAPTURE(view.name);

@@ -23,8 +23,8 @@ inline bool areHalves(Rows rows) { return rows == Rows::kOwnHalves || rows == Ro
 // The longest row that resample keeps in shared memory.
 inline std::uint32_t longestSharedRow(const Context& context) { return mostRowSteps(context) * gpu::kArrivalsStep; }
 
-// What passes 8 work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to write begins
-// as kUnwritten.
+// What passes of warp and choose work on. Each call runs one of them; between calls every array may be read or replaced. What a pass is to
+// write begins as kUnwritten.
 class StereoOnDevice {
 public:
     static constexpr gpu::uint kUnwritten = 0xcdcdcdcdu;

@@ -36,7 +36,7 @@ std::vector<ViewedScene> allScenes() {
 
 bool inOrder(const TilePair& a, const TilePair& b) { return a.splat != b.splat ? a.splat < b.splat : a.tile < b.tile; }
 
-// Passes 4 and 5 from the twin's order: the pairs as bin writes them; those in the tiles of a mask alone, if there is one.
+// project and bin from the twin's order: the pairs as bin writes them; those in the tiles of a mask alone, if there is one.
 std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinStages& twin, const std::vector<gpu::uint>& mask = {}) {
     const SceneOnDevice device(gpu, view.scene, {view.eye}, kSettings.near);
     const Buffer mask_buffer = gpu.upload("tile mask", mask);

@@ -72,8 +72,10 @@ std::string find(const NamedTimes& times, const std::string& name) {
 std::string timesTable(const std::vector<const BenchResult*>& point) {
     std::vector<std::string> passes;
     for (const BenchResult* r : point) {
+        auto next = passes.begin();  // a new one comes after the one before it
         for (const auto& [name, ms] : byPass(r->pass_ms)) {
-            if (std::ranges::find(passes, name) == passes.end()) { passes.push_back(name); }
+            const auto found = std::ranges::find(passes, name);
+            next = (found != passes.end() ? found : passes.insert(next, name)) + 1;
         }
     }
     TextColumns columns;

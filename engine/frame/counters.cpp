@@ -4,6 +4,7 @@
 namespace binosplat {
 
 std::map<std::string, std::uint64_t> FrameCounters::named() const {
+    if (targets.empty()) { return {}; }
     std::map<std::string, std::uint64_t> names{{"commands", commands},       {"splats_read", splats_read},
                                                {"scene_bytes", scene_bytes}, {"visible_bytes", visible_bytes},
                                                {"pair_bytes", pair_bytes},   {"scratch_bytes", scratch_bytes}};

@@ -39,13 +39,13 @@ struct FrameCounters {
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
     std::optional<WarpedCounters> warped;
-    // Since the program began; of frames that are not waited for.
+    // Of StereoFrame::renderAhead, since its frame was made.
     struct Ahead {
         std::uint64_t frames_cut_short = 0, frames_done_again = 0;
     };
     std::optional<Ahead> ahead;
 
-    // As reports name them.
+    // As reports name them; none of a frame that was not drawn.
     [[nodiscard]] std::map<std::string, std::uint64_t> named() const;
 };
 

@@ -42,13 +42,9 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
     return false;
 }
 
-bool MovingPays::ask(std::span<const Eye> eyes, const FrameSettings& settings) {
+MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {
     const int dominant = settings.mode == Mode::kMono ? 0 : settings.dominant;
-    const Asked asked{stereoSettingsOf(settings), dominant, eyes[0].size_px,
-                      settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
-    if (settings.mode != Mode::kPredicted || asked != asked_) { pays_ = true; }
-    asked_ = asked;
-    return pays_;
+    return {stereoSettingsOf(settings), dominant, eyes[0].size_px, settings.hidden_tiles[static_cast<std::size_t>(dominant)].size()};
 }
 
 }  // namespace binosplat

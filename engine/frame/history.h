@@ -33,8 +33,15 @@ public:
         bool operator==(const Asked&) const = default;
     };
 
-    // For the frame that comes now.
-    bool ask(std::span<const Eye> eyes, const FrameSettings& settings);
+    [[nodiscard]] static Asked askedBy(std::span<const Eye> eyes, const FrameSettings& settings);
+    [[nodiscard]] bool mayMove(const FrameSettings& settings, const Asked& asked) const {
+        return settings.mode != Mode::kPredicted || asked != asked_ || pays_;
+    }
+    // A frame comes that is asked for so.
+    void ask(const Asked& asked, bool may_move) {
+        asked_ = asked;
+        pays_ = may_move;
+    }
     [[nodiscard]] const Asked& asked() const { return asked_; }
     // What became of a frame that was asked for `asked`.
     void learn(const FrameSettings& settings, const Asked& asked, bool pays) {

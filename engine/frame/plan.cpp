@@ -29,7 +29,10 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     return stereo;
 }
 
-int FramePlan::firstTarget() const { return std::ranges::find(steps, Step::Kind::kRender, &Step::kind)->index; }
+int FramePlan::firstTarget() const {
+    const auto found = std::ranges::find(steps, Step::Kind::kRender, &Step::kind);
+    return found == steps.end() ? 0 : found->index;
+}
 
 std::optional<int> FramePlan::warpedTarget() const {
     const auto found = std::ranges::find_if(targets, [](const TargetPlan& target) { return target.warp.has_value(); });

@@ -64,7 +64,7 @@ struct FramePlan {
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
 
-// The only one who asks which mode it is. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
+// Nobody else asks a mode what it does. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
 // pixels paid in the frame before, or nobody knows.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move);
 

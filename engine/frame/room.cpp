@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace binosplat {
 namespace {
@@ -49,6 +50,23 @@ void FrameRoom::forgetUploads() {
     for (ShownTiles& shown : shown_) { shown.forgetUpload(); }
 }
 
+void FrameRoom::fitWarps(const FramePlan& plan) {
+    std::array<WarpBufferNeeds, kMostTargets> needs;
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
+    // Where eyes have changed their roles, what one had serves the other; what nobody needs any more goes before anything is made.
+    for (std::size_t t = 0; t < needs.size(); ++t) {
+        for (std::size_t other = 0; other < needs.size() && warps_[t].needs() != needs[t]; ++other) {
+            if (warps_[other].needs() == needs[t] && needs[other] != needs[t]) { std::swap(warps_[t], warps_[other]); }
+        }
+    }
+    for (std::size_t t = 0; t < needs.size(); ++t) {
+        if (warps_[t].needs() != needs[t]) { warps_[t] = {}; }
+    }
+    for (std::size_t t = 0; t < needs.size(); ++t) {
+        if (warps_[t].needs() != needs[t]) { warps_[t] = WarpBuffers(context_, needs[t]); }
+    }
+}
+
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
     std::uint64_t most_tiles = 0, moments_bytes = 0;
     for (std::size_t t = 0; t < pictures_.size(); ++t) {
@@ -66,14 +84,10 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
         resize(context_, picture.depths, "depths", kept.depth ? pixels * sizeof(float) : 0);
         if (kept.moments) { moments_bytes = pixels * sizeof(gpu::vec2); }
-        const WarpBufferNeeds needs = used ? needsOf(plan.targets[t]) : WarpBufferNeeds{};
-        if (warps_[t].needs() != needs) {
-            warps_[t] = {};
-            warps_[t] = WarpBuffers(context_, needs);
-        }
     }
     resize(context_, moments_, "inverse depth moments", moments_bytes);
     resize(context_, lists_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));
+    fitWarps(plan);
 }
 
 std::uint32_t FrameRoom::mostLentPairs(const FramePlan& plan) const {

@@ -62,6 +62,7 @@ public:
     void forgetUploads();
 
 private:
+    void fitWarps(const FramePlan& plan);
     // Pairs that the source's sort finds room for in the picture that is made from it, while nothing is in it.
     [[nodiscard]] std::uint32_t mostLentPairs(const FramePlan& plan) const;
     [[nodiscard]] FrameCapacity lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const;

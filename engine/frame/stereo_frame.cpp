@@ -17,8 +17,8 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
 void StereoFrame::show(const GpuScene& scene) {
     finish();
     scene_ = &scene;
-    room_.show(scene);
     moving_pays_.forget();
+    room_.show(scene);
 }
 
 void StereoFrame::rebuildKernels() {
@@ -39,10 +39,14 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     prepare(eyes, settings);
     Commands& commands = flight().commands;
     // `predicted` may find that moving does not pay.
-    for (const bool may_move : {false, true}) {
-        recorder().record(commands, planFrame(settings, eyes, may_move));
+    if (settings.mode == Mode::kPredicted) {
+        recorder().record(commands, planFrame(settings, eyes, false));
         commands.drop();
     }
+    recorder().record(commands, planFrame(settings, eyes, true));
+    commands.drop();
+    // Nothing is known of any frame.
+    moving_pays_.forget();
     room_.forgetFrames();
 }
 
@@ -55,9 +59,10 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 
 void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
     if (shapeOf(eyes, settings) == shape_) { return; }
+    FramePlan plan = planFrame(settings, eyes, true);
     finish();
     shape_ = {};  // some pictures are new, and some may fail
-    plan_ = planFrame(settings, eyes, true);
+    plan_ = std::move(plan);
     room_.fitPictures(plan_, settings.hidden_tiles);
 }
 
@@ -159,9 +164,12 @@ bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& s
 }
 
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
-    plan_ = planFrame(settings, eyes, moving_pays_.ask(eyes, settings));
+    const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
+    const bool may_move = moving_pays_.mayMove(settings, asked);
+    plan_ = planFrame(settings, eyes, may_move);
     room_.fitPictures(plan_, settings.hidden_tiles);
     room_.fitLists(plan_);
+    moving_pays_.ask(asked, may_move);
     shape_ = shapeOf(eyes, settings);
     eyes_.assign(eyes.begin(), eyes.end());
 }

@@ -35,9 +35,12 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, cons
     constexpr std::uint32_t kConstantTrue = 41, kConstantFalse = 42, kConstant = 43, kSpecConstantTrue = 48, kSpecConstantFalse = 49,
                             kSpecConstant = 50, kDecorate = 71, kSpecId = 1;
     constexpr std::size_t kHeaderWords = 5;
+    const auto isWhole = [&](std::size_t at) { return words[at] >> 16 > 0 && (words[at] >> 16) <= words.size() - at; };
+    check(words.size() >= kHeaderWords, "a shader of {} words, which is none", words.size());
     std::map<std::uint32_t, std::uint32_t> value_of;  // by the id of the constant
     std::vector<std::uint32_t> specialized(words.begin(), words.begin() + kHeaderWords);
     for (std::size_t at = kHeaderWords; at < words.size(); at += words[at] >> 16) {
+        check(isWhole(at), "a shader of {} words that breaks off at word {}", words.size(), at);
         const auto instruction = words.subspan(at, words[at] >> 16);
         const std::uint32_t opcode = instruction[0] & 0xffff;
         if (opcode == kDecorate && instruction[2] == kSpecId) {

@@ -12,7 +12,7 @@
 
 namespace binosplat {
 
-// Pictures of a frame, and lists of visible splats: two eyes, and a second picture of each.
+// Pictures of a frame at most, and lists of visible splats: two eyes, and room for a second picture of each.
 inline constexpr std::size_t kMostTargets = 4;
 
 // A picture on its way.
