@@ -5,6 +5,7 @@
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
+#include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "engine/setup/output_files.h"
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
     append(table, warpKernels(context));
+    append(table, pastKernels());
     append(table, presentKernels());
     return table;
 }

@@ -59,8 +59,10 @@ HeadPath readHeadPath(const RenderOptions& options) {
     return {std::move(motion), std::move(times_s)};
 }
 
-std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& settings, const Cameras& start, double units_per_metre,
+std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& path_settings, const Cameras& start, double units_per_metre,
                                   const HeadPath& path, OutputFiles& files) {
+    FrameSettings settings = path_settings;
+    settings.keep_past = true;
     const bool mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;
     ProgressLine line(fmt::format("rendering {} frames", path.times_s.size()));

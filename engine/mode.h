@@ -15,15 +15,20 @@ enum class Mode {
     kReproject,  // the affiliated eye from the dominant one's picture alone
     kPaper,      // and its borders, on request also its holes, rendered again (the paper)
     kPredicted,  // and the tiles with the greatest expected error rendered again
+    kAlternate,  // one eye in full in each frame, in turn; the other from its own last full picture
+    kTemporal,   // both eyes from their own last pictures, the tiles with the greatest expected error rendered again
 };
 
 // By Mode, as options, reports and panels write them.
-inline constexpr std::array<std::string_view, 6> kModeNames{"mono", "two-pass", "shared", "reproject", "paper", "predicted"};
+inline constexpr std::array<std::string_view, 8> kModeNames{"mono",  "two-pass",  "shared",    "reproject",
+                                                            "paper", "predicted", "alternate", "temporal"};
 
 constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std::size_t>(mode)]; }
 
 // Whether the affiliated eye is made from the dominant one.
 constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
+// Whether frames are made from the ones before. The first of them is as in kPredicted, or of kAlternate as in kShared.
+constexpr bool hasPast(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }
 // Whether each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
 
@@ -33,6 +38,7 @@ enum class TileChoice {
     kNone,       // none: reprojection and interpolation alone
     kPaper,      // edge ROIs, and centre ROIs if asked for
     kPredicted,  // what is cheap to render, and those of the greatest expected error for their cost
+    kPast,       // those of the greatest expected error for their cost and for each frame that they have waited, of both eyes together
 };
 
 constexpr TileChoice choiceOf(Mode mode) {

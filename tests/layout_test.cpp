@@ -2,6 +2,7 @@
 // held against offsetof and sizeof. Also what shaders do with their constants, and with structs of addresses.
 #include "engine/error.h"
 #include "engine/passes/passes.h"
+#include "engine/passes/past_passes.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "shaders/embedded_shaders.h"
@@ -65,6 +66,9 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(WarpView, FIELD(target_from_source), FIELD(source_from_target), FIELD(size_px), FIELD(size_tiles), FIELD(row_words),
                FIELD(rows_apart), FIELD(gap_px), FIELD(margin_px), FIELD(edge_samples), FIELD(tight_edges), FIELD(move_cost), FIELD(budget),
                FIELD(hole_error), FIELD(newcomer_error)),
+        LAYOUT(PastView, FIELD(past_from_now), FIELD(now_from_past), FIELD(size_px), FIELD(size_tiles), FIELD(past_size_px),
+               FIELD(past_size_tiles)),
+        LAYOUT(PastTile, FIELD(cost), FIELD(age), FIELD(growth), FIELD(errors)),
         LAYOUT(ComponentPixel, FIELD(parent), FIELD(component)),
         LAYOUT(WarpCounters, FIELD(covered_pixels), FIELD(gap_pixels), FIELD(hole_pixels), FIELD(components), FIELD(edge_tiles),
                FIELD(center_tiles), FIELD(predicted_tiles), FIELD(cheap_tiles), FIELD(newcomers), FIELD(moved_tiles), FIELD(picture_cost),
@@ -75,7 +79,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(EyeCounters, FIELD(square_box_pairs_low), FIELD(square_box_pairs_high), FIELD(large_splats), FIELD(full_tiles),
                FIELD(per_full_tile)),
         LAYOUT(CullPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_counts), FIELD(visible), FIELD(splat_count),
-               FIELD(chunk_bits), FIELD(first_eye), FIELD(eye_count), FIELD(capacity)),
+               FIELD(chunk_bits), FIELD(first_eye), FIELD(eye_count), FIELD(capacity), FIELD(first_tile_mask), FIELD(last_tile_mask)),
         LAYOUT(CompactPass, FIELD(chunks), FIELD(eyes), FIELD(visible_bits), FIELD(group_offsets), FIELD(visible), FIELD(keys),
                FIELD(splats), FIELD(splat_count), FIELD(chunk_bits), FIELD(order_eye), FIELD(middle)),
         LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_sets), FIELD(tile_counts),
@@ -83,16 +87,20 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(BinPass, FIELD(splats), FIELD(tile_sets), FIELD(tile_counts), FIELD(group_sums), FIELD(visible), FIELD(pairs), FIELD(tiles),
                FIELD(ranks), FIELD(large_splats), FIELD(large_begins), FIELD(counters), FIELD(tile_mask), FIELD(size_tiles)),
         LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges), FIELD(tile_list), FIELD(masked_tiles), FIELD(full_tiles),
-               FIELD(counters), FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(background), FIELD(size_px)),
+               FIELD(counters), FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(moving), FIELD(past_tiles), FIELD(visible),
+               FIELD(background), FIELD(size_px)),
         LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(half_colours), FIELD(depths),
                FIELD(moments), FIELD(moving), FIELD(arrivals), FIELD(full_tiles), FIELD(counters), FIELD(background), FIELD(eye),
-               FIELD(row_words), FIELD(is_light)),
+               FIELD(row_words), FIELD(is_light), FIELD(past_tiles)),
         LAYOUT(WeighPass, FIELD(warp), FIELD(ranges), FIELD(moving), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors),
                FIELD(tile_depths), FIELD(tile_mask), FIELD(price_bins), FIELD(shown_mask), FIELD(visible), FIELD(masked_tiles),
                FIELD(counters)),
         LAYOUT(DepthBoundsPass, FIELD(warp), FIELD(colours), FIELD(half_colours), FIELD(moving), FIELD(bins)),
         LAYOUT(EdgeRoisPass, FIELD(warp), FIELD(bins), FIELD(tile_kinds), FIELD(shown_mask), FIELD(counters)),
         LAYOUT(ReprojectPass, FIELD(warp), FIELD(moving), FIELD(arrivals), FIELD(shown_mask)),
+        LAYOUT(WarpPastPass, FIELD(view), FIELD(source), FIELD(half_source), FIELD(source_words), FIELD(source_tiles), FIELD(target),
+               FIELD(half_target), FIELD(target_words), FIELD(depths), FIELD(tiles), FIELD(tile_kinds), FIELD(tile_mask), FIELD(price_bins),
+               FIELD(shown_mask), FIELD(background)),
         LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(warp), FIELD(tile_depths), FIELD(order), FIELD(visible),
                FIELD(source_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
         LAYOUT(ResamplePass, FIELD(warp), FIELD(source), FIELD(half_source), FIELD(moving), FIELD(target), FIELD(half_target),
@@ -101,9 +109,9 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ComponentsPass, FIELD(warp), FIELD(pixels), FIELD(pixel_classes), FIELD(boxes), FIELD(tile_kinds), FIELD(counters),
                FIELD(box_capacity)),
         LAYOUT(PricePass, FIELD(warp), FIELD(tile_kinds), FIELD(tile_costs), FIELD(tile_errors), FIELD(tile_prices), FIELD(price_bins),
-               FIELD(masked_tiles), FIELD(counters), FIELD(gaze)),
+               FIELD(masked_tiles), FIELD(counters), FIELD(budget), FIELD(past_tiles), FIELD(is_last), FIELD(gaze)),
         LAYOUT(SelectPass, FIELD(warp), FIELD(tile_kinds), FIELD(tile_prices), FIELD(tile_list), FIELD(tile_mask), FIELD(tile_costs),
-               FIELD(visible), FIELD(masked_tiles), FIELD(masked_visible), FIELD(counters)),
+               FIELD(visible), FIELD(masked_tiles), FIELD(masked_visible), FIELD(counters), FIELD(budget)),
         LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(run_sums), FIELD(digit_begins), FIELD(list), FIELD(shift),
                FIELD(digits)),
         LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(run_sums),
@@ -273,6 +281,7 @@ TEST_CASE("every shader's structs have the fields, offsets and sizes that C++ gi
 TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compiled for, calls it what C++ does, and has no other") {
     KernelTable table = passKernels(context());
     append(table, warpKernels(context()));
+    append(table, pastKernels());
     append(table, presentKernels());
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }

@@ -196,6 +196,9 @@ public:
                                   .price_bins = words(bins_),
                                   .masked_tiles = lists.address<gpu::ListState>(),
                                   .counters = counters(),
+                                  .budget = counters(),
+                                  .past_tiles = {},
+                                  .is_last = 1,
                                   .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
         dispatch(PriceKernel{.foveated = gaze.has_value()}, pass, tileGroups());
     }
@@ -217,7 +220,8 @@ public:
                                  .visible = list(0),
                                  .masked_tiles = list(1),
                                  .masked_visible = list(2),
-                                 .counters = counters()},
+                                 .counters = counters(),
+                                 .budget = counters()},
                  tileGroups());
         const auto states = gpu_.readBack<gpu::ListState>(lists, 3);
         auto tile_list = gpu_.readBack<gpu::uint>(tile_list_, std::min<std::size_t>(states[1].count, tileCount()));

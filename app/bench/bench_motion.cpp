@@ -44,11 +44,17 @@ double pairsOf(const FrameResult& frame) {
     return pairs;
 }
 
-// In tiles of the affiliated eye that are shown and were not rendered.
-std::uint64_t pixelsWarped(const FrameResult& frame, int affiliated) {
-    const TargetCounters& target = frame.counters.targets[static_cast<std::size_t>(affiliated)];
-    const std::uint64_t rendered = target.tiles_hidden + (frame.counters.warped ? frame.counters.warped->tiles_patched : 0);
-    return std::min(target.pixels, 256 * (target.tiles - std::min(target.tiles, rendered)));
+// In tiles that are shown and were not rendered: of the affiliated eye, or of both where these are made from their pasts.
+std::uint64_t pixelsWarped(const FrameResult& frame, Mode mode, int affiliated) {
+    std::uint64_t pixels = 0, tiles = 0, rendered = frame.counters.warped ? frame.counters.warped->tiles_patched : 0;
+    for (std::size_t t = 0; t < frame.counters.targets.size(); ++t) {
+        const TargetCounters& target = frame.counters.targets[t];
+        if (mode != Mode::kTemporal && t != static_cast<std::size_t>(affiliated)) { continue; }
+        pixels += target.pixels;
+        tiles += target.tiles;
+        rendered += target.tiles_hidden;
+    }
+    return std::min(pixels, 256 * (tiles - std::min(tiles, rendered)));
 }
 
 // R, G and B of a less those of b.
@@ -85,7 +91,14 @@ public:
 
     void warmUp(const Cameras& cameras, std::uint32_t count) {
         for (std::uint32_t i = 0; i < count; ++i) {
-            for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo); }
+            for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
+        }
+    }
+
+    // A pose that is not scored, and still is the past of one that is.
+    void pass(const Cameras& cameras) {
+        for (const MethodHistory& sequence : sequences_) {
+            if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
         }
     }
 
@@ -100,7 +113,7 @@ public:
             }
             const FullRender& before = full_before_[shared_.stereo.order];
             const Mode mode = sequence.method.stereo.mode;
-            const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo);
+            const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo, false, true);
             MotionFrame row;
             row.point = name_;
             row.method = sequence.method.name;
@@ -113,14 +126,14 @@ public:
             for (const int eye : {kLeft, kRight}) {
                 const auto e = static_cast<std::size_t>(eye);
                 row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
-                if (!reprojects(mode)) { continue; }
+                if (rendersBothInFull(mode)) { continue; }
                 const Image picture = frame->readPicture(eye);
                 Image error = subtract(picture, full.eyes[e]);
                 row.mean_square[e] = compare(picture, full.eyes[e]).mean_square;
                 row.flicker[e] = meanChange(error, sequence.error[e]);
                 sequence.error[e] = std::move(error);
             }
-            if (reprojects(mode)) { row.pixels_warped = pixelsWarped(rendered, 1 - sequence.method.stereo.dominant); }
+            if (!rendersBothInFull(mode)) { row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant); }
             result.push_back(std::move(row));
         }
         full_before_ = std::move(full_by_order);
@@ -147,10 +160,15 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     point.warmUp(start, plan.warm_up);
     ProgressLine progress(name);
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
-    for (std::size_t i = 0; i < times_s.size(); i += options.every) {
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
         const double time_s = times_s[i];
         const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
-        point.play(moveCameras(start, world_from_middle), i, time_s, run.frames);
+        const Cameras cameras = moveCameras(start, world_from_middle);
+        if (i % options.every != 0) {
+            point.pass(cameras);
+            continue;
+        }
+        point.play(cameras, i, time_s, run.frames);
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
 }

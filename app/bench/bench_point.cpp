@@ -109,7 +109,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
 // Whether they do with the same buffers. A frame of `predicted` also remembers of the one before what that asked for.
 bool needSame(const StereoOptions& a, const StereoOptions& b) {
     if (a.mode != b.mode) { return false; }
-    if (a.mode == Mode::kPredicted) { return a == b; }
+    if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
     return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == PixelDepth::kInverse) == (b.depth == PixelDepth::kInverse));
 }
 
@@ -121,12 +121,13 @@ StereoFrame& MethodFrames::frameFor(const StereoOptions& stereo) {
     return *frames_.emplace_back(Entry{stereo, std::make_unique<StereoFrame>(context_, scene_)}).frame;
 }
 
-MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo,
-                                            bool compared) {
+MethodFrames::Rendered MethodFrames::render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared,
+                                            bool keep_past) {
     stopIfInterrupted();
     FrameSettings settings = frameSettings(camera, stereo, scene_.usualOrder());
     settings.gazes = gazesOf(cameras, stereo);
     settings.keep_classes = settings.square_boxes = compared;
+    settings.keep_past = keep_past;
     settings.half_floats = !compared;  // as a viewer has it
     settings.keep_depth = false;       // nobody reads it here, so no mode pays for it unless it needs it itself
     StereoFrame& frame = frameFor(stereo);

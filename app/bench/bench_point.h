@@ -25,7 +25,9 @@ public:
     };
     // `compared`: the pictures are read and compared, with what made each pixel and with counters that cost time; otherwise they are as a
     // viewer has them.
-    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false);
+    // `keep_past`: see FrameSettings.
+    Rendered render(const Cameras& cameras, const CameraOptions& camera, const StereoOptions& stereo, bool compared = false,
+                    bool keep_past = false);
 
     // The most memory, in bytes, that the program holds while nothing but this method's buffers are there, as a viewer has them. Lets go of
     // all others.

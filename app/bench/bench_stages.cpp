@@ -20,6 +20,7 @@ std::string columnOf(std::optional<Mode> mode, const PassLabel& label) {
         case FrameStage::kSplat:
             break;
     }
+    if (mode == Mode::kTemporal) { return "patch"; }
     if (label.role != Role::kAffiliated) { return "dominant"; }
     return mode && rendersBothInFull(*mode) ? "affiliated" : "patch";
 }

@@ -23,21 +23,21 @@ std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first
 }
 
 Image StereoFrame::readPicture(int eye) {
-    const Picture& source = room_.picture(eye);
-    Image picture{source.size_px, 4, {}};
+    const Picture& source = picture(eye);
+    Image result{source.size_px, 4, {}};
     if (!source.half_floats) {
-        picture.values = readBuffer<float>(source.colours);
-        return picture;
+        result.values = readBuffer<float>(source.colours);
+        return result;
     }
     for (const gpu::uint pair : readBuffer<gpu::uint>(source.colours)) {
         const glm::vec2 values = glm::unpackHalf2x16(pair);
-        picture.values.insert(picture.values.end(), {values.x, values.y});
+        result.values.insert(result.values.end(), {values.x, values.y});
     }
-    return picture;
+    return result;
 }
-Image StereoFrame::readDepth(int eye) { return {room_.picture(eye).size_px, 1, readBuffer<float>(room_.picture(eye).depths)}; }
+Image StereoFrame::readDepth(int eye) { return {picture(eye).size_px, 1, readBuffer<float>(picture(eye).depths)}; }
 
-Image StereoFrame::readInverseDepthMoments() { return {room_.picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
+Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
 
 std::vector<std::uint32_t> StereoFrame::readTileKinds() {
     if (!plan_.warpedTarget()) { return {}; }

@@ -23,6 +23,45 @@ void keepForWarp(Kept& source, const Warp& warp) {
 
 }  // namespace
 
+// The frame goes on from the ones before.
+constexpr int kPastPictures = 3;
+
+// A picture that is nobody's past.
+int freePicture(const Pasts& pasts) {
+    for (int picture = 0; picture < kPastPictures; ++picture) {
+        if (std::ranges::none_of(pasts.of_eyes, [&](const auto& past) { return past && past->picture == picture; })) { return picture; }
+    }
+    assert(false);
+    return 0;
+}
+
+// Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
+void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Pasts& pasts, const ListPlan& list) {
+    const int order[2] = {plan.dominant, 1 - plan.dominant};
+    int picture = freePicture(pasts);
+    for (const int e : order) {
+        TargetPlan& target = plan.targets[static_cast<std::size_t>(e)];
+        target.past = pasts.of_eyes[static_cast<std::size_t>(e)];
+        target.choice = TileChoice::kPast;
+        target.gaze = settings.gazes[static_cast<std::size_t>(e)];
+        target.picture = picture;
+        picture = target.past->picture;  // free once this target is made
+        plan.steps.push_back({Step::Kind::kPast, e});
+    }
+    plan.budget = settings.stereo.budget;
+    plan.steps.push_back({Step::Kind::kChoose, 0});
+    plan.lists.push_back(list);
+    plan.lists.back().of_chosen = true;
+    plan.steps.push_back({Step::Kind::kList, 0});
+    plan.steps.push_back({Step::Kind::kRender, order[0]});
+    plan.shares_order = list.eyes.middle || relate(eyes[order[0]], eyes[order[1]]).same_depths;
+    if (!plan.shares_order) {
+        plan.steps.push_back({Step::Kind::kList, 1});
+        plan.lists.push_back({.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[order[1]].role, .culls = false});
+    }
+    plan.steps.push_back({Step::Kind::kRender, order[1]});
+}
+
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     StereoSettings stereo = settings.stereo;
     stereo.choice = choiceOf(settings.mode);
@@ -39,8 +78,23 @@ std::optional<int> FramePlan::warpedTarget() const {
     return found == targets.end() ? std::nullopt : std::optional(static_cast<int>(found - targets.begin()));
 }
 
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move) {
-    const Mode mode = settings.mode;
+Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
+    Pasts after = before;
+    for (std::size_t e = 0; e < plan.targets.size(); ++e) {
+        const TargetPlan& target = plan.targets[e];
+        if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
+    }
+    after.turn = 1 - before.turn;
+    return after;
+}
+
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts) {
+    const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
+    const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
+    // Without a past, and where none is kept, they are as these.
+    const Mode mode = has_past || !hasPast(settings.mode)               ? settings.mode
+                      : settings.mode == Mode::kTemporal && !keeps_past ? Mode::kPredicted
+                                                                        : Mode::kShared;
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
@@ -48,9 +102,10 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
           eyes.back().size_px.x, eyes.back().size_px.y);
     const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
     // Whether each eye is culled and ordered by itself.
-    const bool apart = one_eye || mode == Mode::kTwoPass || (mode == Mode::kPaper && settings.per_eye);
+    const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate || (mode == Mode::kPaper && settings.per_eye);
 
     FramePlan plan{.near = settings.near, .background = settings.background, .square_boxes = settings.square_boxes};
+    plan.dominant = first;
     for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
         const bool is_first = e == first;
         plan.targets.push_back({.eye = eyes[e],
@@ -60,8 +115,11 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                 .list = apart ? e : 0,
                                 .kept = {.depth = is_first ? settings.keep_depth : settings.keep_both_depths,
                                          .moments = is_first && settings.keep_moments,
-                                         .half_floats = settings.half_floats}});
+                                         .half_floats = settings.half_floats,
+                                         .past = keeps_past},
+                                .picture = e});
     }
+    if (keeps_past) { plan.spare_picture = kPastPictures - 1; }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const auto makeList = [&](const ListPlan& list) {
@@ -72,11 +130,30 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         makeList({.eyes = {.first = e, .count = 1, .order_eye = e, .list = e, .middle = middle}, .role = plan.targets[e].role});
     };
     const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
+    const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth};
+
+    if (mode == Mode::kTemporal) {
+        planTemporal(plan, settings, eyes, pasts, both);
+        return plan;
+    }
+    if (mode == Mode::kAlternate) {
+        const int full = pasts.turn, other = 1 - full;
+        TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
+        rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
+        warped.past = pasts.of_eyes[static_cast<std::size_t>(other)];
+        warped.picture = freePicture(pasts);
+        warped.choice = TileChoice::kNone;
+        warped.kept.past = false;
+        listOf(full);
+        render(full);
+        plan.steps.push_back({Step::Kind::kPast, other});
+        return plan;
+    }
 
     if (apart) {
         listOf(first);
     } else {
-        makeList({.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth});
+        makeList(both);
     }
     render(first);
     if (one_eye) { return plan; }

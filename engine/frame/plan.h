@@ -15,7 +15,8 @@ namespace binosplat {
 struct ListPlan {
     EyesOfList eyes;
     Role role = Role::kNone;
-    bool culls = true;  // otherwise it is the one that is there, in the order of another eye
+    bool of_chosen = false;  // holds what touches the chosen tiles of its eyes, and is made once these are known
+    bool culls = true;       // otherwise it is the one that is there, in the order of another eye
 };
 
 // Where the pixels of a target come from that are not rendered.
@@ -27,6 +28,17 @@ struct Warp {
     std::optional<Gaze> gaze = {};  // empty: all of the target is seen alike
 };
 
+// The last picture of an eye that later ones are made from.
+struct Past {
+    Eye eye;
+    int picture = 0;  // of the room's
+};
+// By eye; and whose turn it is to be rendered in full (kAlternate).
+struct Pasts {
+    std::array<std::optional<Past>, 2> of_eyes = {};
+    int turn = 0;
+};
+
 // A picture that comes out of the frame.
 struct TargetPlan {
     Eye eye;
@@ -35,6 +47,9 @@ struct TargetPlan {
     Kept kept;
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};
+    std::optional<Past> past = {};  // what it is made from instead
+    std::optional<Gaze> gaze = {};  // of the choice among what the past has left
+    int picture = 0;                // of the room's, that it becomes
     std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
     bool keeps_classes = false;
 };
@@ -43,6 +58,8 @@ struct Step {
     enum class Kind {
         kList,    // makes FramePlan::lists[index]
         kWarp,    // moves pixels into FramePlan::targets[index] and chooses its tiles
+        kPast,    // makes FramePlan::targets[index] from its past
+        kChoose,  // chooses the tiles of all targets that have one
         kRender,  // renders these
     };
     Kind kind;
@@ -57,6 +74,9 @@ struct FramePlan {
     double near = 0.2;
     glm::dvec3 background{0.0};
     bool square_boxes = true;
+    double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of all targets
+    int dominant = 0;                       // of the targets
+    std::optional<int> spare_picture = {};  // of the room's: like the first target's, for the frame after this one
 
     // The one that others are made from, or the one whose turn is first.
     [[nodiscard]] int firstTarget() const;
@@ -65,7 +85,9 @@ struct FramePlan {
 };
 
 // Nobody else asks a mode what it does. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
-// pixels paid in the frame before, or nobody knows.
-FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move);
+// pixels paid in the frame before, or nobody knows. `pasts`: what is left of the frames before.
+FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});
+// What such a frame leaves to the next one.
+Pasts pastsAfter(const FramePlan& plan, const Pasts& before);
 
 }  // namespace binosplat

@@ -10,6 +10,10 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
+        if (target.past) {
+            state.targets[t].past = pastViewOf(target.eye, target.past->eye);
+            state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget});
+        }
         if (!target.warp) { continue; }
         const StereoSettings& settings = target.warp->settings;
         state.targets[t].warp = warpViewOf(target.warp->relation, target.eye.size_px, room.warp(static_cast<int>(t)).rowWords(), settings);
@@ -33,12 +37,19 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
         switch (step.kind) {
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
-                if (list.culls) { passes.recordCull(commands, scene, room.lists(), list.eyes, list.role); }
-                passes.recordOrder(commands, scene, room.lists(), list.eyes, list.role);
+                const EyesOfList eyes = eyesOf(list);
+                if (list.culls) { passes.recordCull(commands, scene, room.lists(), eyes, list.role); }
+                passes.recordOrder(commands, scene, room.lists(), eyes, list.role);
                 break;
             }
             case Step::Kind::kWarp:
                 recordWarp(commands, plan, step.index);
+                break;
+            case Step::Kind::kPast:
+                recordPast(commands, plan, step.index);
+                break;
+            case Step::Kind::kChoose:
+                recordChoice(commands, plan);
                 break;
             case Step::Kind::kRender:
                 recordPicture(commands, plan, step.index);
@@ -60,13 +71,48 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                                   .list = target.list,
                                   .index = index,
                                   .role = target.role,
-                                  .source = room.picture(warp.source),
-                                  .target = room.picture(index),
+                                  .source = room.picture(plan.targets[static_cast<std::size_t>(warp.source)].picture),
+                                  .target = room.picture(target.picture),
                                   .source_shown = room.shown(warp.source),
                                   .target_shown = room.shown(index),
                                   .background = glm::vec3(plan.background),
                                   .target_lens = target.eye.intrinsics,
                                   .target_gaze = warp.gaze});
+}
+
+PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
+    return {.buffers = room.lists(),
+            .warp = room.warp(index),
+            .index = index,
+            .role = target.role,
+            .source = room.picture(target.past->picture),
+            .target = room.picture(target.picture),
+            .shown = room.shown(index),
+            .background = glm::vec3(plan.background),
+            .lens = target.eye.intrinsics,
+            .gaze = target.gaze};
+}
+
+void FrameRecorder::recordPast(Commands& commands, const FramePlan& plan, int index) const {
+    past_passes.recordWarp(commands, pastOf(plan, index));
+}
+
+void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) const {
+    std::vector<PastInputs> eyes;
+    for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
+        if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kPast) { eyes.push_back(pastOf(plan, t)); }
+    }
+    past_passes.recordChoice(commands, eyes);
+}
+
+EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
+    EyesOfList eyes = list.eyes;
+    if (list.of_chosen) {
+        eyes.first_mask = room.warp(0).tileMask();
+        eyes.last_mask = room.warp(1).tileMask();
+    }
+    return eyes;
 }
 
 void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int index) const {
@@ -89,14 +135,19 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
                   .size_px = planned.eye.size_px,
                   .size_tiles = tilesOf(planned.eye.size_px),
                   .pairs = pairs.arrays(),
-                  .picture = &room.picture(index),
+                  .picture = &room.picture(planned.picture),
                   .background = glm::vec3(plan.background),
                   .kept = planned.kept,
                   .square_boxes = plan.square_boxes,
                   .moments = planned.kept.moments ? room.moments().address<gpu::vec2>() : gpu::DeviceAddress<gpu::vec2>{},
                   .shown = room.shown(index).mask()};
+    if (planned.kept.past) {
+        target.moving = target.picture->words.address<gpu::uint>();
+        target.row_words = planned.eye.size_px.x;
+        target.lists_chosen = planned.choice == TileChoice::kPast;
+    }
     if (!planned.feeds) { return target; }
-    const Picture& fed = room.picture(*planned.feeds);
+    const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);
     if (planned.kept.moving) {
         const WarpBuffers& warp = room.warp(*planned.feeds);
         target.moving = warp.moving(fed);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/frame/room.h"
+#include "engine/passes/past_passes.h"
 
 namespace binosplat {
 
@@ -9,6 +10,7 @@ namespace binosplat {
 struct FrameRecorder {
     Passes& passes;
     WarpPasses& warp_passes;
+    PastPasses& past_passes;
     const GpuScene& scene;
     FrameRoom& room;
 
@@ -22,6 +24,10 @@ struct FrameRecorder {
 private:
     void begin(Commands& commands, const FramePlan& plan) const;
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
+    void recordPast(Commands& commands, const FramePlan& plan, int index) const;
+    void recordChoice(Commands& commands, const FramePlan& plan) const;
+    [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
+    [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
     [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
 };

@@ -50,6 +50,29 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
     if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
 }
 
+// Of both eyes together, since they share one budget.
+void countPast(const FrameFacts& frame, FrameResult& result) {
+    WarpedCounters& counters = result.counters.warped.emplace();
+    std::uint64_t shown = 0;
+    WarpedCounters::Work work;
+    for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
+        if (!frame.plan.targets[t].past) { continue; }
+        const TargetState& state = frame.state.targets[t];
+        const WarpBuffers& buffers = frame.room.warp(static_cast<int>(t));
+        counters.tiles_patched += state.chosen_tiles.count;
+        counters.tiles_predicted += state.warp_counters.predicted_tiles;
+        counters.bytes += buffers.bytes();
+        work.full += state.warp_counters.picture_cost;
+        work.patched += state.warp_counters.chosen_cost;
+        shown += buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
+    }
+    result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
+    if (work.full > 0) {
+        result.work_rendered = static_cast<double>(work.patched) / static_cast<double>(work.full);
+        counters.work = work;
+    }
+}
+
 void explainWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
     const auto leaveOut = [&](bool condition, std::string_view sentence) {
         if (condition) { result.left_out.emplace_back(sentence); }
@@ -114,7 +137,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         const TargetPlan& target = frame.plan.targets[t];
         const TargetState& state = frame.state.targets[t];
         const glm::uvec2 size_px = target.eye.size_px, tiles = tilesOf(size_px);
-        const Picture& picture = frame.room.picture(static_cast<int>(t));
+        const Picture& picture = frame.room.picture(target.picture);
         TargetCounters& its = counters.targets.emplace_back();
         its.splats_visible = frame.state.visible[static_cast<std::size_t>(target.list)].count;
         its.tile_pairs = state.pairs.count;
@@ -126,6 +149,9 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
         its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes();
         if (target.warp) { countWarp(frame, t, result); }
+    }
+    if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
+        countPast(frame, result);
     }
     explainLeftOut(frame, result);
     return result;

@@ -23,6 +23,7 @@ void resize(const Context& context, Buffer& buffer, const char* name, std::uint6
 }
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
+    if (target.past) { return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .boxes = 0}; }
     if (!target.warp) { return {}; }
     const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
     return {target.eye.size_px, target.keeps_classes || components, target.kept.half_floats, components ? kHoleBoxes : 0};
@@ -67,23 +68,46 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
     }
 }
 
+void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept) {
+    const glm::uvec2 tiles = tilesOf(size_px);
+    const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
+    picture.size_px = size_px;
+    picture.half_floats = kept.half_floats;
+    resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
+    resize(context_, picture.depths, "depths", kept.depth ? pixels * sizeof(float) : 0);
+    resize(context_, picture.words, "depths of a past", kept.past ? pixels * sizeof(gpu::uint) : 0);
+    resize(context_, picture.tiles, "tiles of a past", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
+}
+
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
     std::uint64_t most_tiles = 0, moments_bytes = 0;
-    for (std::size_t t = 0; t < pictures_.size(); ++t) {
+    std::array<bool, kMostTargets> is_used{};
+    for (std::size_t t = 0; t < shown_.size(); ++t) {
         const bool used = t < plan.targets.size();
-        const Kept kept = used ? plan.targets[t].kept : Kept{};
         const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0), tiles = tilesOf(size_px);
-        const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
         const auto hidden = used && t < hidden_tiles.size() ? hidden_tiles[t] : std::span<const std::uint8_t>{};
         assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
         shown_[t].set(hidden, tiles);
-        Picture& picture = pictures_[t];
-        picture.size_px = size_px;
-        picture.half_floats = kept.half_floats;
-        resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
-        resize(context_, picture.depths, "depths", kept.depth ? pixels * sizeof(float) : 0);
-        if (kept.moments) { moments_bytes = pixels * sizeof(gpu::vec2); }
+        if (!used) { continue; }
+        if (plan.targets[t].kept.moments) { moments_bytes = std::uint64_t{size_px.x} * size_px.y * sizeof(gpu::vec2); }
+        is_used[static_cast<std::size_t>(plan.targets[t].picture)] = true;
+        // A past stays as it is.
+        if (plan.targets[t].past) { is_used[static_cast<std::size_t>(plan.targets[t].past->picture)] = true; }
+    }
+    if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
+    for (std::size_t p = 0; p < pictures_.size(); ++p) {
+        if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
+    }
+    // A past of both eyes has room for what either keeps, since they change places.
+    for (const TargetPlan& target : plan.targets) {
+        Kept kept = target.kept;
+        if (plan.spare_picture) {
+            kept.past = true;
+            for (const TargetPlan& other : plan.targets) { kept.depth = kept.depth || other.kept.depth; }
+            fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept);
+        }
+        fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(context_, moments_, "inverse depth moments", moments_bytes);
     resize(context_, lists_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));

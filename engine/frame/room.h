@@ -52,7 +52,8 @@ public:
     void haveFrame() { first_frame_ = false; }
 
     [[nodiscard]] const FrameBuffers& lists() const { return lists_; }
-    [[nodiscard]] const Picture& picture(int target) const { return pictures_[static_cast<std::size_t>(target)]; }
+    // By TargetPlan::picture, which need not be the target's number.
+    [[nodiscard]] const Picture& picture(int picture) const { return pictures_[static_cast<std::size_t>(picture)]; }
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
@@ -62,6 +63,7 @@ public:
     void forgetUploads();
 
 private:
+    void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // Pairs that the source's sort finds room for in the picture that is made from it, while nothing is in it.
     [[nodiscard]] std::uint32_t mostLentPairs(const FramePlan& plan) const;

@@ -39,6 +39,9 @@ struct FrameSettings {
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // kPredicted, by eye: where it looks; empty: nobody knows. Of the affiliated eye's errors only what it sees there counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
+    // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, where that was asked for
+    // likewise.
+    bool keep_past = false;
     std::uint64_t mark = 0;  // of whoever asks; comes back with the result
 };
 

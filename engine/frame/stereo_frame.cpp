@@ -9,6 +9,7 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
     : context_(context),
       passes_(context, options.threads_per_cell),
       warp_passes_(context),
+      past_passes_(context),
       room_(context, options.first_capacity),
       flights_{Flight(context), Flight(context)} {
     show(scene);
@@ -18,6 +19,7 @@ void StereoFrame::show(const GpuScene& scene) {
     finish();
     scene_ = &scene;
     moving_pays_.forget();
+    pasts_ = {};
     room_.show(scene);
 }
 
@@ -25,6 +27,7 @@ void StereoFrame::rebuildKernels() {
     finish();
     passes_.rebuildKernels();
     warp_passes_.rebuildKernels();
+    past_passes_.rebuildKernels();
 }
 
 void StereoFrame::takeKernels(StereoFrame& from) {
@@ -32,10 +35,12 @@ void StereoFrame::takeKernels(StereoFrame& from) {
     from.finish();
     passes_.takeKernels(from.passes_);
     warp_passes_.takeKernels(from.warp_passes_);
+    past_passes_.takeKernels(from.past_passes_);
 }
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {
     finish();
+    pasts_ = {};
     prepare(eyes, settings);
     Commands& commands = flight().commands;
     // `predicted` may find that moving does not pay.
@@ -45,6 +50,12 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     }
     recorder().record(commands, planFrame(settings, eyes, true));
     commands.drop();
+    if (hasPast(settings.mode) && settings.keep_past) {
+        const FramePlan next = planFrame(settings, eyes, true, pastsAfter(plan_, {}));
+        room_.fitPictures(next, settings.hidden_tiles);
+        recorder().record(commands, next);
+        commands.drop();
+    }
     // Nothing is known of any frame.
     moving_pays_.forget();
     room_.forgetFrames();
@@ -59,6 +70,7 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 
 void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
     if (shapeOf(eyes, settings) == shape_) { return; }
+    pasts_ = {};
     FramePlan plan = planFrame(settings, eyes, true);
     finish();
     shape_ = {};  // some pictures are new, and some may fail
@@ -87,7 +99,10 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     }
     makeRoomForVisible();
     done_again_ += renderAtMostTwice(settings, append);
-    if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
+    if (FrameRoom::isCutShort(state_)) {
+        ++cut_short_;
+        pasts_ = {};
+    }
     result = take(flight());
     result->counters.ahead = {cut_short_, done_again_};
     room_.makeRoomAhead(plan_, state_);
@@ -107,7 +122,11 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     if (!flight.commands.isUnderWay()) { return std::nullopt; }
     flight.commands.wait();
     state_ = flight.readback.mapped<FrameState>()[0];
-    if (FrameRoom::isCutShort(state_)) { ++cut_short_; }
+    if (FrameRoom::isCutShort(state_)) {
+        ++cut_short_;
+        // Where tiles have no room, what the past made stays; a picture in full has nothing else.
+        if (flight.settings.mode == Mode::kAlternate) { pasts_ = {}; }
+    }
     FrameResult result = take(flight);
     result.counters.ahead = {cut_short_, done_again_};
     return result;
@@ -122,7 +141,11 @@ FrameResult StereoFrame::take(const Flight& flight) {
 }
 
 void StereoFrame::renderUntilComplete(const FrameSettings& settings, const Append& append) {
-    do { renderOnce(settings, append); } while (!room_.growIfNeeded(plan_, state_));
+    for (;;) {
+        renderOnce(settings, append);
+        if (room_.growIfNeeded(plan_, state_)) { return; }
+        planAnew(settings);
+    }
 }
 
 std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, const Append& append) {
@@ -135,6 +158,7 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
         return 0;
     }
     if (guesses) { room_.makeRoomForChosen(plan_, state_); }
+    planAnew(settings);
     renderOnce(settings, append);
     // What is still short has room the next time.
     if (!room_.growIfItFits(plan_, state_)) { room_.haveFrame(); }
@@ -156,6 +180,18 @@ void StereoFrame::makeRoomForVisible() {
     room_.growIfItFits(plan_, state_);  // of pairs nothing is known yet
 }
 
+Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    const bool goes_on = settings.keep_past && !isUnlikeLast(eyes, settings);
+    return goes_on ? pasts_ : Pasts{};
+}
+
+void StereoFrame::planAnew(const FrameSettings& settings) {
+    if (!plan_.targets[0].past && !plan_.targets.back().past) { return; }
+    // What the past was made of is written over already.
+    plan_ = planFrame(settings, eyes_, true);
+    room_.fitPictures(plan_, settings.hidden_tiles);
+}
+
 bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const {
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         if (!room_.shown(static_cast<int>(e)).isOf(settings.hidden_tiles[e], tilesOf(eyes[e].size_px))) { return true; }
@@ -166,7 +202,7 @@ bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& s
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
     const bool may_move = moving_pays_.mayMove(settings, asked);
-    plan_ = planFrame(settings, eyes, may_move);
+    plan_ = planFrame(settings, eyes, may_move, pastsFor(eyes, settings));
     room_.fitPictures(plan_, settings.hidden_tiles);
     room_.fitLists(plan_);
     moving_pays_.ask(asked, may_move);
@@ -181,6 +217,7 @@ void StereoFrame::record(const FrameSettings& settings, const Append& append) {
     flight().asked = moving_pays_.asked();
     recorder().record(flight().commands, plan_);
     recorder().recordReport(flight().commands, flight().readback);
+    pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
     if (append) { append(flight().commands); }
 }
 

@@ -47,14 +47,16 @@ public:
     // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
     // How many it has, but those of sorting.
-    [[nodiscard]] std::size_t kernelCount() const { return passes_.kernelCount() + warp_passes_.kernelCount(); }
+    [[nodiscard]] std::size_t kernelCount() const {
+        return passes_.kernelCount() + warp_passes_.kernelCount() + past_passes_.kernelCount();
+    }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);
     // D = sum w z of the dominant eye, one channel.
-    [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.firstTarget()); }
+    [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.dominant); }
     // The same of any eye, where it was kept.
     [[nodiscard]] Image readDepth(int eye);
     // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; where they were kept.
@@ -66,7 +68,7 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for whoever shows them.
-    [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(eye); }
+    [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture); }
     // Of the target that is made from another; without memory where there is none.
     [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
 
@@ -86,7 +88,11 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, *scene_, room_}; }
+    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, past_passes_, *scene_, room_}; }
+    // What the frames before leave to one of these.
+    [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    // Plans it without a past, whatever there is.
+    void planAnew(const FrameSettings& settings);
     // Plans it, and has room for it as far as anything is known.
     void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
     // What was prepared, into the flight whose turn it is.
@@ -112,8 +118,10 @@ private:
     const GpuScene* scene_ = nullptr;
     Passes passes_;
     WarpPasses warp_passes_;
+    PastPasses past_passes_;
     FrameRoom room_;
     FramePlan plan_;      // of the last frame
+    Pasts pasts_;         // that it leaves
     FrameState state_{};  // what the last one known reported
     MovingPays moving_pays_;
     FrameShape shape_;

@@ -21,6 +21,7 @@ struct TargetState {
     gpu::EyeCounters counters;
     gpu::WarpView warp;  // where it is made from another
     gpu::WarpCounters warp_counters;
+    gpu::PastView past;             // where it is made from its own past
     gpu::ListState chosen_tiles;    // likewise: those that are rendered
     gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
 };
@@ -47,6 +48,9 @@ struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
     Buffer depths = {};        // D, a float a pixel, where it is wanted
+    // Where later pictures are made from this one:
+    Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
+    Buffer tiles = {};  // gpu::PastTile
     glm::uvec2 size_px{0, 0};
 };
 

@@ -21,16 +21,17 @@ std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
 
 RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept, std::uint32_t splat_shape, bool masked) {
     return {.threads_per_cell = threads_per_cell,
-            .depth = kept.depth,
+            .depth = kept.depth && !kept.past,  // a past has it from its words
             .moments = kept.moments,
-            .moving = kept.moving,
-            .spread = kept.spread,
+            .moving = kept.moving || kept.past,
+            .spread = kept.spread || kept.past,
             .masked = masked,
             .depth_choice = kept.depth_choice,
             .half_colours = kept.half_floats,
             .splat_kind = splat_shape,
             .local_size_x = gpu::kCellsPerTile * threads_per_cell,
-            .even_rows = kept.even_rows};
+            .even_rows = kept.even_rows,
+            .past = kept.past};
 }
 
 }  // namespace
@@ -42,13 +43,16 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
     append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.masked == 0 || k.square_boxes == 0; }));
     append(table, everyVariant<BinKernel>());
     append(table, everyVariant<BinLargeKernel>());
-    append(table, everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || k.half_colours == 0; }));
+    append(table,
+           everyVariant<TileRangesKernel>([](const TileRangesKernel& k) { return k.masked == 1 || (k.half_colours == 0 && k.past == 0); }));
     const std::uint32_t threads = threadsPerCell(context, wanted_threads_per_cell);
     const auto rasterize = [&](const Kept& kept, bool masked) {
         for (std::uint32_t choices = 0; choices < 8; ++choices) {
             Kept own = kept;
             own.depth = (choices & 1) != 0;
             own.half_floats = (choices & 2) != 0;
+            // Moments are for files and tests, and a past's depths follow from its words.
+            if ((own.moments && own.half_floats) || (own.past && own.depth)) { continue; }
             table.push_back(variantOf(rasterizeKernel(threads, own, choices >> 2, masked)));
         }
     };
@@ -61,6 +65,8 @@ KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per
         }
     }
     rasterize({.moving = true, .spread = true, .even_rows = true}, false);
+    rasterize({.past = true}, false);
+    rasterize({.past = true}, true);
     return table;
 }
 
@@ -89,7 +95,7 @@ const Sort& Passes::sort() {
 void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "cull"});
     const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get(CullKernel{.splat_kind = scene.splatShape()}),
+    commands.dispatchOver(kernels_.get(CullKernel{.splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0}),
                           gpu::CullPass{.chunks = scene.chunks(),
                                         .eyes = buffers.eyes(),
                                         .visible_bits = buffers.visibleBits(),
@@ -99,7 +105,9 @@ void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBu
                                         .chunk_bits = scene.chunkBits(),
                                         .first_eye = static_cast<gpu::uint>(eyes.first),
                                         .eye_count = static_cast<gpu::uint>(eyes.count),
-                                        .capacity = buffers.visible.capacity()},
+                                        .capacity = buffers.visible.capacity(),
+                                        .first_tile_mask = eyes.first_mask,
+                                        .last_tile_mask = eyes.last_mask},
                           scene.splatCount(), gpu::kCullBlock);
 }
 
@@ -144,8 +152,8 @@ struct Passes::EyePart {
     [[nodiscard]] bool masked() const { return tiles.mask.value != 0; }
     // Where the lists' states lie in the frame's.
     [[nodiscard]] std::uint64_t visibleList() const {
-        return lists_tiles ? FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_visible))
-                           : FrameBuffers::visibleList(target.list);
+        return lists_tiles && !target.lists_chosen ? FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_visible))
+                                                   : FrameBuffers::visibleList(target.list);
     }
     [[nodiscard]] std::uint64_t pairList() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, pairs)); }
     [[nodiscard]] std::uint64_t chosenTiles() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, chosen_tiles)); }
@@ -239,11 +247,15 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .colours = target.picture->colours.address<gpu::vec4>(),
                                      .half_colours = target.picture->colours.address<gpu::uvec2>(),
                                      .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
+                                     .moving = target.moving,
+                                     .past_tiles = target.picture->tiles.address<gpu::PastTile>(),
+                                     .visible = part.visible(),
                                      .background = target.background,
                                      .size_px = target.size_px};
     if (part.lists_tiles) {
-        part.commands.dispatchIndirect(kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats}), ranges,
-                                       part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
+        part.commands.dispatchIndirect(
+            kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats, .past = target.kept.past}), ranges,
+            part.buffers.state, part.chosenTiles() + offsetof(gpu::ListState, per_item));
     } else {
         part.commands.dispatchOver(kernels_.get(TileRangesKernel{}), ranges, std::uint64_t{target.size_tiles.x} * target.size_tiles.y);
     }
@@ -258,7 +270,7 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .ranges = part.ranges(),
                                        .colours = target.picture->colours.address<gpu::vec4>(),
                                        .half_colours = target.picture->colours.address<gpu::uvec2>(),
-                                       .depths = target.picture->depths.address<float>(),
+                                       .depths = target.kept.depth ? target.picture->depths.address<float>() : gpu::DeviceAddress<float>{},
                                        .moments = target.moments,
                                        .moving = target.moving,
                                        .arrivals = target.arrivals,
@@ -267,7 +279,8 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
                                        .background = is_light ? glm::vec3(lightOf(glm::dvec3(target.background))) : target.background,
                                        .eye = part.eye(),
                                        .row_words = target.row_words,
-                                       .is_light = is_light};
+                                       .is_light = is_light,
+                                       .past_tiles = target.picture->tiles.address<gpu::PastTile>()};
     const Kernel& kernel = kernels_.get(rasterizeKernel(threads_per_cell_, target.kept, part.scene.splatShape(), part.lists_tiles));
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(kernel, rasterize, part.buffers.state,

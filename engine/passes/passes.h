@@ -27,6 +27,7 @@ struct Kept {
     bool even_rows = false;                       // only its even rows are; needs kDepthInverse, and no moments kept
     gpu::uint depth_choice = gpu::kDepthInverse;  // of a moving pixel
     bool half_floats = false;                     // colours are kept as these
+    bool past = false;  // later pictures are going to be made from this one: its words and tiles are kept; it moves with its spread
 };
 
 // The tiles that are rendered (shaders/lib/tile_mask.glsl). `list` is there only where the device alone knows how many they are; `full` is
@@ -48,6 +49,7 @@ struct Target {
     gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
     gpu::uint row_words = 0;                                   // of these two
+    bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and has no one of its own for these
     gpu::DeviceAddress<gpu::uint> shown = {};  // what the lens shows, as a mask, if it hides anything; the other tiles become background
 };
 
@@ -62,6 +64,7 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
+    gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // where only the chosen tiles of each eye count
 };
 
 // All kernels of cull to rasterize, sorting included. `threads_per_cell`: see Passes.

@@ -66,8 +66,8 @@ KernelTable warpKernels(const Context& context) {
            }));
     append(table, everyVariant<NewcomersKernel>());
     append(table, everyVariant<ComponentsKernel>());
-    append(table, everyVariant<PriceKernel>());
-    append(table, everyVariant<SelectKernel>());
+    append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 0; }));
+    append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 0; }));
     return table;
 }
 
@@ -274,6 +274,9 @@ void WarpRecorder::price() {
                               .price_bins = in_.warp.bins(),
                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
                               .counters = counters(),
+                              .budget = counters(),
+                              .past_tiles = {},
+                              .is_last = 1,
                               .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }
@@ -289,7 +292,8 @@ void WarpRecorder::select() {
                                .visible = visible(),
                                .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
                                .masked_visible = listAt(field(offsetof(TargetState, chosen_visible))),
-                               .counters = counters()};
+                               .counters = counters(),
+                               .budget = counters()};
     dispatch(SelectKernel{.predicted = predicts()}, pass, tileGroups());
 }
 

@@ -11,6 +11,7 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
 layout(constant_id = 0) const bool kFoveated = false;
+layout(constant_id = 1) const bool kPast = false;  // errors are those that the past has left in its tiles
 
 const uint kBinsPerThread = kPriceBins / kWarpGroup;
 
@@ -28,8 +29,23 @@ float seenShare(uvec2 at) {
     return share * share;
 }
 
+// What rendering a tile is worth in a picture that is made from a past: its expected squared error, for each frame that it has waited. An
+// error that grows by the frame loses its area under that growth when it is mended (an index of Whittle's), and so every tile has its turn.
+uint errorOfPast(PastTile tile) {
+    const float squares = 3 * float(kCellSize * kCellSize) * dot(tile.errors, tile.errors);
+    return squares > 0 ? max(uint(min(squares * float(max(tile.age, 1)), 2000) * kErrorSteps), 1) : 0;
+}
+
 // What a tile's error is worth, and its cost; its cost to the list.
 uint priceOf(uint tile, uvec2 size_tiles) {
+    if (kPast) {
+        const PastTile its = pass.past_tiles.at[tile];
+        const bool hidden = pass.tile_kinds.at[tile] == kTileHidden;
+        pass.tile_errors.at[tile] = hidden ? 0 : errorOfPast(its);
+        const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
+        pass.tile_costs.at[tile] = cost;
+        atomicAdd(pass.budget.at[0].picture_cost, cost);
+    }
     // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float share = kFoveated ? seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
@@ -59,14 +75,14 @@ void findLastBin(uint budget) {
     uint before = scanGroup(own, total);
     [[unroll]] for (uint b = 0; b < kBinsPerThread; ++b) {
         if (before <= budget && before + costs[b] > budget) {
-            pass.counters.at[0].last_bin = first - b;
-            pass.counters.at[0].left_for_last = budget - before;
+            pass.budget.at[0].last_bin = first - b;
+            pass.budget.at[0].left_for_last = budget - before;
         }
         before += costs[b];
     }
     if (total <= budget && gl_LocalInvocationIndex == 0) {
-        pass.counters.at[0].last_bin = 0;
-        pass.counters.at[0].left_for_last = 0xffffffffu;
+        pass.budget.at[0].last_bin = 0;
+        pass.budget.at[0].left_for_last = 0xffffffffu;
     }
 }
 
@@ -74,7 +90,7 @@ void main() {
     const uvec2 size_tiles = pass.warp.at[0].size_tiles;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
     if (tile < size_tiles.x * size_tiles.y) { pass.tile_prices.at[tile] = priceOf(tile, size_tiles); }
-    if (!isLastGroup(pass.masked_tiles)) { return; }
-    const float budget = pass.warp.at[0].budget * float(pass.counters.at[0].picture_cost);
+    if (!isLastGroup(pass.masked_tiles) || pass.is_last == 0) { return; }
+    const float budget = pass.warp.at[0].budget * float(kPast ? atomicOr(pass.budget.at[0].picture_cost, 0) : pass.budget.at[0].picture_cost);
     findLastBin(budget < 4e9 ? uint(budget) : 4000000000u);
 }

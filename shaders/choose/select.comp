@@ -12,6 +12,7 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
+layout(constant_id = 1) const bool kPast = false;  // two eyes share the budget, and a tile that is dearer than what is left has its turn
 
 const uint kTilesPerStep = 8;  // loaded at a time, since each load takes as long as all of them
 
@@ -41,7 +42,7 @@ uint costBefore(uint first_tile, End end) {
 }
 
 bool isChosen(uint tile, uint tiles) {
-    const End end = End(pass.counters.at[0].last_bin, pass.counters.at[0].left_for_last);
+    const End end = End(pass.budget.at[0].last_bin, pass.budget.at[0].left_for_last);
     const uint price = tile < tiles ? pass.tile_prices.at[tile] : 0;
     const bool is_last = isOfLast(price, end);
     const uint cost = price & kMaxTileCost;
@@ -49,7 +50,9 @@ bool isChosen(uint tile, uint tiles) {
     uint before = scanGroup(is_last ? cost : 0, total);
     // Most workgroups have no tile of the last bin, and need not know what the others have.
     if (total > 0) { before += costBefore(min(gl_WorkGroupID.x * kWarpGroup, tiles), end); }
-    return is_last ? before + cost <= end.left : price != 0 && price >> 22 > end.bin;
+    if (kPast && is_last) { atomicAdd(pass.budget.at[0].saved_cost, before < end.left ? cost : 0); }
+    const bool fits = kPast ? before < end.left : before + cost <= end.left;
+    return is_last ? fits : price != 0 && price >> 22 > end.bin;
 }
 
 void main() {
@@ -57,7 +60,7 @@ void main() {
     const uint tiles = size_tiles.x * size_tiles.y;
     const uint tile = gl_WorkGroupID.x * kWarpGroup + threadIndex();
     uint kind = tile < tiles ? pass.tile_kinds.at[tile] : kTileHidden;
-    if (kPredicted && pass.counters.at[0].moves == 0) {
+    if (kPredicted && !kPast && pass.counters.at[0].moves == 0) {
         kind = kind == 0 ? kTileCheap : kind;
     } else if (kPredicted) {
         kind = isChosen(tile, tiles) ? kTilePredicted : kind;
@@ -89,6 +92,10 @@ void main() {
     if (!isLastGroup(pass.masked_tiles) || gl_LocalInvocationIndex != 0) { return; }
     const uint listed = atomicOr(pass.masked_tiles.at[0].needed, 0);
     pass.masked_tiles.at[0] = makeList(listed, tiles);
+    if (kPast && pass.budget.at[0].left_for_last != 0xffffffffu) {  // what the other eye may spend in the last bin
+        const uint left = pass.budget.at[0].left_for_last;
+        pass.budget.at[0].left_for_last = left - min(left, atomicExchange(pass.budget.at[0].saved_cost, 0));
+    }
     const uint visible = listed > 0 ? pass.visible.at[0].count : 0;
     pass.masked_visible.at[0] = makeList(visible, visible);
 }

@@ -1,5 +1,7 @@
 // Between the eyes: where a pixel with a given inverse depth lies in the other eye.
 
+#include "lib/move_pixel.glsl"
+
 // Pixels move along their row alone and keep their depth; see EyeRelation.
 layout(constant_id = 0) const bool kRectified = false;
 
@@ -7,9 +9,7 @@ layout(constant_id = 0) const bool kRectified = false;
 vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
     const vec3 at = vec3(pixel_px, 1);
     if (kRectified) { return vec3(pixel_px.x + (dot(map.excess_x, at) + map.shift.x * inverse_depth), pixel_px.y, 1); }
-    const vec3 excess = vec3(dot(map.excess_x, at), dot(map.excess_y, at), dot(map.excess_z, at)) + map.shift * inverse_depth;
-    const float depth_ratio = 1 + excess.z;
-    return vec3(pixel_px + (excess.xy - pixel_px * excess.z) / depth_ratio, depth_ratio);
+    return movePixelAnywhere(map, pixel_px, inverse_depth);
 }
 
 // Pixels that the other eye's view moves by for a unit of inverse depth, as a vector.

@@ -145,6 +145,25 @@ BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
+// warp_past: what a thread makes, in pixels: 9x13 of the source are read for 4x8. A workgroup makes 8x8 such blocks.
+BINOSPLAT_CONSTANT uint kPastColumns = 4;
+BINOSPLAT_CONSTANT uint kPastRows = 8;
+BINOSPLAT_CONSTANT uint kPastGroup = 64;
+// So far around a block depths are looked at: in a frame a head moves what is near by less than that beside what is far.
+BINOSPLAT_CONSTANT uint kPastBorder = 2;
+// The places of a block's pixels may differ by this from a common shift, in pixels, and for what depths differ by.
+BINOSPLAT_CONSTANT float kPastSmooth = 0.0625f;
+BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
+// A pixel of the past that comes this near to where it is wanted is what is seen there (half a pixel, and rounding).
+BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
+BINOSPLAT_CONSTANT uint kPastSteps = 3;
+// What a pixel counts for that the past did not see: a squared error in three channels.
+BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
+// How much of a tile's growth of error is what was measured when it was last rendered; the rest is the model's. A quarter of it in which
+// much was not seen grows by the model alone.
+BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;
+BINOSPLAT_CONSTANT float kUnseenGrowth = 0.05f;
+
 // Pixels of the source that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
 // two pixels beside them, and the place is up to one off.
 BINOSPLAT_CONSTANT uint kHiddenMargin = 3;

@@ -17,7 +17,9 @@ struct CullPass {
     uint chunk_bits;
     uint first_eye;
     uint eye_count;
-    uint capacity;  // of the list
+    uint capacity;          // of the list
+    Uints first_tile_mask;  // where only the chosen tiles of each eye count: lib/tile_mask.glsl
+    Uints last_tile_mask;
 };
 
 // compact: the visible splats in the scene's order, with the depth or the distance of their centres as sort keys.
@@ -82,7 +84,10 @@ struct TileRangesPass {
     EyeCounterss counters;    // likewise out: how many
     FloatColours colours;     // likewise out, of those without: one of the two
     HalfColours half_colours;
-    Floats depths;  // likewise, unless it is null
+    Floats depths;         // likewise, unless it is null
+    Uints moving;          // likewise: infinitely far
+    PastTiles past_tiles;  // likewise
+    ListStates visible;    // likewise: of whose splats they are
     vec3 background;
     uvec2 size_px;
 };
@@ -103,8 +108,9 @@ struct RasterizePass {
     EyeCounterss counters;  // likewise: how many
     vec3 background;
     uint eye;
-    uint row_words;  // of `moving` and `arrivals`
-    uint is_light;   // 1: colours and background are light, to be encoded once they are blended
+    uint row_words;        // of `moving` and `arrivals`
+    uint is_light;         // 1: colours and background are light, to be encoded once they are blended
+    PastTiles past_tiles;  // out where the picture is going to be a past; under a mask in, too
 };
 
 // weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
@@ -169,6 +175,25 @@ struct ResamplePass {
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
+// warp_past: an eye's picture from the one that it showed before; what each tile has gone wrong by so far.
+struct WarpPastPass {
+    PastViews view;
+    FloatColours source;  // the past: one of the two
+    HalfColours half_source;
+    Uints source_words;  // its pixels' depths: lib/moving_pixel.glsl
+    PastTiles source_tiles;
+    FloatColours target;  // out: one of the two
+    HalfColours half_target;
+    Uints target_words;  // out
+    Floats depths;       // out where asked for: D
+    PastTiles tiles;     // out
+    Uints tile_kinds;    // out: 0, except where it is kTileHidden
+    Uints tile_mask;     // out: zeros
+    Uints price_bins;    // out: zeros
+    Uints shown_mask;    // where parts are hidden: the others; otherwise null
+    vec3 background;
+};
+
 // newcomers: predicted: splats that only the target sees, by the tiles they stand in.
 struct NewcomersPass {
     SceneChunks chunks;
@@ -206,7 +231,10 @@ struct PricePass {
     CoherentUints price_bins;  // cost of the tiles in each bin, of errors that are seen whole; greatest error a pair last
     ListStates masked_tiles;   // counts workgroups
     WarpCounterss counters;
-    EyeGaze gaze;  // where it is known where the target looks
+    WarpCounterss budget;  // whose budget it is: its own, or one for both eyes
+    PastTiles past_tiles;  // where there is a past, in place of tile_errors and tile_costs, which is then written
+    uint is_last;          // 1: no other picture shares the budget after this one
+    EyeGaze gaze;          // where it is known where the target looks
 };
 
 // select: the tiles that are rendered, as a list and as a mask.
@@ -221,6 +249,7 @@ struct SelectPass {
     ListStates masked_tiles;    // in: a list of none; out
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
     WarpCounterss counters;
+    WarpCounterss budget;  // as in PricePass
 };
 
 // A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups

@@ -125,6 +125,26 @@ struct WarpView {
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
+// How places of a picture and of the one that the same eye showed before lie in each other.
+struct PastView {
+    PixelMap past_from_now;
+    PixelMap now_from_past;
+    uvec2 size_px;
+    uvec2 size_tiles;
+    uvec2 past_size_px;
+    uvec2 past_size_tiles;
+};
+BINOSPLAT_ARRAY_OF(PastView, PastViews);
+
+// What is known of a tile of a picture that later ones are made from.
+struct PastTile {
+    uint cost;     // in pairs, when it was last rendered
+    uint age;      // frames since then
+    float growth;  // of the amplitude of its error in a frame, as it had turned out then
+    vec4 errors;   // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
+};
+BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
+
 // A hole's pixel while holes are grouped: it lies where its colour would (of float colours, in its first half), since all holes are
 // rendered.
 struct ComponentPixel {

@@ -15,9 +15,11 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not is all
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
 #include "lib/eye.glsl"
+#include "lib/tile_mask.glsl"
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
+layout(constant_id = 1) const bool kMasked = false;  // of each eye only the tiles of its mask count
 
 const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
@@ -35,6 +37,54 @@ bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return dot(sp
 bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
     const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
     return all(greaterThan(centre_px, -half_px)) && all(lessThan(centre_px, vec2(eye.size_px) + half_px));
+}
+
+// Whether one of the tiles between two corners in pixels belongs to the mask.
+bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
+    const vec2 last = vec2(size_tiles) - 1;
+    const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
+    if (!(all(lessThanEqual(first_tile, last)) && all(greaterThanEqual(last_tile, vec2(0))))) { return false; }
+    const uvec2 begin = uvec2(clamp(first_tile, vec2(0), last)), end = uvec2(clamp(last_tile, vec2(0), last)) + 1;
+    uint row = begin.y, bits = 0;
+    [[dont_unroll]] do {
+        uint x = begin.x;
+        [[dont_unroll]] do {
+            bits |= maskBits(mask, size_tiles, row, x, wordEnd(x, end.x));
+            x = wordEnd(x, end.x);
+        } while (x < end.x);
+        ++row;
+    } while (bits == 0 && row < end.y);
+    return bits != 0;
+}
+
+// Whether the splat, which is visible, may touch a tile of the mask: by its bounds on the screen, where it lies in front of the eye.
+bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
+    const float cut = cutOf(splat.opacity);
+    const vec3 c = splat.centre;
+    if (kSplatKind != kDiscs) {
+        const ScreenGaussian g = screenGaussian(splat, eye);
+        const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px, half_px = sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding + 0.5;
+        return meetsMask(mask, eye.size_tiles, centre_px - half_px, centre_px + half_px);
+    }
+    // The ellipse's bounds: x/z is extreme where (x, z) sees it at an angle; of r = centre + radius (cos a + sin b).
+    const float radius = sqrt(cut);
+    const vec3 a = radius * splat.scale.x * splat.t_u, b = radius * splat.scale.y * splat.t_v;
+    const float reach_z = length(vec2(a.z, b.z));
+    vec2 low_px = vec2(0), high_px = vec2(eye.size_px);
+    if (c.z - reach_z > eye.near) {
+        const float d = c.z * c.z - reach_z * reach_z;
+        const vec2 middle = (c.xy * c.z - (a.xy * a.z + b.xy * b.z)) / d;
+        const vec2 square = middle * middle - (c.xy * c.xy - (a.xy * a.xy + b.xy * b.xy)) / d;
+        const vec2 half_px = eye.focal_px * sqrt(max(square, vec2(0)));
+        const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
+        // And the circle of the low-pass around its centre. The square root of a difference of squares keeps half their digits.
+        const vec2 rounding_px = 0.5 + 5e-4 * abs(eye.focal_px * middle) + kOutlinePadding;
+        const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px;
+        const float circle_px = sqrt(cut / kLowPass);
+        low_px = min(middle_px - half_px, centre_px - circle_px) - rounding_px;
+        high_px = max(middle_px + half_px, centre_px + circle_px) + rounding_px;
+    }
+    return meetsMask(mask, eye.size_tiles, low_px, high_px);
 }
 
 // Comparisons are written so that NaN is not visible.
@@ -58,6 +108,8 @@ bool isVisible(CameraSplat splat, EyeView eye) {
     return splat.centre.z > eye.near && isOnScreen(splat, eye, vec2(sqrt(cut / kLowPass)));
 }
 
+bool isWanted(CameraSplat splat, EyeView eye, Uints mask) { return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask)); }
+
 void main() {
     const uint group = groupIndex();
     if (gl_LocalInvocationIndex < kBlockWords) { visible_words[gl_LocalInvocationIndex] = 0; }
@@ -69,8 +121,8 @@ void main() {
         const uint i = group * kCullBlock + in_block;
         if (i >= pass.splat_count) { break; }
         const CameraSplat splat = loadWorldSplat(pass.chunks, placeOfSplat(i, pass.chunk_bits));
-        const bool visible = isVisible(cameraFromWorld(first_eye, splat), first_eye) ||
-                             (pass.eye_count > 1 && isVisible(cameraFromWorld(last_eye, splat), last_eye));
+        const bool visible = isWanted(cameraFromWorld(first_eye, splat), first_eye, pass.first_tile_mask) ||
+                             (pass.eye_count > 1 && isWanted(cameraFromWorld(last_eye, splat), last_eye, pass.last_tile_mask));
         if (visible) {
             atomicOr(visible_words[in_block / 32], 1u << (in_block & 31));
             atomicAdd(visible_count, 1);

@@ -22,6 +22,7 @@ layout(constant_id = 7) const bool kHalfColours = false;
 layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
 layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
 layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going to be moved like the even one above it
+layout(constant_id = 11) const bool kPast = false;      // the picture is going to be a past; under a mask it is made from one
 
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
@@ -47,6 +48,7 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 shared uint threads_done;
+shared uint squares;  // of what is rendered less what was there before, in kErrorSteps
 
 // Which cells of the tile the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
@@ -183,6 +185,19 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(variance / (inverse_depth * inverse_depth)) : 0);
 }
 
+// What a picture that is made from this one must know of the tile. By every thread; `error` is what the thread's pixels turned out to
+// have had.
+void leaveTile(uint tile, uint cost, float error) {
+    if (kMasked) {
+        atomicAdd(squares, uint(error * kErrorSteps));
+        barrier();
+    }
+    if (gl_LocalInvocationIndex != 0) { return; }
+    const float amplitude = kMasked ? sqrt(float(squares) / (kErrorSteps * 3 * kTileSize * kTileSize)) : 0;
+    const float growth = kMasked ? amplitude / float(max(pass.past_tiles.at[tile].age, 1)) : 0;
+    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0));
+}
+
 void main() {
     const EyeView eye = pass.eyes.at[pass.eye];
     const uvec2 size_px = eye.size_px;
@@ -211,6 +226,7 @@ void main() {
     const uint lanes = laneCount();
     if (gl_LocalInvocationIndex == 0) {
         threads_done = 0;
+        if (kPast) { squares = 0; }
         batch_reference[kNoSplat] = vec4(0);
         batch_plane[kNoSplat] = vec4(0);
         batch_depth[kNoSplat] = vec4(1, 0, 0, 1e30);
@@ -236,20 +252,30 @@ void main() {
         begin += kBatchSize;
     } while (begin < range.y);
 
+    const bool keeps_depth = any(notEqual(uvec2(pass.depths), uvec2(0)));
     const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
+    float error = 0;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
         const uvec2 pixel = first_pixel + uvec2(0, p);
         if (pixel.x < size_px.x && pixel.y < size_px.y) {
             const uint at = pixel.y * size_px.x + pixel.x;
             const float left = abs(transmittance[p]);
             const vec3 blended = colour[p] + left * pass.background;
-            putColour(pass.colours, pass.half_colours, at, vec4(pass.is_light != 0 ? encode(blended) : blended, 1 - left));
+            const vec3 shown = pass.is_light != 0 ? encode(blended) : blended;
+            if (kPast && kMasked) {
+                const vec3 off = shown - colourAt(pass.colours, pass.half_colours, at).rgb;
+                error += min(dot(off, off), kMaxPixelError);
+            }
+            putColour(pass.colours, pass.half_colours, at, vec4(shown, 1 - left));
             if (kDepth) { pass.depths.at[at] = depth[p]; }
             if (kMoments) { pass.moments.at[at] = moments[p]; }
             if (kMoving && (!kEvenRows || (pixel.y & 1) == 0)) {
-                pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
+                const uint word = toMove(1 - left, depth[p], moments[p]);
+                pass.moving.at[pixel.y * pass.row_words + pixel.x] = word;
+                if (kPast && keeps_depth) { pass.depths.at[at] = word == 0 || inverseDepthOf(word) == 0 ? 0 : (1 - left) / inverseDepthOf(word); }
                 if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
             }
         }
     }
+    if (kPast) { leaveTile(tile, range.y - range.x, error); }
 }

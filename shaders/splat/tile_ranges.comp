@@ -13,8 +13,10 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
 layout(constant_id = 0) const bool kMasked = false;  // the tiles of pass.tile_list alone
 layout(constant_id = 1) const bool kHalfColours = false;
+layout(constant_id = 2) const bool kPast = false;  // the picture is going to be a past, and holds what one made already
 
 #include "lib/picture.glsl"
+#include "lib/moving_pixel.glsl"
 
 const uint kTilePixels = kTileSize * kTileSize;
 
@@ -58,6 +60,7 @@ void clear(uint tile, uint pixel_of_tile) {
     const uint at = pixel.y * pass.size_px.x + pixel.x;
     putColour(pass.colours, pass.half_colours, at, vec4(pass.background, 0));
     if (any(notEqual(uvec2(pass.depths), uvec2(0)))) { pass.depths.at[at] = 0; }
+    if (kPast) { pass.moving.at[at] = movingPixel(0, kLanded, 0); }
 }
 
 void main() {
@@ -69,12 +72,15 @@ void main() {
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
-    const bool listed = item < pass.masked_tiles.at[0].count;
+    // Pairs that had no room: what the past made stays.
+    const bool is_void = kPast && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
+    const bool listed = item < pass.masked_tiles.at[0].count && !is_void;
     const uint tile = listed ? pass.tile_list.at[item] : 0;
     bool full = false;
     if (listed) {
         full = findPairs(tile);
         if (!full) { empty_tiles[atomicAdd(empty_count, 1)] = tile; }
+        if (kPast && !full) { pass.past_tiles.at[tile] = PastTile(0, 0, 0, vec4(0)); }
     }
     listFull(full, tile);
     barrier();

@@ -1,0 +1,51 @@
+// An eye's picture from the one that it showed before, and the tiles of both eyes that are rendered again.
+//
+//   warp_past  what the past shows of each pixel, and the error to expect of each tile
+//   price      what it costs to mend that, with one budget for all eyes
+//   select     the tiles that are rendered
+#pragma once
+
+#include "engine/gpu/kernel.h"
+#include "engine/passes/warp_passes.h"
+
+#include <span>
+
+namespace binosplat {
+
+// What the passes of one eye work on.
+struct PastInputs {
+    const FrameBuffers& buffers;
+    const WarpBuffers& warp;
+    int index;  // of FrameState::targets
+    Role role;
+    const Picture& source;
+    const Picture& target;
+    const ShownTiles& shown;
+    glm::vec3 background;
+    const Intrinsics& lens;
+    std::optional<Gaze> gaze;  // empty: all tiles are seen alike
+};
+
+// How the eye `now` and the one whose picture is its past look to the device.
+gpu::PastView pastViewOf(const Eye& now, const Eye& past);
+
+KernelTable pastKernels();
+
+class PastPasses {
+public:
+    explicit PastPasses(const Context& context) : kernels_(context, pastKernels()) {}
+    // As of WarpPasses.
+    void rebuildKernels() { kernels_.rebuild(); }
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
+    void takeKernels(PastPasses& from) { kernels_.take(from.kernels_); }
+
+    // The target's colours, words, tiles and depths.
+    void recordWarp(Commands& commands, const PastInputs& in);
+    // Which tiles of all `eyes` are rendered again. The first one's WarpView says the budget, a share of all eyes' work.
+    void recordChoice(Commands& commands, std::span<const PastInputs> eyes);
+
+private:
+    KernelCache kernels_;
+};
+
+}  // namespace binosplat
