@@ -1,6 +1,7 @@
 // `binosplat info`: what a scene holds and what rendering it will leave out.
 #include "app/commands.h"
 #include "app/load.h"
+#include "app/options/start_view.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/describe.h"
 #include "engine/scene/survey.h"
@@ -77,6 +78,13 @@ void printDeviceMemory(const Scene& scene, const LoadNotes& notes, const SceneSu
     for (std::size_t i = 0; i < ways.size(); ++i) { printRow(i == 0 ? "  if too much" : "", "{}", ways[i]); }
 }
 
+// Where one stands at first, and why.
+std::string describeStart(const Scene& scene) {
+    const auto [view, why] = startView(scene);
+    return fmt::format("{:.4g},{:.4g},{:.4g} looking at {:.4g},{:.4g},{:.4g}, {}", view.eye.x, view.eye.y, view.eye.z, view.look.x,
+                       view.look.y, view.look.z, why);
+}
+
 }  // namespace
 
 void runInfo(const InfoOptions& options) {
@@ -109,6 +117,7 @@ void runInfo(const InfoOptions& options) {
     printQuantiles("  aspect", summary.aspect_quantiles);
     printRow("memory", "{} bytes ({:.1f} MiB) on the host", summary.host_bytes, mebibytes(summary.host_bytes));
     printDeviceMemory(scene, notes, survey);
+    printRow("start", "{}", describeStart(scene));
     for (const std::string& phrase : summary.left_out) { printRow("left out", "{}", phrase); }
     for (const std::string& line : notes.lines) { printRow("note", "{}", line); }
 }

@@ -154,6 +154,9 @@ TEST_CASE("withoutADeviceTheExitCodeIsThree") {
 TEST_CASE("viewSaysWhatIsMissing") {
     const Workplace work;
     checkRefused(work.run("view builtin:one-splat", "XR_RUNTIME_JSON=/nonexistent/runtime.json"), 3, "OpenXR");
+    // What can be known before there is a headset.
+    checkRefused(work.run("view builtin:one-splat --cameras missing.json", "XR_RUNTIME_JSON=/nonexistent/runtime.json"), 1, "missing.json");
+    checkRefused(work.run("view builtin:one-splat --view 1"), 2, "--view is given without --cameras");
 }
 
 TEST_CASE("configErrorsNameFileAndLine") {
@@ -227,6 +230,7 @@ TEST_CASE("aSceneCanBeWrittenAndDescribed") {
     CHECK(info.exit_code == 0);
     CHECK(info.errors.empty());
     CHECK(info.output.find("splats             1\n") != std::string::npos);
+    CHECK(info.output.find("\nstart              0,0,0.8 looking at 0,0,2, outside: 1.2 units from the middle") != std::string::npos);
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
 }
 

@@ -1,6 +1,7 @@
 // From camera options, camera files and headsets to the eyes of a frame.
 #include "app/options/camera_options.h"
 
+#include "app/options/start_view.h"
 #include "engine/error.h"
 
 #include <algorithm>
@@ -13,15 +14,6 @@ namespace {
 
 constexpr double kDefaultFovXDegrees = 60.0;
 constexpr glm::uvec2 kDefaultSize{1024, 1024};
-
-// The range of one coordinate that holds nine tenths of the splats, seen through at most 2^16 of them.
-std::pair<double, double> commonRange(const Scene& scene, int axis) {
-    const std::size_t step = scene.size() / 65536 + 1;
-    std::vector<float> values;
-    for (std::size_t i = 0; i < scene.size(); i += step) { values.push_back(scene.positions[i][axis]); }
-    std::ranges::sort(values);
-    return {values[values.size() / 20], values[values.size() - 1 - values.size() / 20]};
-}
 
 }  // namespace
 
@@ -36,25 +28,7 @@ CameraFiles readCameraFiles(const CameraOptions& options) {
     return files;
 }
 
-View viewOfScene(const Scene& scene, double fov_x_deg) {
-    if (isBuiltin(scene.name)) {
-        if (const std::optional<View> view = builtinView(scene.name)) { return *view; }
-    }
-    const double up_y = scene.y_up ? 1.0 : -1.0;  // the front is on the same side of z
-    View view{{0.0, 0.0, up_y}, {0.0, 0.0, 0.0}, {0.0, up_y, 0.0}, fov_x_deg};
-    if (scene.size() == 0) { return view; }
-    glm::dvec3 low, high;
-    for (int axis = 0; axis < 3; ++axis) { std::tie(low[axis], high[axis]) = commonRange(scene, axis); }
-    // A sphere about the common box fills the picture's width; about a point it holds the first splat, and half a unit at least.
-    double radius = 0.5 * glm::length(high - low);
-    if (radius < 1e-3) {
-        const glm::vec2 scale = scene.scales.empty() ? glm::vec2(0.0f) : scene.scales.front();
-        radius = std::max(3.0 * static_cast<double>(std::max(scale.x, scale.y)), 0.5);
-    }
-    view.look = 0.5 * (low + high);
-    view.eye = view.look + glm::dvec3(0.0, 0.0, up_y * radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0))));
-    return view;
-}
+View viewOfScene(const Scene& scene, double fov_x_deg) { return startView(scene, {fov_x_deg}).view; }
 
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
     const CameraOptions& camera = options.camera;
@@ -65,11 +39,10 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
         const Eye middle = camera.size_px ? resize(files.camera->eye, *camera.size_px) : files.camera->eye;
         return {middle, stereoPair(middle, eye_distance), eye_distance, std::nullopt};
     }
-    View view = viewOfScene(scene, camera.fov_x_deg.value_or(kDefaultFovXDegrees));
+    View view = startView(scene, camera, options.metres_per_unit);
     // A built-in scene's own angle belongs to its own view; whoever places the eye gets the usual one.
     const bool placed = camera.eye || camera.look;
-    view = {camera.eye.value_or(view.eye), camera.look.value_or(view.look), camera.up.value_or(view.up),
-            camera.fov_x_deg.value_or(placed ? kDefaultFovXDegrees : view.fov_x_deg)};
+    view.fov_x_deg = camera.fov_x_deg.value_or(placed ? kDefaultFovXDegrees : view.fov_x_deg);
     const Pose world_from_middle = lookAt(view.eye, view.look, view.up);
     if (files.headset) {
         view.fov_x_deg = 0.0;

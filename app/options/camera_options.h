@@ -20,8 +20,7 @@ struct CameraFiles {
 };
 CameraFiles readCameraFiles(const CameraOptions& options);
 
-// A view that shows the scene: the built-in one's, or from in front (y points down, or up in glTF) at a distance that holds nine tenths of
-// the splats.
+// Where one stands in a scene if nobody says: see startView.
 View viewOfScene(const Scene& scene, double fov_x_deg);
 
 struct Cameras {

@@ -7,7 +7,6 @@
 #include "engine/picture/flip.h"
 #include "engine/scene/scene_folder.h"
 
-#include <optional>
 #include <set>
 
 namespace binosplat {
@@ -31,13 +30,13 @@ std::string wordOf(const Settings& line, const char* name) {
     return found == line.end() ? "" : found->second.text();
 }
 
-// A training's output brings its own cameras: they count where --view asks for one of them and nobody names others.
+// The cameras that lie with a scene count where --view asks for one of them and nobody names others.
 void addOwnCameras(Settings& line, const Settings& config) {
     const auto view = line.find("view"), scene = line.find("SCENE");
     if (view == line.end() || scene == line.end() || line.contains("cameras") || config.contains("cameras")) { return; }
     if (scene->second.items.size() != 1) { return; }
-    const std::optional<TrainingOutput> training = findTrainingOutput(scene->second.items.front());
-    if (training && !training->cameras.empty()) { line.emplace("cameras", Setting{"--view", {training->cameras}}); }
+    const std::filesystem::path cameras = findCameraFile(scene->second.items.front());
+    if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
 // The command line, to which cameras may be added, over the config. Tables of the config that `foreign` names are left alone, and go to

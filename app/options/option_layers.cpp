@@ -61,8 +61,7 @@ Settings mergeLayers(const Settings& command_line, const Settings& config) {
     }
     for (const auto& [key, setting] : command_line) { merged.insert_or_assign(key, setting); }
     if (!has(merged, "cameras") && has(command_line, "view")) {
-        throw Error(ExitCode::kUsage,
-                    "--view is given without --cameras, and SCENE has none of its own (a training's output with its cameras.json)");
+        throw Error(ExitCode::kUsage, "--view is given without --cameras, and there is no cameras.json beside SCENE or in its folder");
     }
     return merged;
 }

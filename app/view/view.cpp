@@ -1,6 +1,7 @@
 // `binosplat view`: a scene in a headset.
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
@@ -62,6 +63,7 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
 void runView(const ViewOptions& given) {
     ViewOptions options = given;
     if (options.simulate) { simulateHeadset(options); }
+    readCameraFiles(options.run.camera);  // what is wrong with them is known before there is a headset
     const ViewSettings settings = startSettings(options);
     xr::InstanceOptions instance_options;
     instance_options.visibility_mask = settings.visibility_mask;

@@ -47,6 +47,25 @@ std::optional<TrainingOutput> findTrainingOutput(const fs::path& folder) {
     return found;
 }
 
+fs::path findCameraFile(const fs::path& scene) {
+    std::error_code error;
+    fs::path whole = fs::absolute(scene, error).lexically_normal();
+    if (error) { return {}; }
+    if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
+    const fs::path folder = whole.parent_path();
+    const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
+    // A training's output is a whole: what lies beside its folder is of another one.
+    const fs::path beside = is_trained ? folder.parent_path().parent_path() : folder;
+    std::vector<fs::path> places{whole, beside};
+    if (findTrainingOutput(whole)) { places = {whole}; }
+    for (const fs::path& place : places) {
+        if (!fs::is_regular_file(place / "cameras.json", error)) { continue; }
+        // As the scene was named.
+        return scene.is_absolute() ? place / "cameras.json" : (place / "cameras.json").lexically_proximate(fs::current_path());
+    }
+    return {};
+}
+
 std::vector<std::string> findNumberedFiles(const fs::path& folder) {
     // By what is left of a name without one of its numbers; a name with several numbers belongs to as many groups.
     std::map<std::string, std::map<std::pair<std::size_t, std::string>, std::string>> groups;

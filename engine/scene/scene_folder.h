@@ -17,6 +17,10 @@ struct TrainingOutput {
 // None if the folder is no such output, or is judged to be something else before that: a SOG scene, streamed or not.
 std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& folder);
 
+// The cameras.json of a scene, a file or a folder: in its folder, beside it, or, of FOLDER/point_cloud/iteration_N/FILE, in FOLDER. Empty:
+// there is none.
+std::filesystem::path findCameraFile(const std::filesystem::path& scene);
+
 // Files whose names differ in one number alone, in the order of that number; the largest such group of the folder. Empty: there are no
 // two.
 std::vector<std::string> findNumberedFiles(const std::filesystem::path& folder);

@@ -2,6 +2,7 @@
 #include "app/view/scenes/scene_loader.h"
 
 #include "app/load.h"
+#include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
 #include "app/view/view_files.h"
 #include "engine/error.h"
@@ -62,7 +63,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
         drawAs(options.load, scene, notes);
         const Similarity start = startPlacement(options, scene);
         SceneFacts facts = factsOf(scene, notes, scene_);
-        const glm::dvec3 up = upOfScene(scene, scene_, options.camera.up.value_or(viewOfScene(scene, 60.0).up));
+        const glm::dvec3 up = upOfScene(scene, scene_, startView(scene, options.camera, options.metres_per_unit).up);
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;

@@ -1,10 +1,8 @@
 // From cameras, or from the floor.
 #include "app/view/scenes/scene_up.h"
 
-#include "engine/error.h"
+#include "app/options/start_view.h"
 #include "engine/scene/procedural.h"
-#include "engine/scene/scene_folder.h"
-#include "engine/setup/camera_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,28 +17,6 @@ namespace {
 constexpr std::size_t kMostSplats = 262144;
 // A splat counts as so many median ones at most: the largest are hills and sky.
 constexpr double kMostMedians = 4.0;
-
-std::filesystem::path cameraFileOf(const std::filesystem::path& source) {
-    std::filesystem::path whole = std::filesystem::absolute(source).lexically_normal();
-    if (whole.filename().empty()) { whole = whole.parent_path(); }  // of a folder with a slash behind it
-    if (findTrainingOutput(whole)) { return whole / "cameras.json"; }
-    const std::filesystem::path folder = whole.parent_path();
-    const bool is_trained = folder.filename().string().starts_with("iteration_") && folder.parent_path().filename() == "point_cloud";
-    return (is_trained ? folder.parent_path().parent_path() : folder) / "cameras.json";
-}
-
-// Empty where there are none, or they look every way.
-std::optional<glm::dvec3> upOfCameras(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) { return std::nullopt; }
-    try {
-        glm::dvec3 sum(0.0);
-        const std::vector<FileCamera> cameras = readCameraFile(file);
-        for (const FileCamera& camera : cameras) { sum += camera.eye.world_from_camera.orientation * glm::dvec3(0.0, -1.0, 0.0); }
-        if (glm::length(sum) > 0.5 * static_cast<double>(cameras.size())) { return glm::normalize(sum); }
-    } catch (const Error&) {}  // the scene may well be without
-    return std::nullopt;
-}
 
 }  // namespace
 
@@ -72,7 +48,7 @@ glm::dvec3 upOfFloor(const Scene& scene, const glm::dvec3& usual) {
 
 glm::dvec3 upOfScene(const Scene& scene, const std::filesystem::path& source, const glm::dvec3& usual) {
     if (isBuiltin(scene.name)) { return glm::normalize(usual); }
-    if (const auto up = upOfCameras(cameraFileOf(source))) { return *up; }
+    if (const auto up = upOfCameras(readSceneCameras(source).cameras)) { return *up; }
     return upOfFloor(scene, usual);
 }
 

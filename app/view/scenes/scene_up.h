@@ -7,9 +7,8 @@
 
 namespace binosplat {
 
-// The mean up of the cameras that the scene was trained from, if their cameras.json lies where training leaves it: beside the file, or,
-// of FOLDER/point_cloud/iteration_N/FILE or of FOLDER itself, in FOLDER. Otherwise, of a scene that is not built in, the up of its floor,
-// see upOfFloor; or `usual`. Unit vectors in the scene's axes.
+// The mean up of the cameras that the scene was trained from, if their cameras.json lies with it (findCameraFile). Otherwise, of a scene
+// that is not built in, the up of its floor, see upOfFloor; or `usual`. Unit vectors in the scene's axes.
 glm::dvec3 upOfScene(const Scene& scene, const std::filesystem::path& source, const glm::dvec3& usual);
 
 // What lies level within 45 degrees of `usual`, floors and table tops, faces one way: the mean of these normals, weighed by area and

@@ -30,7 +30,9 @@ void ShownScene::begin(const std::string& scene) {
     }
     ++asked_count_;
     asked_ = scene;
-    loader_ = std::make_unique<SceneLoader>(context_, scene, options_.run, ahead_);
+    RunOptions run = options_.run;
+    if (scene != options_.scene) { run.camera.cameras_file.clear(); }  // which are of that one
+    loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_);
 }
 
 void ShownScene::beginBeside(int step, FileWorker& files) {
@@ -124,7 +126,8 @@ std::string ShownScene::place(ViewSettings& settings) {
         return {};
     }
     const CameraOptions& camera = options_.run.camera;
-    const bool is_asked_for = camera.eye || camera.look || camera.up || settings.scene_from_room;
+    const bool is_asked_for = camera.eye || camera.look || camera.up || settings.scene_from_room ||
+                              (!camera.cameras_file.empty() && scene_->name == options_.scene);
     scene_from_room = settings.scene_from_room.value_or(scene_->start);
     settings.scene_from_room.reset();
     if (is_asked_for) { return {}; }

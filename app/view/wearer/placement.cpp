@@ -1,6 +1,8 @@
 // Placing the scene about the wearer.
 #include "app/view/wearer/placement.h"
 
+#include "app/options/start_view.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,9 +47,7 @@ Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c) {
 }
 
 Similarity startPlacement(const RunOptions& options, const Scene& scene) {
-    const CameraOptions& camera = options.camera;
-    View view = viewOfScene(scene, 60.0);
-    view = {camera.eye.value_or(view.eye), camera.look.value_or(view.look), camera.up.value_or(view.up), view.fov_x_deg};
+    const View view = startView(scene, options.camera, options.metres_per_unit);
     const Pose looking = lookAt(view.eye, view.look, view.up);
     // The wearer stands upright: gravity is against `up`, whatever the view's tilt.
     const glm::dvec3 up = glm::normalize(view.up), forward = view.look - view.eye;

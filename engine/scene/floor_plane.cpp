@@ -1,0 +1,208 @@
+// Planes through one splat along its face and through three splats are tried, and the best ones are fitted to the splats near them.
+#include "engine/scene/floor_plane.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+namespace binosplat {
+
+namespace {
+
+constexpr int kTries = 1500;                 // of either kind
+constexpr std::size_t kFewForFloor = 256;    // fewer make no floor
+constexpr std::size_t kMostAtFirst = 2048;   // samples that a try is judged by
+constexpr std::size_t kKept = 12;            // tries that are fitted
+constexpr double kThickness = 0.01;          // of the size, to each side
+constexpr double kLeastShare = 0.08;         // of all splats
+constexpr double kMostBehind = 0.15;         // of the others
+constexpr double kUsualCosine = 0.70710678;  // 45 degrees
+constexpr double kMoreThanUsual = 3.0, kLeastUnusualShare = 0.3, kLeastUnusualReach = 1.3;
+
+struct Plane {
+    glm::dvec3 normal{0.0};
+    double height = 0.0;
+    std::size_t inliers = 0;
+};
+
+double sizeOf(const std::vector<SplatSample>& samples) {
+    glm::dvec3 sides;
+    std::vector<double> values(samples.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });
+        const double low = findQuantile(values, 0.05);
+        sides[axis] = findQuantile(values, 0.95) - low;
+    }
+    return glm::length(sides);
+}
+
+std::size_t countIn(const std::vector<SplatSample>& samples, std::size_t step, const Plane& plane, double thickness) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < samples.size(); i += step) {
+        count += std::abs(glm::dot(samples[i].centre, plane.normal) - plane.height) < thickness;
+    }
+    return count;
+}
+
+// The direction in which points with this covariance spread least: what two steps of (trace - covariance)^n leave of `near`.
+glm::dvec3 leastSpread(const glm::dmat3& covariance, const glm::dvec3& near) {
+    const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
+    if (!(trace > 0.0)) { return near; }
+    glm::dmat3 power = (glm::dmat3(1.0) * trace - covariance) / trace;
+    for (int i = 0; i < 8; ++i) {
+        power = power * power;
+        power /= std::max(power[0][0] + power[1][1] + power[2][2], 1e-300);
+    }
+    const glm::dvec3 found = power * near;
+    return glm::length(found) > 1e-9 ? glm::normalize(found) : near;
+}
+
+// To the splats near it, those twice as thick first.
+Plane fit(const std::vector<SplatSample>& samples, Plane plane, double thickness) {
+    for (const double near : {2.0 * thickness, thickness, thickness}) {
+        glm::dvec3 sum(0.0);
+        std::vector<glm::dvec3> inside;
+        for (const SplatSample& sample : samples) {
+            if (std::abs(glm::dot(sample.centre, plane.normal) - plane.height) < near) {
+                inside.push_back(sample.centre), sum += sample.centre;
+            }
+        }
+        if (inside.size() < 3) { break; }
+        const glm::dvec3 mean = sum / static_cast<double>(inside.size());
+        glm::dmat3 covariance(0.0);
+        for (const glm::dvec3& point : inside) { covariance += glm::outerProduct(point - mean, point - mean); }
+        plane.normal = leastSpread(covariance, plane.normal);
+        plane.height = glm::dot(mean, plane.normal);
+    }
+    plane.inliers = countIn(samples, 1, plane, thickness);
+    return plane;
+}
+
+std::vector<Plane> tryPlanes(const std::vector<SplatSample>& samples, double thickness) {
+    std::mt19937 random(1);
+    const auto pick = [&]() -> const SplatSample& { return samples[random() % samples.size()]; };
+    const std::size_t step = samples.size() / kMostAtFirst + 1;
+    std::vector<Plane> tried;
+    for (int i = 0; i < 2 * kTries; ++i) {
+        const SplatSample& first = pick();
+        glm::dvec3 normal = first.normal;
+        if (i % 2 == 1) {
+            const SplatSample& second = pick();
+            normal = glm::cross(second.centre - first.centre, pick().centre - first.centre);
+            if (!(glm::length(normal) > 0.0)) { continue; }
+            normal = glm::normalize(normal);
+        }
+        Plane plane{normal, glm::dot(normal, first.centre)};
+        plane.inliers = countIn(samples, step, plane, thickness);
+        tried.push_back(plane);
+    }
+    return tried;
+}
+
+// As a floor or a ceiling; empty where splats lie on both sides, or the plane is a strip.
+std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size, double thickness) {
+    std::size_t above = 0, below = 0;
+    glm::dvec3 sum(0.0);
+    for (const SplatSample& sample : samples) {
+        const double height = glm::dot(sample.centre, plane.normal) - plane.height;
+        above += height > 2.0 * thickness;
+        below += height < -2.0 * thickness;
+        if (std::abs(height) < thickness) { sum += sample.centre; }
+    }
+    const double share = static_cast<double>(plane.inliers) / static_cast<double>(samples.size());
+    const std::size_t others = above + below, behind = std::min(above, below);
+    if (share < kLeastShare || others == 0 || static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
+        return std::nullopt;
+    }
+    const glm::dvec3 mean = sum / static_cast<double>(plane.inliers);
+    glm::dmat3 covariance(0.0);
+    for (const SplatSample& sample : samples) {
+        if (std::abs(glm::dot(sample.centre, plane.normal) - plane.height) >= thickness) { continue; }
+        covariance += glm::outerProduct(sample.centre - mean, sample.centre - mean) / static_cast<double>(plane.inliers);
+    }
+    // Of the two directions within the plane the one with less spread: what is left of the largest one's share.
+    const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
+    glm::dvec3 longest = glm::dvec3(0.3, 0.5, 0.8);
+    for (int i = 0; i < 32; ++i) { longest = glm::normalize(covariance * longest + 1e-300); }
+    const double across = trace - glm::dot(longest, covariance * longest);
+    if (across < 0.0025 * size * size) { return std::nullopt; }
+    const bool rest_is_above = above >= below;
+    const glm::dvec3 up = rest_is_above ? plane.normal : -plane.normal;
+    return FloorPlane{up, rest_is_above ? plane.height : -plane.height, thickness, share, false};
+}
+
+// How far from the middle of the floor its splats lie, in terms of how far those do that stand on it.
+double reachBeyond(const std::vector<SplatSample>& samples, const FloorPlane& floor) {
+    std::array<std::vector<double>, 2> distances;
+    glm::dvec3 middle(0.0);
+    const auto isFloor = [&](const SplatSample& sample) {
+        return std::abs(glm::dot(sample.centre, floor.up) - floor.height) < floor.thickness;
+    };
+    std::array<std::vector<double>, 3> along;
+    for (const SplatSample& sample : samples) {
+        if (!isFloor(sample)) { continue; }
+        for (int axis = 0; axis < 3; ++axis) { along[static_cast<std::size_t>(axis)].push_back(sample.centre[axis]); }
+    }
+    for (int axis = 0; axis < 3; ++axis) { middle[axis] = findQuantile(along[static_cast<std::size_t>(axis)], 0.5); }
+    for (const SplatSample& sample : samples) {
+        const glm::dvec3 from = sample.centre - middle;
+        distances[isFloor(sample) ? 1 : 0].push_back(glm::length(from - glm::dot(from, floor.up) * floor.up));
+    }
+    return distances[0].empty() ? 0.0 : findQuantile(distances[1], 0.9) / std::max(findQuantile(distances[0], 0.9), 1e-300);
+}
+
+}  // namespace
+
+std::vector<SplatSample> sampleSplats(const Scene& scene, std::size_t most) {
+    std::vector<SplatSample> samples;
+    const std::size_t step = scene.size() / most + 1;
+    for (std::size_t begin = 0; begin < scene.size(); begin += step) {
+        // One of each `step`, but not always the same one: files have an order.
+        std::uint64_t mixed = (begin / step + 1) * 0x9e3779b97f4a7c15u;
+        mixed ^= mixed >> 32;
+        const std::size_t i = std::min<std::size_t>(begin + mixed % step, scene.size() - 1);
+        if (i < scene.opacities.size() && scene.opacities[i] < 1.0f / 255.0f) { continue; }
+        const glm::vec2 scale = i < scene.scales.size() ? scene.scales[i] : glm::vec2(0.0f);
+        const glm::dquat turn = i < scene.rotations.size() ? glm::dquat(scene.rotations[i]) : glm::dquat(1.0, 0.0, 0.0, 0.0);
+        samples.push_back(
+            {glm::dvec3(scene.positions[i]), turn * glm::dvec3(0.0, 0.0, 1.0), 2.0 * static_cast<double>(std::max(scale.x, scale.y))});
+    }
+    return samples;
+}
+
+double findQuantile(std::vector<double>& values, double share) {
+    const auto rank = static_cast<std::ptrdiff_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples, const glm::dvec3& usual) {
+    if (samples.size() < kFewForFloor) { return std::nullopt; }
+    const double size = sizeOf(samples), thickness = kThickness * size;
+    if (!(size > 0.0) || !std::isfinite(size)) { return std::nullopt; }
+    std::vector<Plane> tried = tryPlanes(samples, thickness);
+    // Those about the usual up and the others each have their best.
+    std::array<std::optional<FloorPlane>, 2> best;
+    for (const bool is_usual : {true, false}) {
+        std::vector<Plane> of_kind;
+        std::ranges::copy_if(tried, std::back_inserter(of_kind),
+                             [&](const Plane& plane) { return (std::abs(glm::dot(plane.normal, usual)) >= kUsualCosine) == is_usual; });
+        std::ranges::sort(of_kind, std::greater<>(), &Plane::inliers);
+        double best_score = 0.0;
+        for (std::size_t i = 0; i < std::min(kKept, of_kind.size()); ++i) {
+            std::optional<FloorPlane> floor = asFloor(samples, fit(samples, of_kind[i], thickness), size, thickness);
+            if (!floor || (std::abs(glm::dot(floor->up, usual)) >= kUsualCosine) != is_usual) { continue; }
+            if (is_usual && glm::dot(floor->up, usual) < 0.0) { *floor = {-floor->up, -floor->height, thickness, floor->share, true}; }
+            const double score = floor->share * (floor->is_ceiling ? 0.5 : 1.0);
+            if (score > best_score) { best_score = score, best[is_usual ? 0 : 1] = floor; }
+        }
+    }
+    const auto& [usual_one, other] = best;
+    if (usual_one && other && other->share >= kMoreThanUsual * usual_one->share) { return other; }
+    if (usual_one || !other) { return usual_one; }
+    return other->share >= kLeastUnusualShare && reachBeyond(samples, *other) >= kLeastUnusualReach ? other : std::nullopt;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,29 @@
+// Where to stand in a scene that comes without cameras, judged from its splats alone; one in fifty may be a floater.
+#pragma once
+
+#include "engine/scene/procedural.h"
+#include "engine/scene/scene.h"
+
+#include <optional>
+#include <string>
+
+namespace binosplat {
+
+struct StandpointWish {
+    double fov_x_deg = 60.0;
+    double metres_per_unit = 1.0;    // for the height of eyes, where the scene is about as large as it says
+    std::optional<glm::dvec3> up{};  // if it is known
+};
+
+struct Standpoint {
+    View view;
+    std::string why;  // half a sentence: "inside: ...", "outside: ..."
+};
+
+// A scene that surrounds its middle, a room or a street, is entered: at eye height over its floor, near the middle of what is dense but
+// clear of it, looking at the densest part. Anything else is looked at from in front (from -z where y points down, from +z where it points
+// up) so that nine tenths of the splats fill the picture's width. Up is `wish.up`, else the floor's (floor_plane.h), else -y, or +y as in
+// glTF.
+Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
+
+}  // namespace binosplat

@@ -1,0 +1,228 @@
+// Where one stands in a scene without cameras: made rooms, streets and objects, tilted, and with one splat in fifty a floater.
+#include "engine/scene/standpoint.h"
+#include "engine/scene/floor_plane.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace binosplat;
+
+TEST_SUITE_BEGIN("standpoint");
+
+namespace {
+
+// Scenes in metres, y down: the floor is y = 0.
+class Maker {
+public:
+    // A rectangle of splats: its corner and two sides, splats evenly at random, facing its normal.
+    Maker& wall(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, double per_square_metre = 250.0, double bumps = 0.0) {
+        const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
+        const auto count = static_cast<int>(per_square_metre * glm::length(glm::cross(a, b)));
+        for (int i = 0; i < count; ++i) { add(corner + next() * a + next() * b + bumps * (next() - 0.5) * normal, normal); }
+        return *this;
+    }
+    // The sides, the top and the bottom of a box.
+    Maker& box(const glm::dvec3& low, const glm::dvec3& high, double per_square_metre = 250.0) {
+        const glm::dvec3 s = high - low, x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
+        wall(low, x, y, per_square_metre).wall(low, y, z, per_square_metre).wall(low, x, z, per_square_metre);
+        return wall(high, -x, -y, per_square_metre).wall(high, -y, -z, per_square_metre).wall(high, -x, -z, per_square_metre);
+    }
+    Maker& ball(const glm::dvec3& centre, double radius, int count) {
+        std::normal_distribution<double> bell;
+        for (int i = 0; i < count; ++i) {
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(bell(random_), bell(random_), bell(random_)));
+            add(centre + radius * normal, normal);
+        }
+        return *this;
+    }
+    // One splat in fifty lies far away, or anywhere.
+    Maker& floaters(double within) {
+        for (std::size_t i = 0, count = scene_.size() / 49; i < count; ++i) {
+            add(within * (2.0 * glm::dvec3(next(), next(), next()) - 1.0), {0, 0, 1});
+            scene_.scales.back() = glm::vec2(0.2f);
+        }
+        return *this;
+    }
+    Maker& turn(const glm::dquat& turn, double scale = 1.0) {
+        for (std::size_t i = 0; i < scene_.size(); ++i) {
+            scene_.positions[i] = glm::vec3(scale * (turn * glm::dvec3(scene_.positions[i])));
+            scene_.rotations[i] = glm::quat(turn * glm::dquat(scene_.rotations[i]));
+            scene_.scales[i] *= static_cast<float>(scale);
+        }
+        return *this;
+    }
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+
+private:
+    double next() { return std::uniform_real_distribution<double>()(random_); }
+    void add(const glm::dvec3& centre, const glm::dvec3& normal) {
+        const glm::dvec3 across = glm::abs(normal.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        const glm::dvec3 u = glm::normalize(glm::cross(normal, across));
+        scene_.positions.emplace_back(centre);
+        scene_.rotations.emplace_back(glm::quat_cast(glm::mat3(u, glm::cross(normal, u), normal)));
+        scene_.scales.emplace_back(0.03f);
+        scene_.opacities.push_back(0.9f);
+    }
+
+    Scene scene_;
+    std::mt19937 random_{7};
+};
+
+// 6 by 5 metres, 2.8 high, with a table full of things in one corner and a cupboard.
+Maker room() {
+    Maker made;
+    made.box({-3, -2.8, 0}, {3, 0, 5});
+    made.box({1.2, -0.8, 3.2}, {2.4, 0, 4.2}, 2000.0);
+    return made.box({-2.9, -2.0, 1.0}, {-2.3, 0.0, 2.0});
+}
+
+Maker street() {
+    Maker made;
+    made.wall({-4, 0, -20}, {8, 0, 0}, {0, 0, 40}, 40.0, 0.1);
+    for (const double side : {-4.0, 4.0}) { made.wall({side, -9, -20}, {0, 9, 0}, {0, 0, 40}, 20.0); }
+    return made.box({-3.5, -1.5, 2}, {-1.8, 0, 6}, 150.0);
+}
+
+// A head on a pedestal, with nothing about it.
+Maker statue() {
+    Maker made;
+    made.ball({0.2, -1.9, 0.1}, 0.4, 6000);
+    return made.box({0.0, -1.5, -0.1}, {0.4, -0.1, 0.3}, 1000.0);
+}
+
+Maker statueOnGround() {
+    Maker made = statue();
+    return made.wall({-2.5, 0, -2.5}, {5, 0, 0}, {0, 0, 5}, 200.0);
+}
+
+double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::degrees(std::acos(std::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0)));
+}
+
+bool isInside(const Standpoint& point) { return point.why.starts_with("inside"); }
+
+// With floaters and without, as it is, turned about the vertical and tilted: `check` is told what happened, in the scene's own axes.
+template <typename Check>
+void tryLies(const std::function<Maker()>& make, const Check& check) {
+    for (const bool has_floaters : {false, true}) {
+        for (const double tilt : {0.0, 0.3, 0.6}) {
+            for (const double heading : {0.0, 0.7, 2.5}) {
+                const glm::dquat turn =
+                    glm::angleAxis(tilt, glm::normalize(glm::dvec3(1, 0, 0.4))) * glm::angleAxis(heading, glm::dvec3(0, 1, 0));
+                Maker made = make();
+                if (has_floaters) { made.floaters(30.0); }
+                made.turn(turn);
+                Standpoint point = judgeStandpoint(made.scene());
+                CAPTURE(has_floaters);
+                CAPTURE(tilt);
+                CAPTURE(heading);
+                CAPTURE(point.why);
+                for (glm::dvec3* const end : {&point.view.eye, &point.view.look, &point.view.up}) { *end = glm::conjugate(turn) * *end; }
+                check(point, tilt);
+            }
+        }
+    }
+}
+
+const glm::dvec3 kUp(0, -1, 0);
+
+}  // namespace
+
+TEST_CASE("a room is entered at eye height, clear of its walls, and its densest part is looked at") {
+    tryLies(room, [](const Standpoint& point, double) {
+        CHECK(isInside(point));
+        CHECK(degreesBetween(point.view.up, kUp) < 1.5);
+        const glm::dvec3& eye = point.view.eye;
+        CHECK(-eye.y == doctest::Approx(1.6).epsilon(0.06));
+        CHECK(std::abs(eye.x) < 2.3);
+        CHECK(std::abs(eye.z - 2.5) < 1.8);
+        // The table's corner.
+        CHECK(degreesBetween(point.view.look - eye, glm::dvec3(1.8, -0.5, 3.7) - eye) < 20.0);
+    });
+}
+
+TEST_CASE("a street is entered between its houses") {
+    tryLies(street, [](const Standpoint& point, double) {
+        CHECK(isInside(point));
+        CHECK(degreesBetween(point.view.up, kUp) < 2.0);
+        CHECK(std::abs(point.view.eye.x) < 3.2);
+        CHECK(std::abs(point.view.eye.z) < 15.0);
+        CHECK(-point.view.eye.y == doctest::Approx(1.6).epsilon(0.15));
+    });
+}
+
+TEST_CASE("an object is looked at from outside, whole, and upright where it stands on something") {
+    const auto isWhole = [](const Standpoint& point, const glm::dvec3& middle, double radius) {
+        CHECK_FALSE(isInside(point));
+        const double distance = glm::distance(point.view.eye, middle);
+        CHECK(distance > 1.3 * radius);
+        CHECK(distance < 4.0 * radius);
+        CHECK(degreesBetween(point.view.look - point.view.eye, middle - point.view.eye) < 12.0);
+    };
+    tryLies(statue, [&](const Standpoint& point, double) { isWhole(point, {0.2, -1.2, 0.1}, 1.15); });
+    tryLies(statueOnGround, [&](const Standpoint& point, double) {
+        isWhole(point, {0.2, -1.2, 0.1}, 1.15);
+        CHECK(degreesBetween(point.view.up, kUp) < 1.5);
+        CHECK(point.view.eye.y < -1.0);  // above the ground
+    });
+    // A crate of half a metre is no room, though it has a floor, walls and a ceiling.
+    tryLies(
+        [] {
+            return Maker().box({-0.3, -0.5, -0.25}, {0.3, 0, 0.25}, 8000.0);
+        },
+        [&](const Standpoint& point, double) {
+            isWhole(point, {0, -0.25, 0}, 0.46);
+        });
+}
+
+TEST_CASE("an object on the ground whose z is up stands upright, too") {
+    Maker made = statueOnGround();
+    made.turn(glm::angleAxis(glm::radians(90.0), glm::dvec3(1, 0, 0)));  // -y comes to -z
+    const Standpoint point = judgeStandpoint(made.scene());
+    CAPTURE(point.why);
+    CHECK(degreesBetween(point.view.up, {0, 0, -1}) < 1.5);
+    CHECK_FALSE(isInside(point));
+}
+
+TEST_CASE("an empty room is one by its size, and one whose units are no metres by what stands in it") {
+    const auto empty = [] { return Maker().box({-3, -2.8, 0}, {3, 0, 5}); };
+    CHECK(isInside(judgeStandpoint(empty().scene())));
+    Maker small = room();
+    small.turn({1, 0, 0, 0}, 0.1);
+    const Standpoint in_small = judgeStandpoint(small.scene());
+    CAPTURE(in_small.why);
+    CHECK(isInside(in_small));
+    CHECK(-in_small.view.eye.y > 0.08);
+    CHECK(-in_small.view.eye.y < 0.22);
+    CHECK(-judgeStandpoint(small.scene(), {60.0, 10.0, {}}).view.eye.y == doctest::Approx(0.16).epsilon(0.06));
+}
+
+TEST_CASE("an up that is given is kept") {
+    const glm::dvec3 up = glm::normalize(glm::dvec3(0.2, -1, 0.1));
+    const Standpoint point = judgeStandpoint(room().scene(), {60.0, 1.0, up});
+    CHECK(glm::distance(point.view.up, up) < 1e-12);
+}
+
+TEST_CASE("what has no floor has none: a ball, a wall and a handful of splats") {
+    const auto floorOf = [](const Maker& made) { return findFloorPlane(sampleSplats(made.scene(), 32768), kUp); };
+    CHECK_FALSE(floorOf(Maker().ball({0, 0, 0}, 1.0, 20000)));
+    CHECK_FALSE(floorOf(Maker().wall({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 5000.0)));
+    CHECK_FALSE(floorOf(Maker().ball({0, 0, 0}, 1.0, 100)));
+    CHECK_FALSE(floorOf(Maker()));
+    CHECK(floorOf(room())->share == doctest::Approx(0.22).epsilon(0.4));
+}
+
+TEST_CASE("splats that nobody sees, and those that are equal, place nobody at infinity") {
+    Scene scene = room().scene();
+    const Standpoint seen = judgeStandpoint(scene);
+    std::ranges::fill(scene.opacities, 0.0f);
+    CHECK(judgeStandpoint(scene).view.look == glm::dvec3(0.0));
+    std::ranges::fill(scene.opacities, 0.9f);
+    std::ranges::fill(scene.positions, glm::vec3(1, 2, 3));
+    const Standpoint point = judgeStandpoint(scene);
+    CHECK(point.view.look == glm::dvec3(1, 2, 3));
+    CHECK(glm::distance(point.view.eye, point.view.look) < 10.0);
+    CHECK(isInside(seen));
+}
