@@ -30,7 +30,7 @@ SHAPE = 'stroke="#444" stroke-width="2"'
 
 
 def read_profiles():
-    """(path, trigger, squeeze, stick, stick_click, (menu left, menu right), haptic) of each row of kProfiles; None where it has none."""
+    """(path, trigger, squeeze, stick, stick_click, stick_press, (menu left, menu right), haptic) of each row of kProfiles, or None."""
     text = (ROOT / "xr" / "bindings.cpp").read_text()
     values = dict(re.findall(r'\*?(k\w+) = ("[^"]*")', text))
     values |= dict(re.findall(r"\b(k\w+)\{((?:\"[^\"]*\"|nullptr), (?:\"[^\"]*\"|nullptr))\}", text))
@@ -38,8 +38,8 @@ def read_profiles():
     profiles = []
     for row in re.findall(r"\{((?:[^{}]|\{[^{}]*\})*)\}", table[: table.index("};\n")]):
         words = re.findall(r'"[^"]*"|\w+', re.sub(r"\bk[A-Z]\w*", lambda match: values[match.group()], row))
-        path, _, trigger, squeeze, stick, click, left, right, haptic = (None if w == "nullptr" else w.strip('"') for w in words)
-        profiles.append((path, trigger, squeeze, stick, click, (left, right), haptic))
+        path, _, trigger, squeeze, stick, click, press, left, right, haptic = (None if w == "nullptr" else w.strip('"') for w in words)
+        profiles.append((path, trigger, squeeze, stick, click, press, (left, right), haptic))
     return profiles
 
 
@@ -55,7 +55,7 @@ def label(side, y, part_x, part_y, text):
 
 def draw_side(profile, side):
     """Parts lie mirrored on the two sides; x grows towards the middle between them."""
-    _, trigger, squeeze, stick, click, menus, haptic = profile
+    _, trigger, squeeze, stick, click, press, menus, haptic = profile
     inwards, x, is_hand = (-1, 1)[side == 0], HAND_X[side], haptic is None
     svg = ""
     if is_hand:
@@ -75,7 +75,9 @@ def draw_side(profile, side):
     if stick:
         is_pad = click is not None
         svg += f'  <circle cx="{x}" cy="{130 if is_pad else 94}" r="{24 if is_pad else 13}" fill="#9fb6d8" {SHAPE}/>\n'
-        what = ": walk, or teleport" if side == 0 else ": turn by 30 degrees, rise and sink"
+        what = ": walk, or teleport" if side == 0 else ": turn, rise and sink"
+        if press:
+            what += ("; pressed in: the viewpoint before", "; pressed in: the next viewpoint")[side]
         svg += label(side, *((134, 0, 124) if is_pad else (98, 0, 94)), WORDS[stick] + what)
     if menus[side]:
         is_above = click is not None  # of the pad
@@ -92,7 +94,7 @@ def draw_side(profile, side):
 def draw_controls(out):
     families = {}
     for profile in read_profiles():
-        families.setdefault(profile[1:6], []).append(profile)
+        families.setdefault(profile[1:7], []).append(profile)
     out.mkdir(parents=True, exist_ok=True)
     for profiles in families.values():
         svg = (

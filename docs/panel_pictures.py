@@ -5,6 +5,7 @@ Each is the panel's part of the viewer's window on a display without a screen (X
 brings into the state; frames go by the clock. A state lasts until the picture has been taken, but for the one in which the scene loads."""
 
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -12,19 +13,19 @@ import tempfile
 import time
 import zlib
 
-LAST = "rate 90\nsize 64 64\nframes none\n"
+LAST = "rate 30\nsize 64 64\nframes none\n"
 LEFT_AWAY = "controller left 0 position -0.2 1.2 -0.35 turn 0 -80\n"
 # Opens the page of scenes, and pulls the trigger on Next scene once.
 NEXT_SCENE = (
-    "controller right 0 position 0.2 1.2 -0.35 look -0.582 1.774 -0.864\npress right trigger 4 7\n"
-    "controller right 8 position 0.2 1.2 -0.35 look -0.582 1.774 -0.864\n"
-    "controller right 9 position 0.2 1.2 -0.35 look -0.526 1.411 -0.852\npress right trigger 11 14\n" + LEFT_AWAY
+    "controller right 0 position 0.2 1.2 -0.35 look -0.535 1.765 -0.887\npress right trigger 4 7\n"
+    "controller right 8 position 0.2 1.2 -0.35 look -0.535 1.765 -0.887\n"
+    "controller right 9 position 0.2 1.2 -0.35 look -0.444 1.384 -0.890\npress right trigger 11 14\n" + LEFT_AWAY
 )
 # Pulls the trigger on the button of another page; x and z of where that is.
-PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.774 {1}\npress right trigger 4 7\n" + LEFT_AWAY
+PAGE = "controller right 0 position 0.2 1.2 -0.35 look {0} 1.765 {1}\npress right trigger 4 7\n" + LEFT_AWAY
 STATES = {
-    "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.582, -0.864)),
-    "info": ("room2.ply --load-first", LAST + PAGE.format(-0.513, -0.899)),
+    "scenes": ("room2.ply --load-first", LAST + PAGE.format(-0.535, -0.887)),
+    "method": ("room2.ply --load-first", LAST + PAGE.format(-0.447, -0.931)),
     "loading": ("builtin:atelier", LAST),
     "scene": ("builtin:fence --load-first", LAST),
     "headset_off": ("builtin:fence --load-first", LAST + "at 3 worn off\n"),
@@ -37,6 +38,8 @@ STATES = {
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
 SCENES = ("room2.ply", "room10.ply", "Küche.ply", "Τραπέζι.ply", "Комната.ply", "חדר.ply", "غرفة.ply", "森の家.ply")
+SEEN = ("a.ply", *SCENES[:4])
+BUILT_IN = ("fence", "step-edge", "slanted-wall")
 SCREEN = (1400, 800)
 EYE_PX = 720  # the window shows an eye of this size, and the panel beside it
 PANEL_PX = (EYE_PX * 768 // 960, EYE_PX)
@@ -80,12 +83,28 @@ def write_png(path, rows):
         file.write(chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
 
 
+def look_at_some(program, work):
+    """So that the page has pictures of scenes that were shown before, and a favourite."""
+    with open(os.path.join(work, "seen.script"), "w") as file:
+        file.write("rate 30\nsize 160 120\nframes none\n")
+    environment = dict(os.environ, XDG_CONFIG_HOME=work, DISPLAY="", WAYLAND_DISPLAY="")
+    for scene_file in SEEN:
+        command = [program, "view", scene_file, "--load-first", "--hide-panel", "--frames", "40", "--simulate", "seen.script"]
+        subprocess.run(command, cwd=work, env=environment, check=True, stdout=subprocess.DEVNULL)
+    with open(os.path.join(work, "binosplat", "favourite-scenes.txt"), "w") as file:
+        file.write(os.path.join(work, SCENES[2]) + "\n")
+    shutil.rmtree(os.path.join(work, "out"), ignore_errors=True)
+
+
 def take(program, folder, name, scene, script):
     with tempfile.TemporaryDirectory(prefix="binosplat-") as work:
         with open(os.path.join(work, "state.script"), "w") as file:
             file.write(script)
-        for scene_file in ("a.ply", *(SCENES if name == "scenes" else SCENES[:1])):
-            subprocess.run([program, "scene", "fence", "--out", scene_file], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        for number, scene_file in enumerate(("a.ply", *(SCENES if name == "scenes" else SCENES[:1]))):
+            kind = BUILT_IN[number % len(BUILT_IN)]
+            subprocess.run([program, "scene", kind, "--out", scene_file], cwd=work, check=True, stdout=subprocess.DEVNULL)
+        if name == "scenes":
+            look_at_some(program, work)
         with open(os.path.join(work, "view.toml"), "w") as file:
             file.write('[view]\nquality = "fast"\n')
         with open(os.path.join(work, "b.ply"), "w") as file:

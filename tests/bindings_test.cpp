@@ -40,7 +40,7 @@ TEST_CASE("every input and output that is bound is one of its controller") {
         CHECK(enabled.meets(profile->depends));
         for (const std::size_t side : {0, 1}) {
             for (const char* what : {"input/aim/pose", "input/grip/pose", bindings.trigger, bindings.squeeze, bindings.stick,
-                                     bindings.stick_click, bindings.menu[side], bindings.haptic}) {
+                                     bindings.stick_click, bindings.stick_press, bindings.menu[side], bindings.haptic}) {
                 if (what == nullptr) { continue; }
                 const std::string path = fmt::format("/user/hand/{}/{}", side == 0 ? "left" : "right", what);
                 CHECK_MESSAGE(simulated::allowsBinding(*profile, path, enabled), path);

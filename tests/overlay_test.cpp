@@ -25,7 +25,7 @@ using namespace binosplat::test;
 
 namespace {
 
-using Page = OverlayPages::Page;
+using Page = PanelPage;
 
 // Where the vector font is, if this machine has it.
 std::string vectorFont() {
@@ -86,7 +86,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     // They stay, whatever is shown next; Chinese comes from the first font of the system that has it.
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     write(work.path / chinese);
-    sketch.pages.shown = Page::kScenes;
+    sketch.settings.page = Page::kScenes;
     sketch.pages.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.contains(chinese));
     CHECK(isThere(0x5d0));
@@ -139,6 +139,7 @@ TEST_CASE("without a font that can be used the small built-in one is, and one li
         CHECK(sketch.font->complaint().starts_with("the panel is written in a small built-in font: "));
         CHECK(sketch.font->complaint().find(name) != std::string::npos);
         CHECK(sketch.font->complaint().find('\n') == std::string::npos);
+        sketch.settings.page = Page::kMethod;
         CHECK(sketch.click("shared").places.contains("Quit"));
         CHECK(sketch.settings.stereo.mode == Mode::kShared);
     }
@@ -178,9 +179,10 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
 TEST_CASE("every widget lies on the panel, none on another, on each page") {
     for (const bool shaders : {false, true}) {
         PanelSketch sketch;
-        sketch.status.can_reload_shaders = shaders;
-        for (const Page page : {Page::kSettings, Page::kScenes, Page::kFacts}) {
-            sketch.pages.shown = page;
+        sketch.status.can_reload_shaders = sketch.status.can_pass_through = shaders;
+        if (shaders) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
+        for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
+            sketch.settings.page = page;
             sketch.pages.chooser.showFolder(kBuiltinFolder);
             const WidgetPlaces places = sketch.draw().places;
             CHECK(places.size() >= 4);
@@ -200,6 +202,8 @@ TEST_CASE("every widget lies on the panel, none on another, on each page") {
 
 TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages") {
     PanelSketch sketch;
+    sketch.click("Method");
+    CHECK(sketch.settings.page == Page::kMethod);
     CHECK(sketch.click("paper").places.contains("Centre ROI (paper)"));
     CHECK(sketch.settings.stereo.mode == Mode::kPaper);
     sketch.click("Centre ROI (paper)");
@@ -209,26 +213,74 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.settings.stereo.foveation_deg > 0.0);
     sketch.click("Foveation");
     CHECK(sketch.settings.stereo.foveation_deg == 0.0);
-    CHECK(sketch.click("Save").save);
-    CHECK(sketch.click("Quit").quit);
-    CHECK(sketch.click("Level").level_scene);
-    CHECK(sketch.click("Recentre").recentre);
-    CHECK(sketch.click("Picture").take_picture);
     sketch.click("budget (predicted)");
     CHECK(sketch.settings.stereo.budget == doctest::Approx(0.5).epsilon(0.02));
-    sketch.click("Scene info");
-    CHECK(sketch.pages.shown == Page::kFacts);
+    CHECK(sketch.click("Save").save);
+    CHECK(sketch.click("Load").load);
     CHECK(sketch.click("Quit").quit);
+    sketch.click("View");
+    CHECK(sketch.settings.page == Page::kView);
+    CHECK(sketch.click("Quit").quit);
+    CHECK(sketch.click("Save").save);
+    CHECK(sketch.click("Load").load);
+    CHECK(sketch.click("Level").level_scene);
+    CHECK(sketch.click("Recentre").recentre);
+    CHECK(sketch.click("Reset").reset_scene);
+    CHECK(sketch.click("Picture").take_picture);
     sketch.click("Scenes");
-    CHECK(sketch.pages.shown == Page::kScenes);
+    CHECK(sketch.settings.page == Page::kScenes);
+    CHECK(sketch.click("Quit").quit);
     CHECK(sketch.click("Next scene").scene_step == 1);
-    CHECK(sketch.click("Scene before").scene_step == -1);
-    sketch.click("Settings");
-    CHECK(sketch.pages.shown == Page::kSettings);
+    CHECK(sketch.click("Previous scene").scene_step == -1);
+    CHECK(sketch.click("Last shown").last_scene);
+    CHECK(sketch.click("Next viewpoint").viewpoint_step == 1);
+    CHECK(sketch.click("Previous viewpoint").viewpoint_step == -1);
+    CHECK(sketch.click("Keep this one").keep_viewpoint);
+}
+
+TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {
+    PanelSketch sketch;
+    const auto held = [&](const char* name) {
+        const glm::dvec2 place = sketch.draw().places.at(name);
+        int times = 0;
+        double growth = 1.0, rise_m = 0.0;
+        sketch.draw(&place);
+        for (int frame = 0; frame < 100; ++frame) {
+            const OverlayActions actions = sketch.draw(&place, true);
+            times += actions.growth != 1.0 || actions.rise_m != 0.0;
+            growth *= actions.growth;
+            rise_m += actions.rise_m;
+        }
+        sketch.draw(&place);
+        sketch.draw();
+        CHECK(times > 5);  // of a second
+        return std::pair(growth, rise_m);
+    };
+    CHECK(held("Smaller").first < 0.4);
+    CHECK(held("Larger").first > 2.5);
+    CHECK(held("Higher").second > 0.4);
+    CHECK(held("Lower").second < -0.4);
+    CHECK(sketch.click("1:1").natural_size);
+    sketch.click("Teleport");
+    CHECK(sketch.settings.teleport);
+    sketch.click("Walk");
+    CHECK_FALSE(sketch.settings.teleport);
+    sketch.click("Turn smoothly");
+    CHECK(sketch.settings.smooth_turn);
+    sketch.click("Grey");
+    CHECK(sketch.settings.backdrop == Backdrop::kGrey);
+    // A second click on what is chosen leaves the settings as they are made on the page of methods.
+    sketch.click("Sharp");
+    CHECK(sketch.settings.quality == Quality::kSharp);
+    sketch.click("Fast");
+    CHECK(sketch.settings.quality == Quality::kFast);
+    sketch.click("Fast");
+    CHECK(sketch.settings.quality == Quality::kOff);
 }
 
 TEST_CASE("the panel has the names and ranges of the table of options") {
     PanelSketch sketch;
+    sketch.settings.page = Page::kMethod;
     const auto isChosen = [&](const auto& row, const auto& owner, std::string_view name) { return textOf(row.field.value(owner)) == name; };
     for (const char* key : {"mode", "dominant", "depth"}) {
         const OptionRow<RunOptions>& row = *findRunRow(key);
@@ -266,7 +318,7 @@ TEST_CASE("the panel has the names and ranges of the table of options") {
 TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by page, and what cannot be read does nothing") {
     const Workplace work;
     fs::create_directories(work.path / "inner");
-    for (int i = 0; i < 14; ++i) { write(work.path / "inner" / fmt::format("room{}.ply", i)); }
+    for (int i = 0; i < 12; ++i) { write(work.path / "inner" / fmt::format("room{}.ply", i)); }
     write(work.path / "a##b.ply");
     fs::create_symlink("nowhere", work.path / "gone.ply");
     setenv("XDG_CONFIG_HOME", (work.base / "config").c_str(), 1);
@@ -280,11 +332,11 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     CHECK(sketch.click("inner/").chosen_scene.empty());
     CHECK(sketch.pages.chooser.list().title == (work.path / "inner").string());
     CHECK(sketch.pages.chooser.pageCount() == 2);
-    CHECK_FALSE(sketch.draw().places.contains("room13.ply"));
+    CHECK_FALSE(sketch.draw().places.contains("room11.ply"));
     sketch.click(">");
     sketch.click(">");
     CHECK(sketch.pages.chooser.page() == 1);
-    CHECK(sketch.click("room13.ply").chosen_scene == (work.path / "inner" / "room13.ply").string());
+    CHECK(sketch.click("room11.ply").chosen_scene == (work.path / "inner" / "room11.ply").string());
     sketch.click("<");
     CHECK(sketch.click("room0.ply").chosen_scene == (work.path / "inner" / "room0.ply").string());
     sketch.click("Up");
@@ -316,7 +368,7 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     fs::create_directory(work.path / "inner");
     write(work.path / "inner" / "a.ply");
     PanelSketch sketch;
-    sketch.pages.shown = Page::kScenes;
+    sketch.settings.page = Page::kScenes;
     SceneChooser& chooser = sketch.pages.chooser;
     chooser.showFolder(work.path.string());
     const std::optional<SceneListWish> first = chooser.takeWish();
@@ -365,16 +417,16 @@ TEST_CASE("names of any bytes and of any length are shown, and a long message is
         write(work.path / name);
     }
     PanelSketch sketch;
-    sketch.pages.shown = Page::kScenes;
+    sketch.settings.page = Page::kScenes;
     sketch.pages.chooser.showFolder(work.path.string());
-    CHECK(sketch.draw().places.size() == 12 + 5);
+    CHECK(sketch.draw().places.size() == 16 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") ==
           "a\xef\xbf\xbd"
           "b\xef\xbf\xbd[1m\xef\xbf\xbd");
     // What is said moves nothing that can be pointed at.
-    for (const Page page : {Page::kSettings, Page::kScenes}) {
-        sketch.pages.shown = page;
+    for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
+        sketch.settings.page = page;
         sketch.status.message.clear();
         const WidgetPlaces before = sketch.draw().places;
         for (int i = 0; i < 40; ++i) { sketch.status.message += "/a/long/way/to/a/file "; }
@@ -434,14 +486,14 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
 
 TEST_CASE("the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {
     PanelSketch sketch;
-    CHECK_FALSE(sketch.draw().places.contains("any rate"));
+    CHECK_FALSE(sketch.draw().places.contains("Automatic"));
     sketch.status.refresh_rates = {72.0, 89.9988, 144.0};
     sketch.settings.refresh_rate = 72.0;
     sketch.click("90 Hz");
     CHECK(sketch.settings.refresh_rate == 89.9988);
     sketch.click("144 Hz");
     CHECK(sketch.settings.refresh_rate == 144.0);
-    sketch.click("any rate");
+    sketch.click("Automatic");
     CHECK(sketch.settings.refresh_rate == 0.0);
     // What is above stays where it is.
     const WidgetPlaces with = sketch.draw().places;

@@ -35,7 +35,8 @@ public:
     // One frame, with something that points and presses, or nothing.
     OverlayActions draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
         if (const auto wish = pages.chooser.takeWish()) { pages.chooser.show(makeSceneList(*wish), *wish); }
-        bringLetters(namesOn(pages, status));
+        bringLetters(namesOn(settings, pages, status), picturesOn(settings, pages));
+        status.pictures = &font->pictures();
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
         io.MousePos =
@@ -48,8 +49,8 @@ public:
         return actions;
     }
     // As the viewer does beside its frames; false: there were no new ones.
-    bool bringLetters(const std::string& text) {
-        if (!font->want(text)) { return false; }
+    bool bringLetters(const std::string& text, const std::vector<ScenePicture>& shown = {}) {
+        if (!font->want(text, shown)) { return false; }
         font->build();
         font->take();
         takeLetters();
@@ -83,23 +84,31 @@ private:
 
 // Where to point at a widget of the first page, in shares of the panel's width and height; `with_all`: also at those that not every
 // device or headset has.
-inline glm::dvec2 placeOf(const std::string& name, bool with_all = false) {
-    static const std::array<WidgetPlaces, 2> places = [] {
-        PanelSketch sketch;
-        const WidgetPlaces plain = sketch.draw().places;
-        sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
-        sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};  // as the simulated headset has them
-        return std::array{plain, sketch.draw().places};
+inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelPage page = PanelPage::kView) {
+    static const std::array<std::array<WidgetPlaces, 2>, 3> places = [] {
+        std::array<std::array<WidgetPlaces, 2>, 3> found;
+        for (const PanelPage shown : {PanelPage::kView, PanelPage::kScenes, PanelPage::kMethod}) {
+            PanelSketch sketch;
+            sketch.settings.page = shown;
+            const WidgetPlaces plain = sketch.draw().places;
+            sketch.status.can_reload_shaders = sketch.status.can_pass_through = true;
+            sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0};  // as the simulated headset has them
+            found[static_cast<std::size_t>(shown)] = {plain, sketch.draw().places};
+        }
+        return found;
     }();
-    const WidgetPlaces& all = places[with_all ? 1 : 0];
+    const WidgetPlaces& all = places[static_cast<std::size_t>(page)][with_all ? 1 : 0];
     REQUIRE_MESSAGE(all.contains(name), name);
     return all.at(name) / glm::dvec2(kPanelPx);
 }
 
+// The same of the page of methods, which the panel opens with where the config says panel-page = "method".
+inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { return placeOf(name, with_all, PanelPage::kMethod); }
+
 // The same of the page of scenes, with `folder` open.
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;
-    sketch.pages.shown = OverlayPages::Page::kScenes;
+    sketch.settings.page = PanelPage::kScenes;
     sketch.pages.chooser.showFolder(folder);
     const WidgetPlaces all = sketch.draw().places;
     REQUIRE_MESSAGE(all.contains(name), name);

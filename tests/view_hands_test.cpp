@@ -100,7 +100,7 @@ TEST_CASE("either hand clicks on the panel") {
     const ViewRun run =
         runView(work, "left",
                 kBlind + hand("right", 0, {0.2, 1.2, -0.35}, {-0.45, 1.7, -0.9}) +
-                    "controller left 0 position -0.2 1.2 -0.35 look -0.286 1.774 -1.012\npress left trigger 0.2 0.25\nat 2 exit\n",
+                    "controller left 0 position -0.2 1.2 -0.35 look -0.289 1.765 -1.010\npress left trigger 0.2 0.25\nat 2 exit\n",
                 kScene);
     checkClean(run);
     CHECK(run.frames.size() < 60);
@@ -260,7 +260,8 @@ TEST_CASE("how one moves and what is seen is chosen on the panel") {
     const Workplace work;
     const std::string small = kBlind + "blend-modes opaque alpha-blend\ncontroller left 0 position -0.2 1.2 -0.35 turn 0 -80\n";
     const Panel panel = panelOf(runView(work, "look", small + "at 0.1 exit\n", kScene), 8);
-    const ViewRun run = runView(work, "choose", small + clickOn(panel, {{0.036, 0.7}, {0.263, 0.7}, {0.505, 0.7}, {0.7, 0.7}}), kScene);
+    const ViewRun run =
+        runView(work, "choose", small + clickOn(panel, {{0.856, 0.499}, {0.045, 0.665}, {0.262, 0.665}, {0.746, 0.665}}), kScene);
     checkClean(run);
     for (const char* change : {"locomotion = \"teleport\"", "vignette = false", "hands = false", "passthrough = true"}) {
         INFO(change << " in " << run.outcome.output);

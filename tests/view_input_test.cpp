@@ -113,7 +113,7 @@ TEST_CASE("bare hands click on the panel and carry it, by either way to tell the
         // Up and down again with the panel, then to *Quit*.
         const std::string lines = pointAtPanel(look, 0.05) + pointAtPanel(look, 0.1) + pointAtPanel(look, 0.18, up) +
                                   pointAtPanel(look, 0.25) + pointAtPanel(look, 0.3) +
-                                  "controller right 0.35 position 0.2 1.2 -0.35 look -0.286 1.774 -1.012\n" +
+                                  "controller right 0.35 position 0.2 1.2 -0.35 look -0.289 1.765 -1.010\n" +
                                   fmt::format("press right {} 0.06 0.28\npress right {} 0.38 0.42\n", grab, click);
         const ViewRun run = runWith(work, profile, lines, "", "none");
         CHECK(panelPlace(run, 18).y - panelPlace(look, 18).y == doctest::Approx(0.2).epsilon(0.1));

@@ -124,8 +124,9 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
     writeLightFence(work.path / "fence.ply");
     // Near enough to the bars that holes open inside the picture.
     const std::string arguments = kFence + " --mode paper --margin 0 --eye 0,0,0.5 --look 0,0,3 --up 0,-1,0";
-    const ViewRun run = runView(
-        work, "click", kSmall + clickOn(panel, {placeOf("Show what made it"), placeOf("Centre ROI (paper)"), {0.9, 0.95}}), arguments);
+    const ViewRun run =
+        runView(work, "click", kSmall + clickOn(panel, {onMethod("Show how tiles were made"), onMethod("Centre ROI (paper)"), {0.9, 0.95}}),
+                arguments + withMethodPage(work));
     checkClean(run);
     CHECK(says(run, "tint = true"));
     CHECK(says(run, "center-roi = true"));
@@ -138,8 +139,8 @@ TEST_CASE("the trigger on the centre-ROI switch turns it on, and the picture sho
 TEST_CASE("method and dominant eye are switched, and the wearer may quit from the panel") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kBlind + clickOn(panel, {placeOf("reproject"), placeOf("right"), placeOf("Quit"), {0.9, 0.95}});
-    const ViewRun run = runView(work, "click", script, kScene);
+    const std::string script = kBlind + clickOn(panel, {onMethod("reproject"), onMethod("right"), onMethod("Quit"), {0.9, 0.95}});
+    const ViewRun run = runView(work, "click", script, kScene + withMethodPage(work));
     checkClean(run);
     CHECK(says(run, "mode = \"reproject\""));
     CHECK(says(run, "dominant = \"right\""));
@@ -174,9 +175,10 @@ TEST_CASE("a rate that the headset refuses is said, and is no end") {
 TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run = runView(
-        work, "slide",
-        kSmall + clickOn(panel, {placeOf("margin (paper)"), placeOf("budget (predicted)"), placeOf("resolution"), {0.9, 0.95}}), kScene);
+    const ViewRun run =
+        runView(work, "slide",
+                kSmall + clickOn(panel, {onMethod("margin (paper)"), onMethod("budget (predicted)"), onMethod("resolution"), {0.9, 0.95}}),
+                kScene + withMethodPage(work));
     checkClean(run);
     const auto valueOf = [&](const std::string& key) {
         const std::size_t at = run.outcome.output.find(key + " = ");
@@ -201,9 +203,9 @@ TEST_CASE("sliders take a click, and the resolution changes once the trigger is 
 
 TEST_CASE("a resolution that the device has no memory for is refused on the panel, and what was shown before stays") {
     const Workplace work;
-    std::ofstream(work.path / "small.toml") << "[view]\nresolution-scale = 0.25\n";
+    std::ofstream(work.path / "small.toml") << "[view]\nresolution-scale = 0.25\npanel-page = \"method\"\n";
     const std::string large = "rate 45\nsize 1024 1024\nframes every 12\n" + kLeftHand;
-    const ViewRun run = runView(work, "full", large + clickOn(startPanel(work), {placeOf("resolution"), {0.9, 0.95}}),
+    const ViewRun run = runView(work, "full", large + clickOn(startPanel(work), {onMethod("resolution"), {0.9, 0.95}}),
                                 kWall + " --config small.toml --memory-limit 16");
     checkClean(run);
     CHECK(says(run, "does not fit: "));
@@ -218,7 +220,7 @@ TEST_CASE("a resolution that the device has no memory for is refused on the pane
     // At the slider's middle (some 896 pixels) the eyes' pictures fit, and what is to bring them to the headset does not.
     const ViewRun brought =
         runView(work, "brought",
-                "rate 45\nsize 853 853\nframes none\n" + kLeftHand + clickOn(startPanel(work), {placeOf("resolution"), {0.9, 0.95}}),
+                "rate 45\nsize 853 853\nframes none\n" + kLeftHand + clickOn(startPanel(work), {onMethod("resolution"), {0.9, 0.95}}),
                 "builtin:one-splat --load-first --mode shared --config small.toml --memory-limit 24");
     checkClean(brought);
     CHECK(says(brought, "presented pixels needs "));
@@ -240,13 +242,13 @@ TEST_CASE("a recorded walk of 100 frames, with clicks on the way, ends when the 
     std::string script = kSmall + "head-motion walk.csv\n";
     double time_s = 0.5;
     for (const glm::dvec2& place :
-         {placeOf("paper"), placeOf("Centre ROI (paper)"), placeOf("predicted"), placeOf("right"), glm::dvec2(0.9, 0.95)}) {
+         {onMethod("paper"), onMethod("Centre ROI (paper)"), onMethod("predicted"), onMethod("right"), glm::dvec2(0.9, 0.95)}) {
         script += pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.2);
         script += fmt::format("press right trigger {} {}\n", time_s + 0.1, time_s + 0.15);
         time_s += 0.3;
     }
     const std::string start = " --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
-    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kFence + start);
+    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kFence + start + withMethodPage(work));
     checkClean(run);
     CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
     CHECK(run.frames.size() >= 100);
@@ -286,10 +288,10 @@ TEST_CASE("settings and placement are saved as a config of the scene, and come b
     // A step ahead and a method, before they are saved.
     const std::string walk =
         "axis left thumbstick 0.05 0 0\naxis left thumbstick 0.06 0 1\naxis left thumbstick 0.14 0 1\naxis left thumbstick 0.15 0 0\n";
-    const ViewRun saved =
-        runView(work, "save",
-                kBlind + walk + clickOn(panel, {placeOf("reproject"), placeOf("Save"), placeOf("predicted"), placeOf("Load"), {0.9, 0.95}}),
-                kScene);
+    const ViewRun saved = runView(
+        work, "save",
+        kBlind + walk + clickOn(panel, {onMethod("reproject"), onMethod("Save"), onMethod("predicted"), onMethod("Load"), {0.9, 0.95}}),
+        kScene + withMethodPage(work));
     checkClean(saved);
     const std::string& output = saved.outcome.output;
     const std::size_t at = output.find("saved as ");
@@ -340,10 +342,10 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     const std::string line = "    const uvec3 bytes = uvec3(colour * 255 + 0.5);";
     copyOf("broken", line, "    const uvec3 bytes = nonsense;");
     copyOf("black", line, "    const uvec3 bytes = uvec3(0);");
-    const std::string script = kSmall + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
+    const std::string script = kSmall + clickOn(panel, {onMethod("Shaders", true), {0.9, 0.95}});
     writeCompilerOfChangedShaders(work.path / "tools");  // the first run has no such help
     const auto click = [&](const std::string& name, const std::string& folder, const std::string& more = " PATH=\"$PWD/tools:$PATH\"") {
-        const ViewRun run = runView(work, name, script, kScene + " --shaders '" + folder + "'", kValidated + more);
+        const ViewRun run = runView(work, name, script, kScene + withMethodPage(work) + " --shaders '" + folder + "'", kValidated + more);
         checkClean(run);
         return run;
     };
@@ -381,11 +383,11 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
 TEST_CASE("nobody reloads shaders who was not told where they are") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const std::string script = kBlind + clickOn(panel, {placeOf("Shaders", true), {0.9, 0.95}});
-    const ViewRun run = runView(work, "none", script, kScene, kValidated + " BINOSPLAT_SHADERS=");
+    const std::string script = kBlind + clickOn(panel, {onMethod("Shaders", true), {0.9, 0.95}});
+    const ViewRun run = runView(work, "none", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=");
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
-    const ViewRun told = runView(work, "told", script, kScene, kValidated + " BINOSPLAT_SHADERS=nowhere");
+    const ViewRun told = runView(work, "told", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK(says(told, "shaders stay as they were: nowhere/sort/cull.comp is not there"));
 }
 
@@ -524,10 +526,10 @@ TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method,
         if (name != "XR_KHR_vulkan_enable2") { script += fmt::format("extension {} off\n", name); }
     }
     std::vector<glm::dvec2> places;
-    for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) { places.push_back(placeOf(mode)); }
+    for (const char* mode : {"reproject", "paper", "mono", "two-pass", "shared"}) { places.push_back(onMethod(mode)); }
     places.emplace_back(0.9, 0.95);
     const ViewRun run = runView(work, "core", script + clickOn(startPanel(work), places, "select"),
-                                "fence.ply --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0");
+                                "fence.ply --load-first --eye 0,0,0 --look 0,0,3 --up 0,-1,0" + withMethodPage(work));
     checkClean(run);
     CHECK(says(run, "the room now begins where the wearer stands\n"));
     std::size_t from = 0;
@@ -546,14 +548,14 @@ TEST_CASE("controllers are put down, hands click, and controllers are taken up a
     const Workplace work;
     const Panel panel = startPanel(work);
     // Whatever is not in the hand does nothing.
-    const std::string script = kDense + pointAt(panel, placeOf("shared"), 0.1) + pointAt(panel, placeOf("shared"), 0.2) +
-                               pointAt(panel, placeOf("two-pass"), 0.25) + pointAt(panel, placeOf("two-pass"), 0.4) +
-                               pointAt(panel, placeOf("mono"), 0.45) + pointAt(panel, placeOf("mono"), 0.6) +
+    const std::string script = kDense + pointAt(panel, onMethod("shared"), 0.1) + pointAt(panel, onMethod("shared"), 0.2) +
+                               pointAt(panel, onMethod("two-pass"), 0.25) + pointAt(panel, onMethod("two-pass"), 0.4) +
+                               pointAt(panel, onMethod("mono"), 0.45) + pointAt(panel, onMethod("mono"), 0.6) +
                                "press right aim_activate_ext 0.11 0.13\npress right trigger 0.15 0.18\n"
                                "press right trigger 0.28 0.31\npress right aim_activate_ext 0.34 0.37\n"
                                "press right aim_activate_ext 0.48 0.51\npress right trigger 0.54 0.57\n"
                                "at 0.22 profile ext/hand_interaction_ext\nat 0.42 profile oculus/touch_controller\nat 0.65 exit\n";
-    const ViewRun run = runView(work, "change", script, kScene);
+    const ViewRun run = runView(work, "change", script, kScene + withMethodPage(work));
     checkClean(run);
     std::vector<std::string> changes;
     for (std::size_t at = run.outcome.output.find("frame "); at != std::string::npos; at = run.outcome.output.find("frame ", at + 1)) {

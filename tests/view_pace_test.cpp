@@ -76,6 +76,9 @@ std::vector<Call> lastCallsOfViewer(std::size_t submissions) {
     std::vector<Call> calls;
     std::ifstream trace(work.path / "calls.txt");
     for (std::string call, fence; trace >> call >> fence;) { calls.push_back({call == "submit", fence}); }
+    // At the end a picture of the scene is read back, which is no frame.
+    while (!calls.empty() && !calls.back().submits) { calls.pop_back(); }
+    if (!calls.empty()) { calls.pop_back(); }
     std::size_t first = calls.size();
     for (std::size_t found = 0; first > 0 && found < submissions;) { found += calls[--first].submits ? 1 : 0; }
     calls.erase(calls.begin(), calls.begin() + static_cast<std::ptrdiff_t>(first));

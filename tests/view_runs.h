@@ -78,6 +78,12 @@ inline ViewRun runView(const Workplace& work, const std::string& name, const std
     return run;
 }
 
+// For the arguments: the panel opens with the page of methods.
+inline std::string withMethodPage(const Workplace& work) {
+    std::ofstream(work.path / "method.toml") << "[view]\npanel-page = \"method\"\n";
+    return " --config method.toml";
+}
+
 // It ended well and no validation layer said a word.
 inline void checkClean(const ViewRun& run) {
     INFO("stdout: " << run.outcome.output);

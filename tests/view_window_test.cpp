@@ -433,10 +433,10 @@ TEST_CASE("mouse and keys do in the window what hands do in the headset") {
     Program& program = viewer.program();
 
     // The panel by mouse: a click on a switch, and the same again.
-    viewer.click(placeOf("Centre ROI (paper)", true));
-    CHECK(program.waitFor("center-roi = true") != "");
-    viewer.click(placeOf("Centre ROI (paper)", true));
-    CHECK(program.waitFor("center-roi = false") != "");
+    viewer.click(placeOf("Vignette", true));
+    CHECK(program.waitFor("vignette = false") != "");
+    viewer.click(placeOf("Vignette", true));
+    CHECK(program.waitFor("vignette = true") != "");
 
     // A drag of 100 pixels to the left turns by 0.4 radians, however many frames it takes; the scene follows the mouse, to the left.
     const Pose start = viewer.placement(work);
@@ -731,12 +731,12 @@ TEST_CASE("the window is as large as the desktop wants things to be, and may be 
     CHECK(resizes);
     CHECK(keeps_shape);
     // Its widgets are where they are shown.
-    viewer.hands(Viewer::moveTo(0.5 * (glm::dvec2(kEyePx, 0.0) + placeOf("Centre ROI (paper)", true) * kPanelInWindowPx)));
+    viewer.hands(Viewer::moveTo(0.5 * (glm::dvec2(kEyePx, 0.0) + placeOf("Vignette", true) * kPanelInWindowPx)));
     viewer.tab();
     viewer.hands("mousedown 1");
     viewer.tab();
     viewer.hands("mouseup 1");
-    CHECK(viewer.program().waitFor("center-roi = true") != "");
+    CHECK(viewer.program().waitFor("vignette = false") != "");
     viewer.hands("key Escape");
     CHECK(viewer.program().exitCode() == 0);
 }

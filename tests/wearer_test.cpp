@@ -249,6 +249,42 @@ TEST_CASE("a throw that passes over the panel goes on") {
     CHECK(scene_from_room.position == glm::dvec3(0.0));
 }
 
+TEST_CASE("where one turns smoothly the stick turns a right angle in a second, and that counts as moving") {
+    OverlayPanel panel({800, 400}, 0.8);
+    WearerControls controls;
+    ViewSettings settings;
+    settings.smooth_turn = true;
+    Similarity scene_from_room;
+    WearerNow now;
+    now.step_seconds = kTenth;
+    now.hands[kRight].stick = {1.0, 0.0};
+    for (int i = 0; i < 10; ++i) { controls.update(now, panel, settings, scene_from_room); }
+    CHECK(controls.isMoving());
+    CHECK(2.0 * std::atan2(scene_from_room.orientation.y, scene_from_room.orientation.w) == doctest::Approx(1.5707963).epsilon(1e-6));
+    now.hands[kRight].stick = {0.0, 0.0};
+    controls.update(now, panel, settings, scene_from_room);
+    CHECK_FALSE(controls.isMoving());
+}
+
+TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left one to the one before") {
+    OverlayPanel panel({800, 400}, 0.8);
+    WearerControls controls;
+    ViewSettings settings;
+    Similarity scene_from_room;
+    WearerNow now;
+    const auto steps = [&](bool left, bool right) {
+        now.hands[kLeft].stick_presses = left;
+        now.hands[kRight].stick_presses = right;
+        controls.update(now, panel, settings, scene_from_room);
+        return controls.viewpointStep();
+    };
+    CHECK(steps(false, true) == 1);
+    CHECK(steps(false, true) == 0);
+    CHECK(steps(false, false) == 0);
+    CHECK(steps(true, false) == -1);
+    CHECK(steps(true, true) == 1);
+}
+
 TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
     OverlayPanel panel({800, 400}, 0.8);
     WearerControls controls;

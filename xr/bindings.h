@@ -16,6 +16,7 @@ struct ProfileBindings {
     const char* squeeze;
     const char* stick;
     const char* stick_click;          // where the stick is a pad that thumbs rest on: it counts while it is pressed
+    const char* stick_press;          // where the stick can be pressed in
     std::array<const char*, 2> menu;  // left, right
     const char* haptic;
 };

@@ -41,6 +41,7 @@ void Input::attachActions() {
     squeeze_ = makeAction("squeeze", "Grab", XR_ACTION_TYPE_FLOAT_INPUT);
     stick_ = makeAction("stick", "Move and turn", XR_ACTION_TYPE_VECTOR2F_INPUT);
     stick_click_ = makeAction("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT);
+    stick_press_ = makeAction("viewpoint", "Next viewpoint, and back on the left", XR_ACTION_TYPE_BOOLEAN_INPUT);
     menu_ = makeAction("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT);
     haptic_ = makeAction("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT);
     suggestBindings();
@@ -118,6 +119,7 @@ void Input::suggestBindings() const {
             bind(squeeze_, profile.squeeze);
             bind(stick_, profile.stick);
             bind(stick_click_, profile.stick_click);
+            bind(stick_press_, profile.stick_press);
             bind(menu_, profile.menu[h]);
             bind(haptic_, profile.haptic);
         }
@@ -149,7 +151,7 @@ std::array<Hand, 2> Input::read() {
     const bool was_at_rest = std::exchange(is_at_rest_, !is_focused);
     const bool is_new = std::exchange(times_focused_, session_.timesFocused()) != session_.timesFocused();
     if (!is_focused || is_new) {
-        for (auto* holds : {&clicks_, &grabs_, &menus_}) {
+        for (auto* holds : {&clicks_, &grabs_, &menus_, &presses_}) {
             for (Hold& hold : *holds) { hold.forget(); }
         }
     }
@@ -163,8 +165,12 @@ std::array<Hand, 2> Input::read() {
         hands[h].grabs = grabs_[h].update(readNumber(squeeze_, hands_[h]));
         // A pad that only feels the thumb is at rest.
         if (readButton(stick_click_, hands_[h]).value_or(true)) { hands[h].stick = readStick(hands_[h]); }
-        const std::optional<bool> menu = readButton(menu_, hands_[h]);
-        hands[h].menu = menus_[h].update(menu ? std::optional(*menu ? 1.0 : 0.0) : std::nullopt);
+        const auto isHeld = [&](XrAction button, Hold& hold) {
+            const std::optional<bool> pressed = readButton(button, hands_[h]);
+            return hold.update(pressed ? std::optional(*pressed ? 1.0 : 0.0) : std::nullopt);
+        };
+        hands[h].menu = isHeld(menu_, menus_[h]);
+        hands[h].stick_presses = isHeld(stick_press_, presses_[h]);
     }
     return hands;
 }

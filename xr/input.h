@@ -17,6 +17,7 @@ struct Hand {
     bool clicks = false, grabs = false;  // trigger and squeeze; they hold on to what they are until it is clear that they are not
     glm::dvec2 stick{0.0};               // right and up are positive; of a pad, only while it is pressed
     bool menu = false;
+    bool stick_presses = false;  // it is pressed in; never of a pad
 };
 
 // Whether a trigger or a grip is pressed, which shivers about any limit: on from more than it goes off below. Who was not looked at may
@@ -73,12 +74,12 @@ private:
     HandTracking tracking_;
     XrActionSet set_ = XR_NULL_HANDLE;
     XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, squeeze_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
-             stick_click_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
+             stick_click_ = XR_NULL_HANDLE, stick_press_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
     XrAction gaze_ = XR_NULL_HANDLE;  // null: nobody asked for it, or there is none
     XrSpace gaze_space_ = XR_NULL_HANDLE;
     std::array<XrPath, 2> hands_{};
     std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
-    std::array<Hold, 2> clicks_, grabs_, menus_;
+    std::array<Hold, 2> clicks_, grabs_, menus_, presses_;
     bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()
     bool is_at_rest_ = false;  // likewise

@@ -15,6 +15,8 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
+glm::dvec3 colourOf(Backdrop backdrop) { return glm::dvec3(backdrop == Backdrop::kWhite ? 1.0 : backdrop == Backdrop::kGrey ? 0.5 : 0.0); }
+
 // What the frame would have taken with both eyes in full, by what the dominant one took; 0: it is not known, since each eye was culled and
 // sorted by itself, or there is one alone.
 double losslessMs(const FrameResult& result) {
@@ -91,6 +93,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.square_boxes = false;
     frame.gazes = views.gazes;
     frame.mark = governed_count_;
+    if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // One eye's picture for both is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
@@ -134,6 +137,7 @@ void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const ViewSett
         window != nullptr ? window->drawn() : vk::Semaphore());
     const bool is_of_now = known && known->mark == governed_count_;
     if (known) { last_ = std::move(*known); }
+    met_.add(stay.session.periodMs(), stay.session.lostPeriods());
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
                        .period_ms = stay.session.periodMs(),
                        .is_old = !is_of_now,

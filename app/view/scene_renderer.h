@@ -2,7 +2,9 @@
 #pragma once
 
 #include "app/view/frame_log.h"
+#include "app/view/governor/met_displays.h"
 #include "app/view/headset/headset_stay.h"
+#include "app/view/panel/overlay.h"
 #include "app/view/scenes/scene_loader.h"
 #include "app/view/view_settings.h"
 #include "app/view/window/mirror_window.h"
@@ -54,6 +56,10 @@ public:
         governor_.forget();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
+    // How many displays have a new picture, and how large that is.
+    [[nodiscard]] ShownRate rate() const {
+        return {met_.metHz(), met_.displayHz(), governor_.settings().resolution_scale, governor_.isBeaten()};
+    }
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
@@ -71,6 +77,7 @@ private:
     vk::Format format_;
     Presenter presenter_;
     Governor governor_;
+    MetDisplays met_;
     FrameSettings frame_;        // prepared
     std::vector<Eye> eyes_;      // prepared
     GovernedSettings governed_;  // as of the frame drawn last

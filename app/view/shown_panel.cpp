@@ -38,9 +38,10 @@ void ShownPanel::showTimes(const FrameResult& last, const std::string& governor,
     status_.governor = governor;
 }
 
-void ShownPanel::askFor(FileWorker& files) {
+void ShownPanel::askFor(FileWorker& files, const ViewSettings& settings) {
     status_.files = files.now();
-    if (canvas_.wantsLetters(namesOn(pages_, status_))) {
+    status_.pictures = &canvas_.pictures();
+    if (canvas_.wantsLetters(namesOn(settings, pages_, status_), picturesOn(settings, pages_))) {
         files.read("reading fonts", [this]() -> FileWorker::Done {
             canvas_.buildLetters();
             return [this] { canvas_.takeLetters(); };

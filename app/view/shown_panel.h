@@ -27,8 +27,10 @@ public:
     void keepFrameTime();
     // Shows what the last frame took, renewed only now and then, since nobody can read what changes with every frame.
     void showTimes(const FrameResult& last, const std::string& governor, double step_seconds);
-    // What it needs of files is read beside the frames: letters, and the list that is looked through.
-    void askFor(FileWorker& files);
+    // What it needs of files is read beside the frames: letters and pictures, and the list that is looked through.
+    void askFor(FileWorker& files, const ViewSettings& settings);
+    // What is known of the scenes that are listed changed.
+    void listAnew() { pages_.chooser.refresh(status_.scene); }
     // The widgets. Where they have changed it takes an image of the panel in `hung`, the stay in whose room it hangs; null where it does
     // not hang.
     OverlayActions layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds);

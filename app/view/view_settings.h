@@ -11,17 +11,24 @@
 
 namespace binosplat {
 
+enum class PanelPage { kView, kScenes, kMethod };
+// What is seen behind the scene, if not what --background says.
+enum class Backdrop { kAsSet, kBlack, kGrey, kWhite };
+
 struct ViewSettings {
     StereoOptions stereo;
     double resolution_scale = 1.0;  // of what the headset recommends, each way
     bool tint = false;              // show what made the affiliated picture
     bool panel = true;
-    bool visibility_mask = true;                // ask the runtime what the lenses hide; at the start alone
-    bool eye_tracking = false;                  // whether the headset may say where the eyes look; at the start alone
-    bool tilt = false;                          // whether two hands may tilt the scene
-    double refresh_rate = 0.0;                  // frames per second; 0: the runtime's choice
-    bool hands = true;                          // draw them, or what they hold
-    bool teleport = false;                      // in place of walking
+    bool visibility_mask = true;  // ask the runtime what the lenses hide; at the start alone
+    bool eye_tracking = false;    // whether the headset may say where the eyes look; at the start alone
+    bool tilt = false;            // whether two hands may tilt the scene
+    double refresh_rate = 0.0;    // frames per second; 0: the runtime's choice
+    bool hands = true;            // draw them, or what they hold
+    bool teleport = false;        // in place of walking
+    bool smooth_turn = false;     // in place of turns by 30 degrees
+    Backdrop backdrop = Backdrop::kAsSet;
+    PanelPage page = PanelPage::kView;
     bool vignette = true;                       // while the wearer moves by stick
     bool passthrough = false;                   // the room in place of the background, where the headset shows it
     Quality quality = Quality::kOff;            // how the frame rate is held

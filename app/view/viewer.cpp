@@ -46,7 +46,7 @@ void Viewer::run() {
         while (options_.load_first && !scenes_.get() && !leaving_) {
             if (interrupt.came()) { leave(); }
             if (scenes_.isNextReady()) { takeScene(); }
-            drawWindowAlone("The scene is on its way");
+            drawWindowAlone("Loading the scene");
             std::this_thread::sleep_for(kIdle);
         }
         for (bool goes_on = true; goes_on;) {
@@ -63,6 +63,7 @@ void Viewer::run() {
         throw;
     }
     sayPicture(pictures_.finish());
+    keepPictureOfScene();
     files_.finish();
     const std::string why = headset_.stay() != nullptr ? stay().session.whyEnded() : "stopped while there was no headset";
     log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
@@ -74,7 +75,7 @@ bool Viewer::step() {
         case xr::FrameOutcome::kExit:
             return false;
         case xr::FrameOutcome::kWait:
-            drawWindowAlone("The headset rests: put it on");
+            drawWindowAlone("Put the headset on");
             std::this_thread::sleep_for(kIdle);
             return true;
         case xr::FrameOutcome::kRender:
@@ -82,7 +83,7 @@ bool Viewer::step() {
             headset_.showedFrame();
             break;
         case xr::FrameOutcome::kSkip:
-            drawWindowAlone("The headset shows something else, or nothing");
+            drawWindowAlone("The headset is showing something else");
             stay().session.endFrame({});
             break;
     }
@@ -104,7 +105,7 @@ bool Viewer::comeBack() {
     if (leaving_) { return false; }
     switch (headset_.search([this](const std::string& message) { say(message); })) {
         case HeadsetLife::Search::kLater:
-            drawWindowAlone("The headset is gone: plug it in");
+            drawWindowAlone("The headset is unplugged: plug it in");
             std::this_thread::sleep_for(kIdle);
             break;
         case HeadsetLife::Search::kNone:
@@ -131,7 +132,7 @@ void Viewer::drawFrame() {
     settle();
     const std::optional<std::array<xr::EyeView, 2>> located = stay().session.locateEyes();
     if (!located) {
-        drawWindowAlone("The headset does not know where it is");
+        drawWindowAlone("The headset cannot tell where it is");
         stay().session.endFrame({});
         return;
     }
@@ -150,6 +151,7 @@ void Viewer::drawFrame() {
     } else {
         gaze_ = {};
     }
+    if (const int step = controls_.viewpointStep(); step != 0) { goToViewpoint(step); }
     chooseThings(wearer, views);
     obeyWindow(step_seconds);
     if (const std::string complaint = stay().session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
@@ -161,6 +163,7 @@ void Viewer::drawFrame() {
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(stay(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        ++frames_of_scene_;
         if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
@@ -323,13 +326,19 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     OverlayStatus& status = panel_.status();
     status.scene = scenes_.name();
     status.loading = scenes_.loading();
+    status.rate = renderer_.rate();
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
     if (headset_.stay() != nullptr) { status.refresh_rates = stay().refresh_rates; }
     if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
-    if (status.has_scene) { status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale); }
+    if (status.has_scene) {
+        status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale);
+        status.place = shownPlace();
+        status.viewpoint_count = scenes_.get()->viewpoints.size();
+        status.viewpoint = viewpoint_ ? scenes_.get()->viewpoints[*viewpoint_].name : "";
+    }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
-    panel_.askFor(files_);
+    panel_.askFor(files_, settings_);
     if (status.files.empty() && scenes_.isMakingKernels()) {
         status.files = fmt::format("making ready: {}", nameOf(settings_.stereo.mode));
     }
@@ -357,9 +366,7 @@ void Viewer::obeyWindow(double step_seconds) {
 
 void Viewer::obey(const OverlayActions& actions) {
     if (actions.reload_shaders) { reloadShaders(); }
-    Similarity& placement = scenes_.scene_from_room;
-    if (actions.reset_scene) { placement = scenes_.get()->start; }
-    if (actions.level_scene) { placement = levelledAlong(placement, scenes_.get()->up, room_from_head_.position); }
+    if (scenes_.get() != nullptr) { obeyPlace(actions); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
     obeyFiles(actions);
     if (actions.quit) { leave(); }

@@ -60,6 +60,14 @@ private:
     void obeyWindow(double step_seconds);
     void obey(const OverlayActions& actions);
     void obeyFiles(const OverlayActions& actions);
+    // Where the wearer stands, in numbers, and moved from there.
+    [[nodiscard]] ShownPlace shownPlace() const;
+    void obeyPlace(const OverlayActions& actions);
+    void goToViewpoint(int step);
+    void keepViewpointHere();
+    void goBackToLastScene();
+    // A small picture of the scene as it was seen last, for the list of scenes.
+    void keepPictureOfScene();
     void save();
     void load();
     void remember(const std::string& complaint);
@@ -92,7 +100,9 @@ private:
     Commands commands_;
     PictureWriter pictures_;
     bool picture_asked_ = false;  // of the next frame
-    Pose room_from_head_;         // as last known
+    std::uint64_t frames_of_scene_ = 0;
+    std::optional<std::size_t> viewpoint_;  // the one gone to last
+    Pose room_from_head_;                   // as last known
     bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     FileWorker files_;   // its thread ends before what it reads for

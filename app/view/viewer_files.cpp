@@ -9,10 +9,13 @@ namespace binosplat {
 
 void Viewer::takeScene() {
     const LoadedScene* before = scenes_.get();
+    keepPictureOfScene();
     const std::string complaint = scenes_.take(settings_);
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
     renderer_.forgetScene();
+    viewpoint_.reset();
+    frames_of_scene_ = 0;
     remember(complaint);
 }
 
@@ -35,6 +38,19 @@ void Viewer::obeyFiles(const OverlayActions& actions) {
     if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step, files_); }
     if (!actions.chosen_scene.empty()) { scenes_.begin(actions.chosen_scene); }
     picture_asked_ = picture_asked_ || actions.take_picture;
+    if (actions.last_scene) { goBackToLastScene(); }
+    if (!actions.favourite.empty()) {
+        files_.write("keeping a favourite", [this, scene = actions.favourite]() -> FileWorker::Done {
+            std::string trouble;
+            try {
+                toggleFavourite(scene);
+            } catch (const Error& error) { trouble = error.what(); }
+            return [this, trouble] {
+                if (!trouble.empty()) { say(trouble); }
+                panel_.listAnew();
+            };
+        });
+    }
 }
 
 void Viewer::save() {

@@ -353,4 +353,10 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
     return outside;
 }
 
+std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up) {
+    const std::optional<FloorPlane> floor = findFloorPlane(coreOf(sampleSplats(scene, kMostForRoom)), up);
+    if (!floor || floor->is_ceiling || glm::dot(floor->up, up) < 0.98) { return std::nullopt; }
+    return floor->height;
+}
+
 }  // namespace binosplat

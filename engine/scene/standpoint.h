@@ -26,4 +26,7 @@ struct Standpoint {
 // glTF.
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
 
+// How high the floor lies along `up`, a unit vector, if there is one: dot(up, p) of its points.
+std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);
+
 }  // namespace binosplat

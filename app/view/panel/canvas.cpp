@@ -114,7 +114,9 @@ void Canvas::startBackend() {
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-bool Canvas::wantsLetters(std::string_view text) { return font_->want(text); }
+bool Canvas::wantsLetters(std::string_view text, const std::vector<ScenePicture>& pictures) { return font_->want(text, pictures); }
+
+const std::map<std::string, PictureCorners>& Canvas::pictures() const { return font_->pictures(); }
 
 void Canvas::buildLetters() { font_->build(); }
 

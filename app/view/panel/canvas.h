@@ -2,10 +2,12 @@
 // and a window, show them as they are.
 #pragma once
 
+#include "app/view/scenes/seen_scenes.h"
 #include "engine/gpu/commands.h"
 
 #include <glm/glm.hpp>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +17,7 @@
 namespace binosplat {
 
 class PanelFont;
+struct PictureCorners;
 
 // What points at the canvas.
 struct CanvasPointer {
@@ -32,10 +35,11 @@ public:
     Canvas& operator=(const Canvas&) = delete;
     ~Canvas();
 
-    // Before begin(), as in PanelFont: whether `text` has letters that buildLetters() is to bring, which reads files, on any thread; until
-    // takeLetters() has brought them, before another begin(), they are boxes. This waits for the queue.
-    [[nodiscard]] bool wantsLetters(std::string_view text);
+    // Before begin(), as in PanelFont: whether there are letters or pictures that buildLetters() is to bring, which reads files, on any
+    // thread; until takeLetters() has brought them, before another begin(), they are boxes. This waits for the queue.
+    [[nodiscard]] bool wantsLetters(std::string_view text, const std::vector<ScenePicture>& pictures = {});
     void buildLetters();
+    [[nodiscard]] const std::map<std::string, PictureCorners>& pictures() const;
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
     void begin(const CanvasPointer& pointer, double step_seconds);

@@ -1,6 +1,7 @@
-// The panel's widgets: what the wearer can change, which scenes there are, and what the last frame cost.
+// The panel's widgets: where the wearer stands and how it looks, which scenes there are, and how the pictures are made.
 #pragma once
 
+#include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_widgets.h"
 #include "app/view/panel/scene_chooser.h"
 #include "app/view/view_settings.h"
@@ -14,6 +15,22 @@
 #include <vector>
 
 namespace binosplat {
+
+// How the scene lies about the wearer.
+struct ShownPlace {
+    double size_m = 0.0;              // of the scene as it is shown, along its longest side; 0: unknown
+    double growth = 1.0;              // times as large as it is
+    double eyes_m = 0.0;              // the eyes' height over the scene's floor or, where that is unknown, over where they began
+    bool has_floor = false;           // it is known
+    std::optional<std::size_t> view;  // the viewpoint gone to last
+};
+
+// What of the pictures reaches the eyes.
+struct ShownRate {
+    double met_hz = 0.0, display_hz = 0.0;  // displays that had a new picture, and all; 0: not known yet
+    double resolution = 1.0;                // each way, of what the headset recommends
+    bool is_beaten = false;                 // the rate is to be held, and nothing that may be given up is enough
+};
 
 // What the panel shows.
 struct OverlayStatus {
@@ -31,26 +48,35 @@ struct OverlayStatus {
     bool can_pass_through = false;                           // likewise
     std::vector<double> refresh_rates;                       // that the headset can be asked for; where there are any, a row of them
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
+    ShownPlace place;
+    ShownRate rate;
+    std::size_t viewpoint_count = 0;          // places in the scene to go to
+    std::string viewpoint;                    // name of the one gone to last
+    const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
 };
 
 // What the wearer looks through; none of it is kept.
 struct OverlayPages {
-    enum class Page { kSettings, kScenes, kFacts };
-    Page shown = Page::kSettings;
     SceneChooser chooser;
 };
 
 // What was asked for.
 struct OverlayActions {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
-         take_picture = false;
+         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false;
+    double growth = 1.0;       // of the scene about the wearer's feet
+    double rise_m = 0.0;       // of the wearer
     int scene_step = 0;        // to the scene before or after
+    int viewpoint_step = 0;    // to the viewpoint before or after
     std::string chosen_scene;  // empty: none
+    std::string favourite;     // a scene that is to become a favourite, or to be none any more; empty: none
     WidgetPlaces places;       // of what was drawn
 };
 
 // All that a canvas shows of names and messages, as it shows them; see Canvas::bringLetters.
-std::string namesOn(const OverlayPages& pages, const OverlayStatus& status);
+std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, const OverlayStatus& status);
+// Likewise the pictures.
+std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const OverlayPages& pages);
 
 // Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `pages` as the wearer does.
 OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace binosplat {
@@ -20,13 +21,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr ImWchar kBox = 0x25a1;
-// Latin with all its marks (also those that stand alone, as some systems write names), Greek, Cyrillic, punctuation, currencies, the box.
-constexpr std::array<ImWchar, 15> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e,
-                                          0x20a0, 0x20bf, 0x2190, 0x2193, kBox,   kBox,   0};
+// Latin with all its marks (also those that stand alone, as some systems write names), Greek, Cyrillic, punctuation, currencies, the box,
+// stars.
+constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00, 0x1fff, 0x2010, 0x205e, 0x20a0,
+                                          0x20bf, 0x2190, 0x2193, kBox,   kBox,   0x2605, 0x2606, 0};
 // Fonts of all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
 // With them the atlas stays below 4096x2048, which every device can sample.
 constexpr std::size_t kMostAdded = 3000;
+constexpr std::size_t kMostPictures = 48;
 
 bool isThereFromTheBeginning(ImWchar letter) {
     for (std::size_t i = 0; kRanges[i] != 0; i += 2) {
@@ -52,8 +55,11 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 }
 
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
-bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const std::set<ImWchar>& added) {
+// `add_pictures` adds what else belongs there.
+bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const std::set<ImWchar>& added,
+                const std::function<void(ImFontAtlas&)>& add_pictures = {}) {
     atlas.Clear();
+    if (add_pictures) { add_pictures(atlas); }
     std::vector<ImWchar> ranges;
     for (const ImWchar letter : added) { ranges.insert(ranges.end(), {letter, letter}); }
     ranges.insert(ranges.end(), kRanges.begin(), kRanges.end());
@@ -138,7 +144,7 @@ PanelFont::PanelFont() {
     ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
-bool PanelFont::want(std::string_view text) {
+bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pictures) {
     if (is_building_ || fonts_.empty()) { return false; }
     std::set<ImWchar> brought;
     for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
@@ -149,7 +155,12 @@ bool PanelFont::want(std::string_view text) {
         const bool is_there = isThereFromTheBeginning(wanted) && ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
         if (is_letter && !is_there) { brought.insert(wanted); }
     }
-    if (brought.size() > kMostAdded || std::ranges::includes(added_, brought)) { return false; }
+    const bool shows_new = std::ranges::any_of(pictures, [&](const ScenePicture& picture) { return !pictures_.contains(picture.key); });
+    const bool says_new = brought.size() <= kMostAdded && !std::ranges::includes(added_, brought);
+    if (!says_new && !shows_new) { return false; }
+    if (!says_new) { brought.clear(); }
+    if (shows_new && pictures_.size() + pictures.size() > kMostPictures) { pictures_.clear(); }
+    for (const ScenePicture& picture : pictures) { pictures_.emplace(picture.key, picture); }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
     added_.merge(brought);
     is_building_ = true;
@@ -166,12 +177,38 @@ void PanelFont::build() {
     }
     // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened: nothing else is shared.
     built_.reset(IM_NEW(ImFontAtlas)());
-    if (!buildAtlas(*built_, fonts_, added_) && !buildAtlas(*built_, std::span(fonts_).first(1), {})) { built_.reset(); }
+    std::vector<std::pair<int, const ScenePicture*>> rects;
+    const auto add_pictures = [&](ImFontAtlas& atlas) {
+        rects.clear();
+        for (const auto& [key, picture] : pictures_) {
+            rects.emplace_back(atlas.AddCustomRectRegular(static_cast<int>(kScenePicturePx.x), static_cast<int>(kScenePicturePx.y)),
+                               &picture);
+        }
+    };
+    built_places_.clear();
+    if (!buildAtlas(*built_, fonts_, added_, add_pictures) && !buildAtlas(*built_, std::span(fonts_).first(1), {}, add_pictures)) {
+        built_.reset();
+        return;
+    }
+    // The letters' own texture, with colours.
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    built_->GetTexDataAsRGBA32(&pixels, &width, &height);
+    for (const auto& [id, picture] : rects) {
+        const ImFontAtlasCustomRect& rect = *built_->GetCustomRectByIndex(id);
+        for (std::size_t y = 0; y < kScenePicturePx.y; ++y) {
+            const auto row = picture->rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * kScenePicturePx.x);
+            std::copy_n(row, 4 * kScenePicturePx.x, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
+        }
+        PictureCorners& corners = built_places_[picture->key];
+        built_->CalcCustomRectUV(&rect, &corners.low, &corners.high);
+    }
 }
 
 void PanelFont::take() {
     is_building_ = false;
     if (!built_) { return; }
+    places_ = std::exchange(built_places_, {});
     // The context owns the one that it has.
     ImGuiIO& io = ImGui::GetIO();
     IM_DELETE(std::exchange(io.Fonts, built_.release()));

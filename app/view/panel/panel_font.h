@@ -1,10 +1,13 @@
 // The letters of the panel.
 #pragma once
 
+#include "app/view/scenes/seen_scenes.h"
+
 #include <imgui.h>
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -31,6 +34,12 @@ struct FontAtlasDeleter {
 };
 using FontAtlas = std::unique_ptr<ImFontAtlas, FontAtlasDeleter>;
 
+// Where a picture lies in the font's texture.
+struct PictureCorners {
+    ImVec2 low, high;
+};
+using PicturePlaces = std::map<std::string, PictureCorners>;  // by ScenePicture::key
+
 // The font of the current ImGui context, with the letters that are shown: Latin, Greek and Cyrillic from the beginning, others as names
 // bring them along, boxes for what no font has. Of these want() and take() are for the thread that draws, build() for any.
 class PanelFont {
@@ -39,19 +48,24 @@ public:
     PanelFont();
     // Empty, or why ImGui's own font is used: one line.
     [[nodiscard]] const std::string& complaint() const { return complaint_; }
-    // Between two frames. True: the text (UTF-8) has letters that were never asked for, which build() is to bring once. Until take()
-    // nothing more is wanted.
-    [[nodiscard]] bool want(std::string_view text);
+    // Between two frames. True: the text (UTF-8) has letters, or there are pictures, that were never asked for, which build() is to bring
+    // once. Until take() nothing more is wanted.
+    [[nodiscard]] bool want(std::string_view text, const std::vector<ScenePicture>& pictures = {});
     // Makes a font of all that was wanted, reading files where there are more letters in them.
     void build();
     // After build(), between two frames: it is the font from now on, and must be made a texture.
     void take();
 
+    // That are there, as of take().
+    [[nodiscard]] const PicturePlaces& pictures() const { return places_; }
+
 private:
     std::vector<std::string> fonts_;  // their bytes, the chosen one first, the further ones once a letter is not in it; none: ImGui's own
     std::string complaint_;
     std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
+    std::map<std::string, ScenePicture> pictures_;
     FontAtlas built_;
+    PicturePlaces built_places_, places_;
     bool is_building_ = false;  // from want() on, until take(): then all but this is build()'s
 };
 

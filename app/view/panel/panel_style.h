@@ -10,7 +10,14 @@ namespace binosplat {
 inline constexpr glm::uvec2 kPanelPx(768, 960);
 inline constexpr double kPanelWidthMetres = 0.468;
 
+// How high what one points at is: 1.5 degrees at least, which a hand that trembles hits, and twice that for what is used most.
+inline constexpr float kTargetPx = 45.0f, kTabPx = 60.0f, kLargeTargetPx = 88.0f;
+
 // Colours and sizes of the current ImGui context.
 void stylePanel();
+
+// Between the two a button looks like one that is chosen, if it is `chosen`.
+void beginChosen(bool chosen);
+void endChosen(bool chosen);
 
 }  // namespace binosplat

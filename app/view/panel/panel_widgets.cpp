@@ -1,15 +1,31 @@
 // ImGui's widgets, with their places noted down.
 #include "app/view/panel/panel_widgets.h"
 
+#include "app/view/panel/panel_style.h"
 #include "app/view/panel/shown_text.h"
 
 #include <algorithm>
 
 namespace binosplat {
 
-bool PanelWidgets::button(const char* name) {
-    const bool pressed = ImGui::Button(name);
+bool PanelWidgets::button(const char* name, bool chosen, const glm::vec2& size_px) {
+    beginChosen(chosen);
+    const bool pressed = ImGui::Button(name, ImVec2(size_px.x, size_px.y));
+    endChosen(chosen);
     noteMiddle(name);
+    return pressed;
+}
+
+std::optional<std::size_t> PanelWidgets::row(std::span<const char* const> names, std::optional<std::size_t> chosen, float height_px,
+                                             float end_x) {
+    const float gap = 0.5f * ImGui::GetStyle().ItemSpacing.x, left = ImGui::GetCursorPosX(), start = ImGui::GetStyle().WindowPadding.x;
+    const float right = start + end_x * (ImGui::GetWindowWidth() - 2.0f * start), count = static_cast<float>(names.size());
+    const float width = (right - left - gap * (count - 1.0f)) / count;
+    std::optional<std::size_t> pressed;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (i != 0) { ImGui::SameLine(0.0f, gap); }
+        if (button(names[i], chosen == i, {width, height_px})) { pressed = i; }
+    }
     return pressed;
 }
 
@@ -27,32 +43,50 @@ bool PanelWidgets::radio(const char* name, bool is_chosen) {
 
 std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std::span<const std::string_view> names,
                                                          std::string_view chosen, std::size_t per_row) {
+    constexpr float kLabelShare = 0.25f;
+    const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
+    ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
     std::optional<std::string_view> pressed;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        if (i % per_row != 0) {
-            ImGui::SameLine(ImGui::GetContentRegionAvail().x * static_cast<float>(i % per_row) / static_cast<float>(per_row));
+        const float at = kLabelShare + (1.0f - kLabelShare) * static_cast<float>(i % per_row) / static_cast<float>(per_row);
+        if (i == 0 || i % per_row != 0) {
+            ImGui::SameLine(start + at * width);
+        } else {
+            ImGui::SetCursorPosX(start + at * width);
         }
         if (radio(std::string(names[i]).c_str(), chosen == names[i])) { pressed = names[i]; }
     }
     return pressed;
 }
 
-bool PanelWidgets::entry(const std::string& name, const std::string& trouble) {
+bool PanelWidgets::entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px,
+                         float indent_px) {
     // ImGui takes ## in a label for the beginning of what is not shown: the text is drawn by itself, on a button without any.
     ImGui::PushID(name.c_str());
     ImGui::BeginDisabled(!trouble.empty());
-    const bool pressed = ImGui::Button("##entry", ImVec2(-1.0f, 0.0f));
+    const bool pressed = ImGui::Button("##entry", ImVec2(size_px.x, size_px.y));
     ImGui::EndDisabled();
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), padding = ImGui::GetStyle().FramePadding;
-    const std::string shown = asShown(trouble.empty() ? name : name + "   " + trouble);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float left = low.x + ImGui::GetStyle().FramePadding.x + indent_px, line = ImGui::GetTextLineHeight();
+    const std::string below = trouble.empty() ? about : trouble;
+    const float lines = below.empty() ? line : 2.0f * line, top = 0.5f * (low.y + high.y - lines);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.PushClipRect(low, high, true);
-    draw.AddText(ImVec2(low.x + padding.x, low.y + padding.y), ImGui::GetColorU32(trouble.empty() ? ImGuiCol_Text : ImGuiCol_TextDisabled),
-                 shown.c_str());
+    const ImU32 grey = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    draw.AddText(ImVec2(left, top), trouble.empty() ? ImGui::GetColorU32(ImGuiCol_Text) : grey, asShown(name).c_str());
+    draw.AddText(ImVec2(left, top + line), grey, asShown(below).c_str());
     draw.PopClipRect();
     noteMiddle(name);
     ImGui::PopID();
+    return pressed;
+}
+
+bool PanelWidgets::star(const std::string& name, bool filled, const glm::vec2& size_px) {
+    ImGui::PushID(name.c_str());
+    const bool pressed = ImGui::Button(filled ? "\xe2\x98\x85" : "\xe2\x98\x86", ImVec2(size_px.x, size_px.y));
+    ImGui::PopID();
+    noteMiddle(name);
     return pressed;
 }
 
@@ -69,6 +103,20 @@ void PanelWidgets::noteMiddle(const std::string& name) {
 void PanelWidgets::noteBox(const char* name) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     places_[name] = {low.x + 0.5f * (high.y - low.y), 0.5f * (low.y + high.y)};
+}
+
+void writeLine(const std::string& line) { ImGui::TextUnformatted(line.c_str()); }
+
+std::string endOf(std::string line) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    if (ImGui::CalcTextSize(line.c_str()).x <= room) { return line; }
+    // A letter's first byte, not one of those that continue it.
+    const auto begins = [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; };
+    while (!line.empty() && ImGui::CalcTextSize(("..." + line).c_str()).x > room) {
+        line.erase(0, 1);
+        while (!line.empty() && !begins(line.front())) { line.erase(0, 1); }
+    }
+    return "..." + line;
 }
 
 void writeWrapped(std::string_view text) {

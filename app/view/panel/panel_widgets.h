@@ -18,15 +18,23 @@ using WidgetPlaces = std::map<std::string, glm::dvec2>;
 // ImGui's widgets between ImGui::Begin and End; each is in `places` once it is drawn.
 class PanelWidgets {
 public:
-    bool button(const char* name);
+    // `chosen` makes it stand out; of a size of 0 it is as large as its name needs.
+    bool button(const char* name, bool chosen = false, const glm::vec2& size_px = {0.0f, 0.0f});
+    // Buttons of equal width in one row from here to `end_x`, a share of the line; gives the one that was pressed. `chosen`: which stands
+    // out, or none.
+    std::optional<std::size_t> row(std::span<const char* const> names, std::optional<std::size_t> chosen, float height_px,
+                                   float end_x = 1.0f);
     bool checkbox(const char* name, bool* value);
     // Whether it was pressed.
     bool radio(const char* name, bool is_chosen);
-    // A row of its own for a name that is shown letter by letter, whatever it holds; `trouble` makes it grey and follows it.
-    bool entry(const std::string& name, const std::string& trouble);
+    // A row of its own, `size_px` large, for a name that is shown letter by letter, whatever it holds, with `about` below it; `trouble`
+    // makes it grey, and is shown in place of `about`. The text begins `indent_px` from the left.
+    bool entry(const std::string& name, const std::string& about, const std::string& trouble, const glm::vec2& size_px, float indent_px);
+    // A star, `name` in the places.
+    bool star(const std::string& name, bool filled, const glm::vec2& size_px);
     // To be called after a slider: it is where the next column would begin.
     void noteSlider(const char* name);
-    // Rows of names of which one is chosen; gives the one that was pressed, if one was.
+    // Rows of names beside their label, of which one is chosen; gives the one that was pressed, if one was.
     std::optional<std::string_view> chooseFrom(const char* label, std::span<const std::string_view> names, std::string_view chosen,
                                                std::size_t per_row);
 
@@ -39,6 +47,9 @@ private:
     WidgetPlaces places_;
 };
 
+void writeLine(const std::string& line);
+// As much of its end as fits into a line: of a path the end says more.
+std::string endOf(std::string line);
 // Text that may hold anything, see asShown, in as many lines as it needs.
 void writeWrapped(std::string_view text);
 

@@ -9,7 +9,9 @@
 namespace binosplat {
 
 SceneList makeSceneList(const SceneListWish& wish) {
-    return wish.recent ? listScenes("Recent scenes", recentScenes()) : listFolder(wish.folder);
+    SceneList list = wish.recent ? listScenes("Recent scenes", recentScenes()) : listFolder(wish.folder);
+    describeScenes(list);
+    return list;
 }
 
 void SceneChooser::showFolder(const std::string& folder) {
@@ -46,7 +48,7 @@ void SceneChooser::goUp() {
 }
 
 void SceneChooser::refresh(const std::string& scene) {
-    if (!wish_.recent && wish_.folder.empty()) { return showFolder(folderOf(scene)); }
+    if (isNew()) { return showFolder(folderOf(scene)); }
     want();  // what is seen stays until then
 }
 

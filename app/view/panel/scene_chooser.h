@@ -25,7 +25,7 @@ SceneList makeSceneList(const SceneListWish& wish);
 
 class SceneChooser {
 public:
-    static constexpr std::size_t kRows = 12;
+    static constexpr std::size_t kRows = 6;
 
     // Looks into a folder, or kBuiltinFolder.
     void showFolder(const std::string& folder);
@@ -33,6 +33,8 @@ public:
     void goUp();
     // Looks again where it looked last; the first time where `scene` lies.
     void refresh(const std::string& scene);
+    // Nothing was looked at yet.
+    [[nodiscard]] bool isNew() const { return !wish_.recent && wish_.folder.empty(); }
     // The next kRows entries, or those before.
     void turn(int pages);
     // Looks into an entry of the list that is a folder; the place of a scene to load, else empty.

@@ -15,7 +15,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kName = "recent-scenes.txt";
+constexpr const char *kRecentName = "recent-scenes.txt", *kFavouritesName = "favourite-scenes.txt";
+constexpr std::size_t kMostFavourites = 1000;
+
+// One in each line. A list that cannot be read is begun anew by the next scene.
+std::vector<std::string> readList(const char* name, std::size_t most) {
+    std::vector<std::string> scenes;
+    try {
+        const fs::path file = viewFolder() / name;
+        std::error_code ignored;
+        if (!fs::exists(file, ignored)) { return {}; }
+        std::istringstream lines(readTextFile(file, "a list of scenes"));
+        for (std::string line; std::getline(lines, line) && scenes.size() < most;) {
+            if (!line.empty()) { scenes.push_back(line); }
+        }
+    } catch (const Error&) { return {}; }
+    return scenes;
+}
+
+void writeList(const char* name, const std::vector<std::string>& scenes) {
+    std::string text;
+    for (const std::string& line : scenes) { text += line + "\n"; }
+    OutputFiles files(viewFolder());
+    writeText(files.staging() / name, text);
+    files.publish();
+}
 
 }  // namespace
 
@@ -26,20 +50,15 @@ std::vector<std::string> withLatest(std::vector<std::string> scenes, const std::
     return scenes;
 }
 
-std::vector<std::string> recentScenes() {
-    std::vector<std::string> scenes;
-    try {
-        const fs::path file = viewFolder() / kName;
-        std::error_code ignored;
-        if (!fs::exists(file, ignored)) { return {}; }
-        std::istringstream lines(readTextFile(file, "a list of scenes"));
-        for (std::string line; std::getline(lines, line) && scenes.size() < kMostRecentScenes;) {
-            if (!line.empty()) { scenes.push_back(line); }
-        }
-    } catch (const Error&) {  // a list that cannot be read is begun anew by the next scene
-        return {};
-    }
-    return scenes;
+std::vector<std::string> recentScenes() { return readList(kRecentName, kMostRecentScenes); }
+
+std::vector<std::string> favouriteScenes() { return readList(kFavouritesName, kMostFavourites); }
+
+void toggleFavourite(const std::string& scene) {
+    if (scene.find('\n') != std::string::npos) { return; }  // it would be two
+    std::vector<std::string> scenes = favouriteScenes();
+    if (std::erase(scenes, scene) == 0) { scenes.push_back(scene); }
+    writeList(kFavouritesName, scenes);
 }
 
 void rememberScene(const std::string& scene) {
@@ -49,11 +68,7 @@ void rememberScene(const std::string& scene) {
     if (whole.find('\n') != std::string::npos) { return; }  // it would be two
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);
     if (after == before) { return; }
-    std::string text;
-    for (const std::string& line : after) { text += line + "\n"; }
-    OutputFiles files(viewFolder());
-    writeText(files.staging() / kName, text);
-    files.publish();
+    writeList(kRecentName, after);
 }
 
 }  // namespace binosplat

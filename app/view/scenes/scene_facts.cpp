@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace binosplat {
@@ -28,11 +29,6 @@ std::uint64_t bytesOnDisk(const fs::path& place) {
     return sum;
 }
 
-std::string inMib(std::uint64_t bytes) {
-    const double mib = static_cast<double>(bytes) / (1024.0 * 1024.0);
-    return mib < 0.1 ? fmt::format("{:.1f} KiB", 1024.0 * mib) : fmt::format("{:.1f} MiB", mib);
-}
-
 // 1234567 as 1 234 567.
 std::string inThousands(std::uint64_t count) {
     const std::string digits = fmt::format("{}", count);
@@ -44,6 +40,19 @@ std::string inThousands(std::uint64_t count) {
     return grouped;
 }
 
+// The longest side of the box with nine tenths of the splats along each axis, seen through at most 2^16 of them.
+double commonSize(const Scene& scene) {
+    double size = 0.0;
+    const std::size_t step = scene.size() / 65536 + 1;
+    for (int axis = 0; axis < 3 && scene.size() > 0; ++axis) {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < scene.size(); i += step) { values.push_back(scene.positions[i][axis]); }
+        std::ranges::sort(values);
+        size = std::max(size, static_cast<double>(values[values.size() - 1 - values.size() / 20] - values[values.size() / 20]));
+    }
+    return size;
+}
+
 std::string kindOf(const Scene& scene, const LoadNotes& notes) {
     if (!notes.three_scales) { return "2D Gaussians (discs)"; }
     if (!scene.isGaussian3d()) { return "3D Gaussians, drawn as discs"; }
@@ -51,6 +60,16 @@ std::string kindOf(const Scene& scene, const LoadNotes& notes) {
 }
 
 }  // namespace
+
+std::string inMib(std::uint64_t bytes) {
+    const double mib = static_cast<double>(bytes) / (1024.0 * 1024.0);
+    return mib < 0.1 ? fmt::format("{:.1f} KiB", 1024.0 * mib) : fmt::format("{:.1f} MiB", mib);
+}
+
+std::string describeBriefly(const SceneFacts& facts) {
+    return fmt::format("{} splats, {}", inThousands(facts.splats), facts.kind) +
+           (facts.file_bytes == 0 ? "" : ", " + inMib(facts.file_bytes));
+}
 
 SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string& source) {
     SceneFacts facts;
@@ -61,6 +80,7 @@ SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string
     facts.sh_degree_in_file = notes.sh_degree_in_file;
     facts.device_bytes = scene.size() * deviceBytesPerSplat(scene.sh_degree, scene.isGaussian3d());
     if (!isBuiltin(source)) { facts.file_bytes = bytesOnDisk(source); }
+    facts.size_units = commonSize(scene);
     return facts;
 }
 

@@ -15,11 +15,17 @@ struct SceneFacts {
     std::string kind;                        // what is drawn, and what it was made of
     int sh_degree = 0, sh_degree_in_file = 0;
     std::uint64_t device_bytes = 0;
+    double size_units = 0.0;       // the longest side of what nine tenths of the splats lie in, in scene units
     std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program
 };
 
 // Of a scene as it was loaded from `source`.
 SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string& source);
+
+// "12.3 MiB".
+std::string inMib(std::uint64_t bytes);
+// In a line: "125 000 splats, 3D Gaussians, 12.3 MiB".
+std::string describeBriefly(const SceneFacts& facts);
 
 // Names and values. `metres_per_unit` is as the wearer stands in it now.
 std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts& facts, double metres_per_unit);

@@ -2,6 +2,8 @@
 #include "app/view/scenes/scene_list.h"
 
 #include "app/view/scenes/natural_order.h"
+#include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/view_scenes.h"
 #include "engine/platform.h"
 #include "engine/scene/procedural.h"
@@ -64,6 +66,21 @@ SceneList listFolder(const std::string& folder) {
         return a.is_folder != b.is_folder ? a.is_folder : comesBefore(a.name, b.name);
     });
     return list;
+}
+
+void describeScenes(SceneList& list) {
+    const std::vector<std::string> favourites = favouriteScenes();
+    for (SceneEntry& entry : list.entries) {
+        if (entry.is_folder) { continue; }
+        entry.is_favourite = std::ranges::find(favourites, entry.place) != favourites.end();
+        SeenScene seen = findSeenScene(entry.place);
+        entry.picture = std::move(seen.picture);
+        entry.about = std::move(seen.about);
+        std::error_code error;
+        if (!entry.about.empty() || isBuiltin(entry.place) || !fs::is_regular_file(entry.place, error)) { continue; }
+        if (const std::uintmax_t bytes = fs::file_size(entry.place, error); !error) { entry.about = inMib(bytes); }
+    }
+    std::ranges::stable_partition(list.entries, &SceneEntry::is_favourite);
 }
 
 SceneList listScenes(const std::string& title, const std::vector<std::string>& scenes) {

@@ -1,6 +1,8 @@
 // What a folder holds for somebody who looks for a scene: folders and scenes, in the order of people.
 #pragma once
 
+#include "app/view/scenes/seen_scenes.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +14,9 @@ struct SceneEntry {
     std::string place;       // folder to look into, or scene to load
     bool is_folder = false;  // of scenes; one that is a scene itself is none
     std::string trouble;     // why it cannot be opened, in a few words; empty: it can
+    std::string about{};     // its size and, of one that was shown before, its kind
+    bool is_favourite = false;
+    ScenePicture picture{};  // of one that was shown before
 };
 
 struct SceneList {
@@ -29,6 +34,9 @@ std::string folderOf(const std::string& scene);
 
 // Folders first, then scenes; hidden files and whatever looks like no scene are left out.
 SceneList listFolder(const std::string& folder);
+
+// Adds what is known of the scenes, and puts favourites first.
+void describeScenes(SceneList& list);
 
 // These scenes in this order, by their file names; what is not there any more can be seen to be so.
 SceneList listScenes(const std::string& title, const std::vector<std::string>& scenes);

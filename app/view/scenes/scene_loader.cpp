@@ -19,15 +19,14 @@ constexpr double kReadingShare = 0.8;
 
 struct Cancelled {};
 
-// One name for a file, however it is spelled.
+}  // namespace
+
 std::string placeOf(const std::string& scene) {
     if (isBuiltin(scene)) { return scene; }
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::weakly_canonical(scene, error);
     return error ? scene : whole.string();
 }
-
-}  // namespace
 
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
 
@@ -61,9 +60,10 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
         Scene scene = loadScene(scene_, 0, &notes, reading, levelChoice(options.load, options.memory_limit_mib));
         reading(1.0);
         drawAs(options.load, scene, notes);
-        const Similarity start = startPlacement(options, scene);
+        const View start = startView(scene, options.camera, options.metres_per_unit);
         SceneFacts facts = factsOf(scene, notes, scene_);
-        const glm::dvec3 up = upOfScene(scene, scene_, startView(scene, options.camera, options.metres_per_unit).up);
+        const glm::dvec3 up = upOfScene(scene, scene_, start.up);
+        const std::optional<double> floor = floorHeight(scene, up);
         loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
@@ -73,8 +73,10 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
         try {
             loaded_->remembered = rememberedPlacement(scene_);
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
-        loaded_->start = start;
+        loaded_->start = startPlacement(start, options.metres_per_unit);
         loaded_->up = up;
+        loaded_->floor = floor;
+        loaded_->viewpoints = findViewpoints(scene_, options.camera.cameras_file);
         loaded_->facts = std::move(facts);
         loaded_->notes = std::move(notes);
         makeKernels(context, options);

@@ -4,6 +4,7 @@
 #include "app/options/options.h"
 #include "app/view/scenes/kernels_ahead.h"
 #include "app/view/scenes/scene_facts.h"
+#include "app/view/scenes/viewpoints.h"
 #include "app/view/wearer/placement.h"
 #include "engine/frame/stereo_frame.h"
 
@@ -26,12 +27,17 @@ struct LoadedScene {
     StereoFrame frame;
     Similarity start;               // see startPlacement
     glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
+    std::optional<double> floor;    // see floorHeight, along `up`
+    std::vector<Viewpoint> viewpoints;
     LoadNotes notes;
     SceneFacts facts;
     std::string place;                     // one name for a scene, however it is spelled
     std::optional<Similarity> remembered;  // see rememberedPlacement
     std::string remembering_trouble;       // why not, if there is one that cannot be read
 };
+
+// One name for a scene, however it is spelled.
+std::string placeOf(const std::string& scene);
 
 // As FramesAhead::known has it.
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);

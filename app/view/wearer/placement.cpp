@@ -47,13 +47,16 @@ Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c) {
 }
 
 Similarity startPlacement(const RunOptions& options, const Scene& scene) {
-    const View view = startView(scene, options.camera, options.metres_per_unit);
+    return startPlacement(startView(scene, options.camera, options.metres_per_unit), options.metres_per_unit);
+}
+
+Similarity startPlacement(const View& view, double metres_per_unit) {
     const Pose looking = lookAt(view.eye, view.look, view.up);
     // The wearer stands upright: gravity is against `up`, whatever the view's tilt.
     const glm::dvec3 up = glm::normalize(view.up), forward = view.look - view.eye;
     const glm::dvec3 level = forward - glm::dot(forward, up) * up;
     return {lookAt(glm::dvec3(0.0), glm::length(level) > 0.0 ? level : looking.orientation * glm::dvec3(0.0, 0.0, 1.0), up).orientation,
-            view.eye, 1.0 / options.metres_per_unit};
+            view.eye, 1.0 / metres_per_unit};
 }
 
 Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m) {

@@ -24,6 +24,7 @@ Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c);
 // The room's origin where the options put the eye, or where the scene is best seen from; upright, looking that way. A room metre is
 // 1 / metres_per_unit scene units.
 Similarity startPlacement(const RunOptions& options, const Scene& scene);
+Similarity startPlacement(const View& view, double metres_per_unit);
 
 // What moves the wearer through the scene: each is a scene_from_room to follow `scene_from_room`.
 // By `step_m` in the room.

@@ -2,6 +2,7 @@
 #include "app/view/wearer/wearer_controls.h"
 
 #include <cmath>
+#include <utility>
 
 namespace binosplat {
 
@@ -9,6 +10,7 @@ namespace {
 
 constexpr double kWalkMetresPerSecond = 1.5, kRiseMetresPerSecond = 0.8;
 constexpr double kTurnRadians = 0.5235987755982988;  // 30 degrees
+constexpr double kTurnRadiansPerSecond = 1.5707963267948966;
 constexpr double kStickTurns = 0.7, kStickRests = 0.4, kStickDeadZone = 0.15;
 // Where the runtime knows no floor: below the head of a wearer who stands at the start.
 constexpr double kUsualFloorMetres = 1.6;
@@ -29,6 +31,12 @@ void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSetti
         if (settings.panel) { panel.hangBefore(now.room_from_head); }
     }
     menu_ = menu;
+    viewpoint_step_ = 0;
+    for (const int h : {kLeft, kRight}) {
+        const bool pressed = now.hands[static_cast<std::size_t>(h)].stick_presses;
+        if (pressed && !std::exchange(stick_presses_[static_cast<std::size_t>(h)], pressed)) { viewpoint_step_ += h == kRight ? 1 : -1; }
+        stick_presses_[static_cast<std::size_t>(h)] = pressed;
+    }
     panel.update(now.hands, settings.panel);
     walk(now, panel, settings.teleport, scene_from_room);
     if (settings.teleport) {
@@ -37,7 +45,7 @@ void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSetti
         aiming_.reset();
         teleport_ = {};
     }
-    turn(now, scene_from_room);
+    turn(now, panel, settings.smooth_turn, scene_from_room);
     hold(now, panel, settings.tilt, scene_from_room);
 }
 
@@ -77,9 +85,17 @@ void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, S
     if (aiming_) { teleport_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
 }
 
-void WearerControls::turn(const WearerNow& now, Similarity& scene_from_room) {
+void WearerControls::turn(const WearerNow& now, const OverlayPanel& panel, bool smoothly, Similarity& scene_from_room) {
     const glm::dvec2& stick = now.hands[kRight].stick;
     const double turn = dominantAxis(stick).x;
+    if (smoothly) {
+        const double rate = panel.isPointedAtBy(kRight) ? 0.0 : withoutShiver(turn);
+        if (rate == 0.0) { return; }
+        moves_ = true;
+        const double angle_rad = kTurnRadiansPerSecond * rate * now.step_seconds;
+        scene_from_room = turnedBy(scene_from_room, angle_rad, now.room_from_head.position);
+        return;
+    }
     if (std::abs(turn) > kStickTurns && !turned_) {
         scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), now.room_from_head.position);
         turned_ = true;

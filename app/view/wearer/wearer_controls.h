@@ -22,14 +22,17 @@ struct WearerNow {
 
 class WearerControls {
 public:
-    // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, rise and sink. A hand squeezed: the scene moves
-    // with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes. Where the wearer teleports, the
-    // left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there. The stick of the hand that
-    // points at the panel scrolls there instead, and moves nobody.
+    // Left stick: walk where the head looks. Right stick: turn by 30 degrees at a time, or smoothly, rise and sink. A hand squeezed: the
+    // scene moves with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes. Where the wearer
+    // teleports, the left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there. The stick of the hand
+    // that points at the panel scrolls there instead, and moves nobody.
     void update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room);
 
     // The room begins elsewhere now: what hands hold they hold from there on.
     void letGo() { held_ = {}; }
+
+    // To the next viewpoint where the right stick was pressed in just now, and back where the left one was.
+    [[nodiscard]] int viewpointStep() const { return viewpoint_step_; }
 
     // Whether sticks moved the wearer in this frame.
     [[nodiscard]] bool isMoving() const { return moves_; }
@@ -40,13 +43,15 @@ public:
 private:
     void walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room);
     void teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room);
-    void turn(const WearerNow& now, Similarity& scene_from_room);
+    void turn(const WearerNow& now, const OverlayPanel& panel, bool smoothly, Similarity& scene_from_room);
     void hold(const WearerNow& now, const OverlayPanel& panel, bool may_tilt, Similarity& scene_from_room);
 
     bool turned_ = false, menu_ = false, moves_ = false;
     std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene
     std::optional<int> aiming_;
     TeleportAim teleport_;
+    std::array<bool, 2> stick_presses_{};
+    int viewpoint_step_ = 0;
 };
 
 }  // namespace binosplat

@@ -1,0 +1,185 @@
+// All methods and what they take.
+#include "app/options/option_table.h"
+#include "app/report/report.h"
+#include "app/view/panel/panel_pages.h"
+#include "app/view/panel/panel_style.h"
+#include "app/view/view_settings_table.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+namespace {
+
+constexpr float kSliderShare = 0.62f;  // of the width, for sliders beside their label
+
+// One of the names that the table has for an option, in this order.
+template <typename Owner>
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, std::span<const std::string_view> names, Owner& owner,
+            std::size_t per_row) {
+    const auto pressed = widgets.chooseFrom(label, names, textOf(row.field.value(owner)), per_row);
+    if (pressed) { row.field.read({label, {std::string(*pressed)}}, owner); }
+}
+template <typename Owner>
+void choose(PanelWidgets& widgets, const char* label, const OptionRow<Owner>& row, Owner& owner, std::size_t per_row) {
+    choose(widgets, label, row, row.field.choices, owner, per_row);
+}
+
+// What the table says of a number; more than a slider has is for the command line.
+struct SliderRange {
+    double least, most;
+};
+template <typename Owner>
+SliderRange sliderOf(const OptionRow<Owner>& row) {
+    return {*row.field.least, row.field.slider_most.value_or(*row.field.most)};
+}
+
+void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order) {
+    RunOptions options;
+    options.stereo = settings.stereo;
+    StereoOptions& stereo = options.stereo;
+    const OptionRow<RunOptions>& methods = *findRunRow("mode");
+    std::vector<std::string_view> names = methods.field.choices;
+    std::ranges::rotate(names, names.begin() + 1);  // one eye last
+    choose(widgets, "Method", methods, names, options, 3);
+    choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
+    choose(widgets, "Pixel depth", *findRunRow("depth"), options, 3);
+    const float width = ImGui::GetContentRegionAvail().x;
+    widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
+    ImGui::SameLine(0.4f * width);
+    bool by_distance = stereo.order.value_or(usual_order) == Order::kDistance;
+    if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
+    ImGui::SameLine(0.75f * width);
+    bool foveated = stereo.foveation_deg > 0.0;
+    if (foveated) { settings.last_foveation_deg = stereo.foveation_deg; }
+    if (widgets.checkbox("Foveation", &foveated)) { stereo.foveation_deg = foveated ? settings.last_foveation_deg : 0.0; }
+    const SliderRange margins = sliderOf(*findRunRow("margin"));
+    const int least_px = static_cast<int>(margins.least), most_px = static_cast<int>(margins.most);
+    int margin = static_cast<int>(stereo.margin_px);
+    if (ImGui::SliderInt("margin (paper)", &margin, least_px, most_px, "%d px")) {
+        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, least_px, most_px));
+    }
+    widgets.noteSlider("margin (paper)");
+    const SliderRange budgets = sliderOf(*findRunRow("budget"));
+    auto budget = static_cast<float>(100.0 * stereo.budget);
+    if (ImGui::SliderFloat("budget (predicted)", &budget, static_cast<float>(100.0 * budgets.least),
+                           static_cast<float>(100.0 * budgets.most), "%.0f %% of an eye")) {
+        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
+    }
+    widgets.noteSlider("budget (predicted)");
+    settings.stereo = stereo;
+}
+
+// The images are made anew for another resolution, so it changes once the slider is let go.
+void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
+    const SliderRange scales = sliderOf(*findViewRow("resolution-scale"));
+    ImGuiStorage* storage = ImGui::GetStateStorage();
+    const ImGuiID id = ImGui::GetID("resolution being chosen");
+    auto scale = storage->GetFloat(id, static_cast<float>(settings.resolution_scale));
+    ImGui::SliderFloat("resolution", &scale, static_cast<float>(scales.least), static_cast<float>(scales.most), "%.2f");
+    widgets.noteSlider("resolution");
+    if (ImGui::IsItemActive()) {
+        storage->SetFloat(id, scale);
+        return;
+    }
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        const double chosen = std::clamp(static_cast<double>(scale), scales.least, scales.most);
+        settings.resolution_scale = std::round(100.0 * chosen) / 100.0;  // as many digits as are shown
+    }
+    storage->SetFloat(id, static_cast<float>(settings.resolution_scale));
+}
+
+void drawQuality(PanelWidgets& widgets, ViewSettings& settings) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
+
+void drawTimes(const OverlayStatus& status) {
+    const std::vector<float>& times = status.frame_ms;
+    const float last = times.empty() ? 0.0f : times.back();
+    const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
+    // A first frame that makes its kernels does not press the others flat.
+    std::vector<float> sorted = times;
+    std::ranges::sort(sorted);
+    const float highest = sorted.empty() ? 0.0f : 2.0f * sorted[sorted.size() / 2];
+    ImGui::PlotLines("frame", times.data(), static_cast<int>(times.size()), 0, label.c_str(), 0.0f, std::max(highest, 33.3f),
+                     ImVec2(0.0f, 60.0f));
+    if (status.frame == nullptr) { return; }
+    const FrameCounters& counters = status.frame->counters;
+    std::uint64_t tiles = 0, hidden = 0, splats = 0;
+    for (const TargetCounters& target : counters.targets) {
+        tiles = std::max(tiles, target.tiles);
+        hidden += target.tiles_hidden;
+        splats = std::max(splats, target.splats_visible);
+    }
+    const WarpedCounters warped = counters.warped.value_or(WarpedCounters{});
+    const WarpedCounters::Classes pixels = warped.pixels.value_or(WarpedCounters::Classes{});
+    const auto percent = [](std::uint64_t part, double whole) { return 100.0 * static_cast<double>(part) / std::max(whole, 1.0); };
+    writeLine(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
+                          percent(warped.tiles_patched, static_cast<double>(tiles) - 0.5 * static_cast<double>(hidden)),
+                          percent(pixels.hole, static_cast<double>(pixels.covered + pixels.gap + pixels.hole)),
+                          static_cast<double>(splats) / 1000.0));
+}
+
+void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, OverlayActions& actions) {
+    widgets.checkbox("Show how tiles were made", &settings.tint);
+    ImGui::SameLine(0.5f * ImGui::GetContentRegionAvail().x);
+    actions.save = widgets.button("Save");
+    ImGui::SameLine();
+    actions.load = widgets.button("Load");
+    if (!can_reload_shaders) { return; }
+    ImGui::SameLine();
+    actions.reload_shaders = widgets.button("Shaders");
+}
+
+// What is known of the scene, and the time of each pass.
+void drawFacts(const OverlayStatus& status) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    for (const auto& [name, value] : status.facts) {
+        writeLine(name);
+        ImGui::SameLine(0.3f * width);
+        writeWrapped(value);
+    }
+}
+
+void drawStages(const FrameResult& frame) {
+    const std::vector<TargetCounters>& targets = frame.counters.targets;
+    if (targets.size() == 2 && targets[kLeft].tiles_hidden + targets[kRight].tiles_hidden > 0) {
+        writeLine(fmt::format("the lenses hide {} and {} of {} tiles", targets[kLeft].tiles_hidden, targets[kRight].tiles_hidden,
+                              std::max(targets[kLeft].tiles, targets[kRight].tiles)));
+    }
+    if (const auto& ahead = frame.counters.ahead; ahead && ahead->frames_cut_short > 0) {
+        writeLine(
+            fmt::format("{} frames had no room in their lists, {} were drawn again", ahead->frames_cut_short, ahead->frames_done_again));
+    }
+    ImGui::Columns(2, "stages", false);
+    for (const auto& [label, ms] : addUp(frame.gpu_ms)) {
+        writeLine(fmt::format("{:>6.2f} {}", ms, label.text()));
+        ImGui::NextColumn();
+    }
+    ImGui::Columns(1);
+}
+
+}  // namespace
+
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
+    drawMethod(widgets, settings, status.usual_order);
+    drawResolution(widgets, settings);
+    drawQuality(widgets, settings);
+    ImGui::PopItemWidth();
+    drawFiles(widgets, settings, status.can_reload_shaders, actions);
+    drawSaid(status);
+    if (!status.governor.empty()) { writeWrapped(status.governor); }
+    drawTimes(status);
+    ImGui::BeginChild("details", ImVec2(0.0f, 0.0f), true);
+    if (status.frame != nullptr) { drawStages(*status.frame); }
+    drawFacts(status);
+    ImGui::EndChild();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,100 @@
+// A browser of folders, with pictures of what was seen before, and the viewpoints of the scene that is shown.
+#include "app/view/panel/panel_pages.h"
+#include "app/view/panel/panel_style.h"
+#include "app/view/panel/shown_text.h"
+#include "engine/platform.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <array>
+
+namespace binosplat {
+
+namespace {
+
+constexpr float kRowPx = 66.0f, kStarPx = 60.0f;
+
+void drawPlaces(PanelWidgets& widgets, SceneChooser& chooser) {
+    const std::string home = environment("HOME");
+    ImGui::BeginDisabled(chooser.list().above.empty());
+    if (widgets.button("Up")) { chooser.goUp(); }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(home.empty());
+    if (widgets.button("Home")) { chooser.showFolder(home); }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (widgets.button("Built-in")) { chooser.showFolder(kBuiltinFolder); }
+    ImGui::SameLine();
+    if (widgets.button("Recent")) { chooser.showRecent(); }
+    ImGui::SameLine(0.0f, 2.0f * ImGui::GetStyle().ItemSpacing.x);
+    if (widgets.button("<", false, {kTargetPx, 0.0f})) { chooser.turn(-1); }
+    ImGui::SameLine();
+    if (widgets.button(">", false, {kTargetPx, 0.0f})) { chooser.turn(1); }
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    writeLine(fmt::format("{} of {}", chooser.page() + 1, chooser.pageCount()));
+}
+
+void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces* places) {
+    if (places == nullptr) { return; }
+    const auto found = places->find(entry.picture.key);
+    if (found == places->end()) { return; }
+    const PictureCorners& corners = found->second;
+    const float height = kRowPx - 6.0f, width = height * static_cast<float>(kScenePicturePx.x) / static_cast<float>(kScenePicturePx.y);
+    const ImVec2 at(low.x + 3.0f, low.y + 3.0f);
+    ImGui::GetWindowDrawList()->AddImage(ImGui::GetIO().Fonts->TexID, at, ImVec2(at.x + width, at.y + height), corners.low, corners.high);
+}
+
+void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, OverlayActions& actions) {
+    // As many lines as there may be entries, so that what is below stays where it is.
+    const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
+    ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
+    writeLine(endOf(asShown(chooser.list().title)));
+    if (!chooser.list().trouble.empty()) { writeWrapped(chooser.list().trouble); }
+    if (chooser.list().trouble.empty() && chooser.list().entries.empty() && !chooser.isReading()) { writeLine("No scenes and no folders"); }
+    const SceneEntry* pressed = nullptr;
+    for (const SceneEntry& entry : chooser.shown()) {
+        const ImVec2 low = ImGui::GetCursorScreenPos();
+        const float gap = ImGui::GetStyle().ItemSpacing.x,
+                    width = ImGui::GetContentRegionAvail().x - (entry.is_folder ? 0.0f : kStarPx + gap);
+        const std::string name = entry.is_folder ? entry.name + "/" : entry.name;
+        if (widgets.entry(name, entry.about, entry.trouble, {width, kRowPx}, entry.is_folder ? 0.0f : 1.4f * kRowPx)) { pressed = &entry; }
+        drawPicture(entry, low, places);
+        if (entry.is_folder) { continue; }
+        ImGui::SameLine();
+        if (widgets.star("favourite " + entry.name, entry.is_favourite, {kStarPx, kRowPx})) { actions.favourite = entry.place; }
+    }
+    if (pressed != nullptr) { actions.chosen_scene = chooser.open(*pressed); }
+    ImGui::EndChild();
+}
+
+void drawViewpoints(PanelWidgets& widgets, const OverlayStatus& status, OverlayActions& actions) {
+    static constexpr std::array kSteps{"Previous viewpoint", "Next viewpoint", "Keep this one"};
+    if (const auto pressed = widgets.row(kSteps, {}, kTabPx)) {
+        actions.viewpoint_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
+        actions.keep_viewpoint = *pressed == 2;
+    }
+    const std::size_t count = status.viewpoint_count;
+    std::string words =
+        count == 0 ? "No viewpoints yet: keep one, or put a cameras.json beside the scene" : fmt::format("{} viewpoints", count);
+    if (const auto& at = status.place.view) { words = fmt::format("Viewpoint {} of {}: {}", *at + 1, count, status.viewpoint); }
+    writeLine(endOf(asShown(words)));
+}
+
+}  // namespace
+
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const OverlayStatus& status, OverlayActions& actions) {
+    drawPlaces(widgets, chooser);
+    drawEntries(widgets, chooser, status.pictures, actions);
+    static constexpr std::array kScenes{"Previous scene", "Next scene", "Last shown"};
+    if (const auto pressed = widgets.row(kScenes, {}, kTargetPx)) {
+        actions.scene_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
+        actions.last_scene = *pressed == 2;
+    }
+    drawViewpoints(widgets, status, actions);
+    drawSaid(status);
+}
+
+}  // namespace binosplat

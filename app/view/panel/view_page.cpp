@@ -1,0 +1,141 @@
+// The page that the panel opens with.
+#include "app/view/panel/panel_pages.h"
+#include "app/view/panel/panel_style.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+constexpr float kTextShare = 0.46f;  // of a line, for words before buttons
+// In one row; headsets have up to five, and more are for the command line.
+constexpr std::size_t kMostRates = 5;
+constexpr double kGrowthStep = 1.25, kRiseStepMetres = 0.1;
+
+// Words on the left of a row of buttons of this height.
+void writeBefore(const std::string& words, float height_px) {
+    const float y = ImGui::GetCursorPosY(), x = ImGui::GetCursorPosX();
+    ImGui::SetCursorPosY(y + 0.5f * (height_px - ImGui::GetTextLineHeight()));
+    writeLine(words);
+    ImGui::SameLine(x + kTextShare * ImGui::GetContentRegionAvail().x);
+    ImGui::SetCursorPosY(y);
+}
+
+// What the eyes get, in plain words.
+std::string describeRate(const ShownRate& rate, Quality quality) {
+    const std::string resolution = fmt::format("resolution {:.0f} %", 100.0 * rate.resolution);
+    if (!(rate.display_hz > 0.0)) { return resolution; }
+    std::string words = fmt::format("{:.0f} of {:.0f} Hz, {}", std::min(rate.met_hz, rate.display_hz), rate.display_hz, resolution);
+    if (rate.is_beaten) { return words + ": too much for this computer even so"; }
+    if (quality == Quality::kOff) { return words + "; choose one to keep motion smooth"; }
+    return words;
+}
+
+void drawQualityRow(PanelWidgets& widgets, ViewSettings& settings, const ShownRate& rate) {
+    static constexpr std::array kNames{"Sharp", "Balanced", "Fast"};
+    static constexpr std::array kQualities{Quality::kSharp, Quality::kBalanced, Quality::kFast};
+    const auto found = std::ranges::find(kQualities, settings.quality);
+    const auto chosen = found == kQualities.end() ? std::nullopt : std::optional<std::size_t>(found - kQualities.begin());
+    if (const auto pressed = widgets.row(kNames, chosen, kLargeTargetPx)) {
+        settings.quality = pressed == chosen ? Quality::kOff : kQualities[*pressed];
+    }
+    writeLine(describeRate(rate, settings.quality));
+}
+
+std::string describeSize(const ShownPlace& place) {
+    const double g = place.growth;
+    const std::string scale = std::abs(g - 1.0) < 0.005 ? "1:1" : g > 1.0 ? fmt::format("{:.3g}:1", g) : fmt::format("1:{:.3g}", 1.0 / g);
+    if (!(place.size_m > 0.0)) { return fmt::format("Size {}", scale); }
+    return place.size_m < 0.995 ? fmt::format("Size {:.0f} cm, {}", 100.0 * place.size_m, scale)
+                                : fmt::format("Size {:.3g} m, {}", place.size_m, scale);
+}
+
+std::string describeHeight(const ShownPlace& place) {
+    if (place.has_floor) { return fmt::format("Eyes {:.2f} m above the floor", place.eyes_m); }
+    return std::abs(place.eyes_m) < 0.005 ? "Height as at the start" : fmt::format("Height {:+.2f} m", place.eyes_m);
+}
+
+void drawPlace(PanelWidgets& widgets, const ShownPlace& place, OverlayActions& actions) {
+    static constexpr std::array kPlaces{"Recentre", "Level", "Reset"}, kSizes{"Smaller", "1:1", "Larger"};
+    static constexpr std::array kHeights{"Lower", "Higher"};
+    if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
+        (*pressed == 0 ? actions.recentre : *pressed == 1 ? actions.level_scene : actions.reset_scene) = true;
+    }
+    writeBefore(describeSize(place), kTabPx);
+    ImGui::PushButtonRepeat(true);
+    const auto size = widgets.row(kSizes, {}, kTabPx);
+    writeBefore(describeHeight(place), kTargetPx);
+    const auto height = widgets.row(kHeights, {}, kTargetPx);
+    ImGui::PopButtonRepeat();
+    if (size) {
+        actions.natural_size = *size == 1;
+        actions.growth = *size == 0 ? 1.0 / kGrowthStep : *size == 2 ? kGrowthStep : 1.0;
+    }
+    if (height) { actions.rise_m = *height == 0 ? -kRiseStepMetres : kRiseStepMetres; }
+}
+
+// One of a few, after a word.
+template <typename Chosen, std::size_t kCount>
+void choose(PanelWidgets& widgets, const char* words, const std::array<const char*, kCount>& names, Chosen& chosen, float end_x = 1.0f) {
+    writeBefore(words, kTargetPx);
+    if (const auto pressed = widgets.row(names, static_cast<std::size_t>(chosen), kTargetPx, end_x)) {
+        chosen = static_cast<Chosen>(*pressed);
+    }
+}
+
+void drawMoving(PanelWidgets& widgets, ViewSettings& settings, bool can_pass_through) {
+    choose(widgets, "Left stick", std::array{"Walk", "Teleport"}, settings.teleport);
+    choose(widgets, "Right stick", std::array{"Turn by 30\xc2\xb0", "Turn smoothly"}, settings.smooth_turn);
+    choose(widgets, "Background", std::array{"Default", "Black", "Grey", "White"}, settings.backdrop);
+    const float width = ImGui::GetContentRegionAvail().x;
+    widgets.checkbox("Vignette", &settings.vignette);
+    ImGui::SameLine(0.24f * width);
+    widgets.checkbox("Hands", &settings.hands);
+    ImGui::SameLine(0.43f * width);
+    widgets.checkbox("Two-handed tilt", &settings.tilt);
+    if (!can_pass_through) { return; }
+    ImGui::SameLine(0.74f * width);
+    widgets.checkbox("Passthrough", &settings.passthrough);
+}
+
+// The headset's; nothing where it cannot be asked for any.
+void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<double>& rates_hz) {
+    if (rates_hz.empty()) { return; }
+    const std::size_t shown = std::min(rates_hz.size(), kMostRates);
+    std::vector<std::string> words{"Automatic"};
+    std::vector<const char*> names;
+    std::optional<std::size_t> chosen;
+    if (settings.refresh_rate == 0.0) { chosen = 0; }
+    for (std::size_t i = 0; i < shown; ++i) {
+        // As people write them: 72 for 71.999. What is shown alike, as 59.94 and 60 are, has a name of its own for ImGui.
+        const std::string hz = fmt::format("{:.0f} Hz", rates_hz[i]);
+        words.push_back(std::ranges::find(words, hz) == words.end() ? hz : fmt::format("{}##{}", hz, i));
+        if (std::abs(settings.refresh_rate - rates_hz[i]) < 0.5) { chosen = i + 1; }
+    }
+    for (const std::string& word : words) { names.push_back(word.c_str()); }
+    if (const auto pressed = widgets.row(names, chosen, kTargetPx)) {
+        settings.refresh_rate = *pressed == 0 ? 0.0 : rates_hz[*pressed - 1];
+    }
+}
+
+}  // namespace
+
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
+    drawQualityRow(widgets, settings, status.rate);
+    drawPlace(widgets, status.place, actions);
+    drawMoving(widgets, settings, status.can_pass_through);
+    static constexpr std::array kKept{"Picture", "Save", "Load"};
+    if (const auto pressed = widgets.row(kKept, {}, kTargetPx)) {
+        (*pressed == 0 ? actions.take_picture : *pressed == 1 ? actions.save : actions.load) = true;
+    }
+    drawRates(widgets, settings, status.refresh_rates);
+    drawSaid(status);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,103 @@
+// A line of nine numbers for each that was kept: eye, look, up.
+#include "app/view/scenes/viewpoints.h"
+
+#include "app/options/start_view.h"
+#include "app/view/view_files.h"
+#include "engine/error.h"
+#include "engine/setup/output_files.h"
+#include "engine/setup/text_file.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostKept = 1000;
+
+fs::path keptFile(const std::string& source) {
+    const fs::path settings = viewSettingsFile(source);
+    return settings.parent_path() / (settings.stem().stem().string() + ".viewpoints.txt");
+}
+
+bool isView(const View& view) {
+    const glm::dvec3 ahead = view.look - view.eye;
+    const double length = glm::length(ahead) * glm::length(view.up);
+    return std::isfinite(length) && length > 0.0 && glm::length(glm::cross(ahead, view.up)) > 1e-6 * length;
+}
+
+}  // namespace
+
+std::vector<View> keptViews(const std::string& source) {
+    std::vector<View> kept;
+    try {
+        const fs::path file = keptFile(source);
+        std::error_code ignored;
+        if (!fs::exists(file, ignored)) { return kept; }
+        std::istringstream lines(readTextFile(file, "a list of viewpoints"));
+        for (std::string line; std::getline(lines, line) && kept.size() < kMostKept;) {
+            std::istringstream numbers(line);
+            View view{};
+            for (glm::dvec3* const point : {&view.eye, &view.look, &view.up}) { numbers >> point->x >> point->y >> point->z; }
+            if (numbers && isView(view)) { kept.push_back(view); }
+        }
+    } catch (const Error&) {}  // begun anew by the next one
+    return kept;
+}
+
+Viewpoint ownViewpoint(std::size_t number, const View& view) { return {fmt::format("your own {}", number), view}; }
+
+std::vector<Viewpoint> findViewpoints(const std::string& source, const fs::path& camera_file) {
+    std::vector<FileCamera> cameras;
+    try {
+        cameras = camera_file.empty() ? readSceneCameras(source).cameras : readCameraFile(camera_file);
+    } catch (const Error&) {}  // it was read before, and is gone
+    const std::optional<glm::dvec3> up = upOfCameras(cameras);
+    std::vector<Viewpoint> viewpoints;
+    for (const FileCamera& camera : cameras) {
+        const Pose& pose = camera.eye.world_from_camera;
+        const glm::dvec3 ahead = pose.orientation * glm::dvec3(0.0, 0.0, 1.0), own_up = pose.orientation * glm::dvec3(0.0, -1.0, 0.0);
+        View view{pose.position, pose.position + ahead, up.value_or(own_up), 60.0};
+        if (!isView(view)) { view.up = own_up; }
+        viewpoints.push_back({camera.name, view});
+    }
+    std::size_t number = 0;
+    for (const View& view : keptViews(source)) { viewpoints.push_back(ownViewpoint(++number, view)); }
+    return viewpoints;
+}
+
+void keepViewpoint(const std::string& source, const View& view) {
+    std::vector<View> kept = keptViews(source);
+    check(kept.size() < kMostKept, "{}: {} viewpoints are kept, which is the most", source, kMostKept);
+    kept.push_back(view);
+    std::string text;
+    for (const auto& [eye, look, up, fov] : kept) {
+        text += fmt::format("{} {} {}  {} {} {}  {} {} {}\n", eye.x, eye.y, eye.z, look.x, look.y, look.z, up.x, up.y, up.z);
+    }
+    const fs::path file = keptFile(source);
+    OutputFiles files(file.parent_path());
+    writeText(files.staging() / file.filename(), text);
+    files.publish();
+}
+
+Similarity placedAt(const View& view, const Similarity& scene_from_room, const Pose& room_from_head) {
+    // Upright, looking that way, and turned back by where the head looks in the room.
+    const glm::dvec3 up = glm::normalize(view.up), ahead = view.look - view.eye, level = ahead - glm::dot(ahead, up) * up;
+    const Pose upright = lookAt(glm::dvec3(0.0), glm::length(level) > 1e-9 * glm::length(ahead) ? level : ahead, up);
+    const glm::dvec3 looks = levelled(room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
+    const glm::dquat head_turn = lookAt(glm::dvec3(0.0), looks, {0.0, -1.0, 0.0}).orientation;
+    Similarity placed{glm::normalize(upright.orientation * glm::conjugate(head_turn)), glm::dvec3(0.0), scene_from_room.scale};
+    placed.position = view.eye - transform(placed, room_from_head.position);
+    return placed;
+}
+
+View viewOf(const Similarity& scene_from_room, const Pose& room_from_head) {
+    const Pose eye = transform(scene_from_room, room_from_head);
+    return {eye.position, eye.position + scene_from_room.scale * (eye.orientation * glm::dvec3(0.0, 0.0, 1.0)),
+            scene_from_room.orientation * glm::dvec3(0.0, -1.0, 0.0), 60.0};
+}
+
+}  // namespace binosplat

@@ -1,0 +1,115 @@
+// Where the wearer stands in the scene, and what the viewer keeps of that.
+#include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/seen_scenes.h"
+#include "app/view/scenes/viewpoints.h"
+#include "app/view/viewer.h"
+#include "engine/error.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+// Where neither the scene nor the runtime knows a floor: below the eyes of somebody who stands.
+constexpr double kUsualEyesMetres = 1.6;
+// A scene that was seen for less than a third of a second was only passed by.
+constexpr std::uint64_t kLeastFramesSeen = 30;
+
+}  // namespace
+
+ShownPlace Viewer::shownPlace() const {
+    const LoadedScene& scene = *scenes_.get();
+    const Similarity& placement = scenes_.scene_from_room;
+    ShownPlace place;
+    place.size_m = scene.facts.size_units / placement.scale;
+    place.growth = 1.0 / (options_.run.metres_per_unit * placement.scale);
+    const double eyes = glm::dot(scene.up, transform(placement, room_from_head_.position));
+    place.has_floor = scene.floor.has_value();
+    place.eyes_m = (eyes - scene.floor.value_or(glm::dot(scene.up, scene.start.position))) / placement.scale;
+    place.view = viewpoint_;
+    return place;
+}
+
+void Viewer::obeyPlace(const OverlayActions& actions) {
+    LoadedScene& scene = *scenes_.get();
+    Similarity& placement = scenes_.scene_from_room;
+    if (actions.reset_scene) { placement = scene.start; }
+    if (actions.level_scene) { placement = levelledAlong(placement, scene.up, room_from_head_.position); }
+    const double growth = actions.natural_size ? options_.run.metres_per_unit * placement.scale : actions.growth;
+    if (growth != 1.0) {
+        // About the feet, so that one stands on the same floor.
+        const ShownPlace place = shownPlace();
+        glm::dvec3 feet = room_from_head_.position;
+        feet.y += place.has_floor && place.eyes_m > 0.0 ? place.eyes_m : kUsualEyesMetres;
+        placement = grownBy(placement, growth, feet);
+    }
+    if (actions.rise_m != 0.0) { placement = movedBy(placement, {0.0, -actions.rise_m, 0.0}); }
+    if (actions.viewpoint_step != 0) { goToViewpoint(actions.viewpoint_step); }
+    if (actions.keep_viewpoint) { keepViewpointHere(); }
+}
+
+void Viewer::goToViewpoint(int step) {
+    const LoadedScene* scene = scenes_.get();
+    if (scene == nullptr) { return; }
+    if (scene->viewpoints.empty()) {
+        say("this scene has no viewpoints: keep one on the page Scenes, or put a cameras.json beside it");
+        return;
+    }
+    const auto count = static_cast<std::ptrdiff_t>(scene->viewpoints.size());
+    const std::ptrdiff_t before = viewpoint_ ? static_cast<std::ptrdiff_t>(*viewpoint_) : step > 0 ? -1 : 0;
+    viewpoint_ = static_cast<std::size_t>(((before + step) % count + count) % count);
+    const Viewpoint& there = scene->viewpoints[*viewpoint_];
+    scenes_.scene_from_room = placedAt(there.view, scenes_.scene_from_room, room_from_head_);
+    controls_.letGo();
+    log_.say(fmt::format("viewpoint {} of {}: {}", *viewpoint_ + 1, count, there.name));
+}
+
+void Viewer::keepViewpointHere() {
+    LoadedScene& scene = *scenes_.get();
+    const View view = viewOf(scenes_.scene_from_room, room_from_head_);
+    std::size_t number = 1;
+    for (const Viewpoint& viewpoint : scene.viewpoints) { number += viewpoint.name.starts_with("your own "); }
+    scene.viewpoints.push_back(ownViewpoint(number, view));
+    viewpoint_ = scene.viewpoints.size() - 1;
+    files_.write("keeping a viewpoint", [this, source = scene.name, view]() -> FileWorker::Done {
+        std::string outcome = "this viewpoint is kept";
+        try {
+            keepViewpoint(source, view);
+        } catch (const Error& error) { outcome = error.what(); }
+        return [this, outcome] { say(outcome); };
+    });
+}
+
+void Viewer::goBackToLastScene() {
+    files_.read("the scene shown last", [this, now = scenes_.get()->place]() -> FileWorker::Done {
+        const std::vector<std::string> recent = recentScenes();
+        const auto last = std::ranges::find_if(recent, [&](const std::string& scene) { return placeOf(scene) != now; });
+        const std::string scene = last == recent.end() ? "" : *last;
+        return [this, scene] {
+            if (scene.empty()) { return say("no other scene was shown yet"); }
+            scenes_.begin(scene);
+        };
+    });
+}
+
+void Viewer::keepPictureOfScene() {
+    LoadedScene* scene = scenes_.get();
+    if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
+    try {
+        {
+            const std::lock_guard lock(context_.queueMutex());
+            context_.queue().waitIdle();
+        }
+        Image view = scene->frame.readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant));
+        files_.write("keeping a picture of the scene",
+                     [name = scene->name, about = describeBriefly(scene->facts), view = std::move(view)]() -> FileWorker::Done {
+                         keepSeenScene(name, makeScenePicture(view), about);
+                         return {};
+                     });
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError&) {
+        // One is not worth a word.
+    } catch (const Error&) {}
+}
+
+}  // namespace binosplat
