@@ -238,6 +238,29 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.click("Keep this one").keep_viewpoint);
 }
 
+TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters stay there") {
+    PanelSketch sketch;
+    ScenePicture picture{"red", {}};
+    for (std::size_t i = 0; i < std::size_t{kScenePicturePx.x} * kScenePicturePx.y; ++i) {
+        picture.rgba.insert(picture.rgba.end(), {200, 10, 20, 255});
+    }
+    CHECK(sketch.bringLetters("", {picture}));
+    CHECK_FALSE(sketch.bringLetters("", {picture}));
+    REQUIRE(sketch.font->pictures().contains("red"));
+    const PictureCorners& corners = sketch.font->pictures().at("red");
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    CHECK(std::lround((corners.high.x - corners.low.x) * static_cast<float>(width)) == kScenePicturePx.x);
+    CHECK(std::lround((corners.high.y - corners.low.y) * static_cast<float>(height)) == kScenePicturePx.y);
+    const auto x = static_cast<std::size_t>(0.5f * (corners.low.x + corners.high.x) * static_cast<float>(width)),
+               y = static_cast<std::size_t>(0.5f * (corners.low.y + corners.high.y) * static_cast<float>(height));
+    const unsigned char* const middle = pixels + 4 * (y * static_cast<std::size_t>(width) + x);
+    CHECK(std::array{middle[0], middle[1], middle[2], middle[3]} == std::array<unsigned char, 4>{200, 10, 20, 255});
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
+    sketch.draw();
+}
+
 TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {
     PanelSketch sketch;
     const auto held = [&](const char* name) {

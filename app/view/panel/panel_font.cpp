@@ -55,9 +55,9 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 }
 
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
-// `add_pictures` adds what else belongs there.
+// `add_pictures` asks for room for what else belongs there, `draw_pictures` draws it.
 bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const std::set<ImWchar>& added,
-                const std::function<void(ImFontAtlas&)>& add_pictures = {}) {
+                const std::function<void(ImFontAtlas&)>& add_pictures = {}, const std::function<void(ImFontAtlas&)>& draw_pictures = {}) {
     atlas.Clear();
     if (add_pictures) { add_pictures(atlas); }
     std::vector<ImWchar> ranges;
@@ -74,7 +74,8 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const st
         atlas.Clear();
         return false;
     }
-    // The fonts' bytes are not asked for again.
+    if (draw_pictures) { draw_pictures(atlas); }
+    // The fonts' bytes are not asked for again, nor where what else is there lies.
     atlas.ClearInputData();
     atlas.Fonts[0]->FallbackChar = kBox;
     atlas.Fonts[0]->BuildLookupTable();
@@ -185,23 +186,25 @@ void PanelFont::build() {
                                &picture);
         }
     };
-    built_places_.clear();
-    if (!buildAtlas(*built_, fonts_, added_, add_pictures) && !buildAtlas(*built_, std::span(fonts_).first(1), {}, add_pictures)) {
-        built_.reset();
-        return;
-    }
-    // The letters' own texture, with colours.
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    built_->GetTexDataAsRGBA32(&pixels, &width, &height);
-    for (const auto& [id, picture] : rects) {
-        const ImFontAtlasCustomRect& rect = *built_->GetCustomRectByIndex(id);
-        for (std::size_t y = 0; y < kScenePicturePx.y; ++y) {
-            const auto row = picture->rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * kScenePicturePx.x);
-            std::copy_n(row, 4 * kScenePicturePx.x, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
+    const auto draw_pictures = [&](ImFontAtlas& atlas) {
+        // The letters' own texture, with colours.
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
+        for (const auto& [id, picture] : rects) {
+            const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(id);
+            for (std::size_t y = 0; y < kScenePicturePx.y; ++y) {
+                const auto row = picture->rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * kScenePicturePx.x);
+                std::copy_n(row, 4 * kScenePicturePx.x, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
+            }
+            PictureCorners& corners = built_places_[picture->key];
+            atlas.CalcCustomRectUV(&rect, &corners.low, &corners.high);
         }
-        PictureCorners& corners = built_places_[picture->key];
-        built_->CalcCustomRectUV(&rect, &corners.low, &corners.high);
+    };
+    built_places_.clear();
+    if (!buildAtlas(*built_, fonts_, added_, add_pictures, draw_pictures) &&
+        !buildAtlas(*built_, std::span(fonts_).first(1), {}, add_pictures, draw_pictures)) {
+        built_.reset();
     }
 }
 
