@@ -8,7 +8,7 @@ packages=(
     glslang-tools spirv-tools
     libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
     libtinygltf-dev libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev
-    libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libglfw3-dev fonts-dejavu-core
+    libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libfontconfig-dev libglfw3-dev fonts-dejavu-core
     fonts-droid-fallback
     doctest-dev python3 xvfb xdotool
     dpkg-dev file

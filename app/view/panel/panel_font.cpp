@@ -56,18 +56,19 @@ std::string readFont(const fs::path& file, std::string& complaint) {
 
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
 // `add_pictures` asks for room for what else belongs there, `draw_pictures` draws it.
-bool buildAtlas(ImFontAtlas& atlas, std::span<const std::string> fonts, const std::set<ImWchar>& added,
+bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std::set<ImWchar>& added,
                 const std::function<void(ImFontAtlas&)>& add_pictures = {}, const std::function<void(ImFontAtlas&)>& draw_pictures = {}) {
     atlas.Clear();
     if (add_pictures) { add_pictures(atlas); }
     std::vector<ImWchar> ranges;
     for (const ImWchar letter : added) { ranges.insert(ranges.end(), {letter, letter}); }
     ranges.insert(ranges.end(), kRanges.begin(), kRanges.end());
-    for (const std::string& bytes : fonts) {
+    for (const auto& [font, bytes] : fonts) {
         ImFontConfig config;
         config.FontDataOwnedByAtlas = false;
         config.OversampleH = 2;  // a headset's pixels do not lie on the font's
-        config.MergeMode = &bytes != &fonts.front();
+        config.MergeMode = &bytes != &fonts.front().bytes;
+        config.FontNo = font.number;
         atlas.AddFontFromMemoryTTF(const_cast<char*>(bytes.data()), static_cast<int>(bytes.size()), kFontPx, &config, ranges.data());
     }
     if (!atlas.Build()) {
@@ -132,8 +133,8 @@ bool looksLikeFont(std::span<const unsigned char> bytes) {
 
 PanelFont::PanelFont() {
     for (const fs::path& file : fontFiles()) {
-        fonts_ = {readFont(file, complaint_)};
-        if (!fonts_[0].empty() && buildAtlas(*ImGui::GetIO().Fonts, fonts_, {})) {
+        fonts_ = {{{file}, readFont(file, complaint_)}};
+        if (!fonts_[0].bytes.empty() && buildAtlas(*ImGui::GetIO().Fonts, fonts_, {})) {
             complaint_.clear();
             return;
         }
@@ -170,11 +171,15 @@ bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pic
 
 void PanelFont::build() {
     // They are large, and only now needed.
-    if (fonts_.size() == 1) {
-        for (const fs::path& file : furtherFontFiles()) {
-            std::string complaint, bytes = readFont(file, complaint);
-            if (!bytes.empty()) { fonts_.push_back(std::move(bytes)); }
-        }
+    std::vector<SystemFont> wanted = fontsWith({added_.begin(), added_.end()});
+    if (wanted.empty() && fonts_.size() == 1) {
+        for (const fs::path& file : furtherFontFiles()) { wanted.push_back({file}); }
+    }
+    for (const SystemFont& font : wanted) {
+        const bool is_there = std::ranges::any_of(
+            fonts_, [&](const LoadedFont& loaded) { return loaded.font.file == font.file && loaded.font.number == font.number; });
+        std::string complaint, bytes = is_there ? "" : readFont(font.file, complaint);
+        if (!bytes.empty()) { fonts_.push_back({font, std::move(bytes)}); }
     }
     // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened: nothing else is shared.
     built_.reset(IM_NEW(ImFontAtlas)());

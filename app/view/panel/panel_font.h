@@ -1,6 +1,7 @@
 // The letters of the panel.
 #pragma once
 
+#include "app/view/panel/system_fonts.h"
 #include "app/view/scenes/seen_scenes.h"
 
 #include <imgui.h>
@@ -22,7 +23,8 @@ inline constexpr float kFontPx = 24.0f;
 
 // Where the font may lie, the best place first: BINOSPLAT_FONT alone if it is set, else where systems keep DejaVu Sans.
 std::vector<std::filesystem::path> fontFiles();
-// Where systems keep DejaVu Sans and fonts of Chinese, Japanese and Korean, for letters that the font lacks.
+// For letters that the font lacks where the system does not tell which fonts have them (system_fonts.h): where systems keep DejaVu Sans and
+// fonts of Chinese, Japanese and Korean.
 std::vector<std::filesystem::path> furtherFontFiles();
 
 // Whether the tables that a TrueType or OpenType font says it has, and those that are needed, lie within these bytes; of a collection, its
@@ -33,6 +35,11 @@ struct FontAtlasDeleter {
     void operator()(ImFontAtlas* atlas) const { IM_DELETE(atlas); }
 };
 using FontAtlas = std::unique_ptr<ImFontAtlas, FontAtlasDeleter>;
+
+struct LoadedFont {
+    SystemFont font;
+    std::string bytes;
+};
 
 // Where a picture lies in the font's texture.
 struct PictureCorners {
@@ -60,7 +67,7 @@ public:
     [[nodiscard]] const PicturePlaces& pictures() const { return places_; }
 
 private:
-    std::vector<std::string> fonts_;  // their bytes, the chosen one first, the further ones once a letter is not in it; none: ImGui's own
+    std::vector<LoadedFont> fonts_;  // the chosen one first, the system's once a letter is not in it; none: ImGui's own
     std::string complaint_;
     std::set<ImWchar> added_;  // beyond those of the beginning, whether a font has them or not
     std::map<std::string, ScenePicture> pictures_;

@@ -1,0 +1,64 @@
+// By fontconfig.
+#include "app/view/panel/system_fonts.h"
+
+#include <fontconfig/fontconfig.h>
+
+#include <memory>
+
+namespace binosplat {
+
+namespace {
+
+template <auto kDestroy>
+struct Destroyer {
+    template <typename Owned>
+    void operator()(Owned* owned) const {
+        kDestroy(owned);
+    }
+};
+using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPatternDestroy>>;
+using FontSet = std::unique_ptr<FcFontSet, Destroyer<FcFontSetDestroy>>;
+using CharSet = std::unique_ptr<FcCharSet, Destroyer<FcCharSetDestroy>>;
+using Config = std::unique_ptr<FcConfig, Destroyer<FcConfigDestroy>>;
+
+bool isTrue(FcPattern* font, const char* property) {
+    FcBool value = FcFalse;
+    return FcPatternGetBool(font, property, 0, &value) == FcResultMatch && value == FcTrue;
+}
+
+// ImGui's reader of fonts knows outlines of one shape and one colour.
+bool isReadable(FcPattern* font) { return isTrue(font, FC_OUTLINE) && !isTrue(font, FC_COLOR) && !isTrue(font, FC_VARIABLE); }
+
+}  // namespace
+
+std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>& letters) {
+    std::vector<SystemFont> fonts;
+    const Config config(FcInitLoadConfigAndFonts());
+    const CharSet wanted(FcCharSetCreate());
+    const Pattern pattern(FcPatternCreate());
+    if (!config || !wanted || !pattern) { return fonts; }
+    for (const std::uint32_t letter : letters) { FcCharSetAddChar(wanted.get(), letter); }
+    FcPatternAddString(pattern.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans-serif"));
+    FcPatternAddCharSet(pattern.get(), FC_CHARSET, wanted.get());
+    FcConfigSubstitute(config.get(), pattern.get(), FcMatchPattern);
+    FcDefaultSubstitute(pattern.get());
+    FcResult result = FcResultMatch;
+    const FontSet sorted(FcFontSort(config.get(), pattern.get(), FcFalse, nullptr, &result));
+    std::set<std::uint32_t> left = letters;
+    for (int i = 0; sorted && i < sorted->nfont && !left.empty(); ++i) {
+        FcPattern* const font = sorted->fonts[i];
+        FcChar8* file = nullptr;
+        FcCharSet* has = nullptr;
+        int number = 0;
+        if (!isReadable(font) || FcPatternGetString(font, FC_FILE, 0, &file) != FcResultMatch ||
+            FcPatternGetCharSet(font, FC_CHARSET, 0, &has) != FcResultMatch) {
+            continue;
+        }
+        static_cast<void>(FcPatternGetInteger(font, FC_INDEX, 0, &number));
+        if (std::erase_if(left, [&](std::uint32_t letter) { return FcCharSetHasChar(has, letter) == FcTrue; }) == 0) { continue; }
+        fonts.push_back({reinterpret_cast<const char*>(file), number & 0xffff});
+    }
+    return fonts;
+}
+
+}  // namespace binosplat
