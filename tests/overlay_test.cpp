@@ -114,6 +114,14 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     }
 }
 
+TEST_CASE("the system says which fonts have a letter, and for no letter it says none") {
+    CHECK(fontsWith({}).empty());
+    CHECK(fontsWith({0xe000}).size() <= 1);  // a private letter
+    const std::vector<SystemFont> fonts = fontsWith({0x5d0, 'A'});
+    REQUIRE_FALSE(fonts.empty());
+    for (const SystemFont& font : fonts) { CHECK(fs::exists(font.file)); }
+}
+
 TEST_CASE("Hebrew and Arabic are read from right to left, and Arabic letters are joined") {
     CHECK(asShown("plain \xc3\xa9 \xd0\x96.ply") == "plain \xc3\xa9 \xd0\x96.ply");
     // Alef, bet, gimel within a path: gimel stands first, the path keeps its order.

@@ -198,6 +198,28 @@ TEST_CASE("a scene that two hands tilted is levelled again") {
     CHECK(tiltAfter("levelled", clickAt(panel, placeOf("Level"), 0.5) + clickAt(panel, placeOf("Save"), 0.7)) < 1e-6);
 }
 
+TEST_CASE("one goes from viewpoint to viewpoint by the panel and by the sticks, and back to them when they are kept") {
+    const Workplace work;
+    REQUIRE(work.run("scene one-splat --out a.ply").exit_code == 0);
+    const std::string camera = R"("width": 8, "height": 8, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fx": 8, "fy": 8)";
+    std::ofstream(work.path / "cameras.json") << R"([{"img_name": "door", "position": [0, 0, 0], )" << camera
+                                              << R"(}, {"img_name": "window", "position": [0.5, 0, 0], )" << camera << "}]";
+    const Panel panel = startPanel(work);
+    std::ofstream(work.path / "scenes.toml") << "[view]\npanel-page = \"scenes\"\n";
+    const std::string script = kSmall + clickAt(panel, placeOf("Next viewpoint", false, PanelPage::kScenes), 0.2) +
+                               "press right thumbstick 0.5 0.55\npress left thumbstick 0.7 0.75\n" +
+                               clickAt(panel, placeOf("Keep this one", false, PanelPage::kScenes), 0.9) + "at 1.3 exit\n";
+    const ViewRun run = runView(work, "viewpoints", script, "a.ply --load-first --mode mono --hide-hands --config scenes.toml");
+    checkClean(run);
+    std::size_t from = 0;
+    for (const char* said : {"viewpoint 1 of 2: door", "viewpoint 2 of 2: window", "viewpoint 1 of 2: door", "this viewpoint is kept"}) {
+        INFO(said << " in " << run.outcome.output);
+        from = run.outcome.output.find(said, from);
+        REQUIRE(from != std::string::npos);
+        ++from;
+    }
+}
+
 TEST_CASE("a trained scene is levelled by the up of its cameras, or else of its floor") {
     const Workplace work;
     // The room of the atelier lies with its floor some 30 degrees aside in the file.

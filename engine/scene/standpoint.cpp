@@ -353,6 +353,17 @@ Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish) {
     return outside;
 }
 
+double coreSize(const Scene& scene) {
+    const std::vector<SplatSample> core = coreOf(sampleSplats(scene, kMostSamples));
+    double size = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> values;
+        for (const SplatSample& sample : core) { values.push_back(sample.centre[axis]); }
+        size = std::max(size, rangeOf(std::move(values), 0.05).length());
+    }
+    return size;
+}
+
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up) {
     const std::optional<FloorPlane> floor = findFloorPlane(coreOf(sampleSplats(scene, kMostForRoom)), up);
     if (!floor || floor->is_ceiling || glm::dot(floor->up, up) < 0.98) { return std::nullopt; }

@@ -26,6 +26,9 @@ struct Standpoint {
 // glTF.
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
 
+// The longest side, along the axes, of the box with nine tenths of what one stands in or before: hills and sky beyond it do not count.
+double coreSize(const Scene& scene);
+
 // How high the floor lies along `up`, a unit vector, if there is one: dot(up, p) of its points.
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);
 

@@ -3,10 +3,10 @@
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/procedural.h"
+#include "engine/scene/standpoint.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 namespace binosplat {
@@ -40,19 +40,6 @@ std::string inThousands(std::uint64_t count) {
     return grouped;
 }
 
-// The longest side of the box with nine tenths of the splats along each axis, seen through at most 2^16 of them.
-double commonSize(const Scene& scene) {
-    double size = 0.0;
-    const std::size_t step = scene.size() / 65536 + 1;
-    for (int axis = 0; axis < 3 && scene.size() > 0; ++axis) {
-        std::vector<float> values;
-        for (std::size_t i = 0; i < scene.size(); i += step) { values.push_back(scene.positions[i][axis]); }
-        std::ranges::sort(values);
-        size = std::max(size, static_cast<double>(values[values.size() - 1 - values.size() / 20] - values[values.size() / 20]));
-    }
-    return size;
-}
-
 std::string kindOf(const Scene& scene, const LoadNotes& notes) {
     if (!notes.three_scales) { return "2D Gaussians (discs)"; }
     if (!scene.isGaussian3d()) { return "3D Gaussians, drawn as discs"; }
@@ -80,7 +67,7 @@ SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string
     facts.sh_degree_in_file = notes.sh_degree_in_file;
     facts.device_bytes = scene.size() * deviceBytesPerSplat(scene.sh_degree, scene.isGaussian3d());
     if (!isBuiltin(source)) { facts.file_bytes = bytesOnDisk(source); }
-    facts.size_units = commonSize(scene);
+    facts.size_units = coreSize(scene);
     return facts;
 }
 

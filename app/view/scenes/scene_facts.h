@@ -15,7 +15,7 @@ struct SceneFacts {
     std::string kind;                        // what is drawn, and what it was made of
     int sh_degree = 0, sh_degree_in_file = 0;
     std::uint64_t device_bytes = 0;
-    double size_units = 0.0;       // the longest side of what nine tenths of the splats lie in, in scene units
+    double size_units = 0.0;       // see coreSize
     std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program
 };
 
