@@ -93,16 +93,16 @@ Layer blended(QuadLayer layer, bool unpremultiplied) {
 
 }  // namespace
 
-TEST_CASE("nothingSubmittedIsBlack") { CHECK(compose(eyeOf({3, 2}), {}) == RgbPicture{{3, 2}, std::vector<std::uint8_t>(18, 0)}); }
+TEST_CASE("nothing submitted is black") { CHECK(compose(eyeOf({3, 2}), {}) == RgbPicture{{3, 2}, std::vector<std::uint8_t>(18, 0)}); }
 
-TEST_CASE("everySrgbByteComesBack") {
+TEST_CASE("every sRGB byte comes back") {
     for (int byte = 0; byte < 256; ++byte) { CHECK(encoded(decoded(byte)) == byte); }
     CHECK(decodeSrgb(0.5) == doctest::Approx(0.21404114));
     CHECK(encodeSrgb(0.21404114) == doctest::Approx(0.5));
     CHECK(decodeSrgb(0.04) == doctest::Approx(0.04 / 12.92));
 }
 
-TEST_CASE("aProjectionOfTheEyesOwnViewComesThroughByteForByte") {
+TEST_CASE("a projection of the eye's own view comes through byte for byte") {
     const Canvas canvas = noise({64, 48});
     const EyeView eye{{64, 48}, {glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3))), {1, 2, 3}}, {-0.9, 0.6, 0.7, -0.8}};
     const RgbPicture seen = compose(eye, {projection(canvas, eye)});
@@ -113,7 +113,7 @@ TEST_CASE("aProjectionOfTheEyesOwnViewComesThroughByteForByte") {
     }
 }
 
-TEST_CASE("posesThatWentThroughSinglePrecisionStillGiveTheSameBytes") {
+TEST_CASE("poses that went through single precision still give the same bytes") {
     const Canvas canvas = noise({64, 64});
     const EyeView eye{{64, 64}, {glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3))), {1, 2, 3}}, {-0.9, 0.6, 0.7, -0.8}};
     EyeView submitted = eye;
@@ -122,7 +122,7 @@ TEST_CASE("posesThatWentThroughSinglePrecisionStillGiveTheSameBytes") {
     CHECK(compose(eye, {projection(canvas, submitted)}) == compose(eye, {projection(canvas, eye)}));
 }
 
-TEST_CASE("eachEyeSeesItsOwnView") {
+TEST_CASE("each eye sees its own view") {
     const EyeView eye = eyeOf({2, 2});
     const Canvas red({2, 2}, {255, 0, 0, 255}), green({2, 2}, {0, 255, 0, 255});
     ProjectionLayer layer = projection(red, eye);
@@ -131,7 +131,7 @@ TEST_CASE("eachEyeSeesItsOwnView") {
     CHECK(at(compose(eye, {layer}, kRight), 0, 0) == Rgb{0, 255, 0});
 }
 
-TEST_CASE("aRectangleOfThePictureIsAllThatIsSeen") {
+TEST_CASE("a rectangle of the picture is all that is seen") {
     Canvas canvas = noise({8, 8});
     const EyeView eye = eyeOf({4, 3});
     ProjectionLayer layer = projection(canvas, eye);
@@ -142,7 +142,7 @@ TEST_CASE("aRectangleOfThePictureIsAllThatIsSeen") {
     }
 }
 
-TEST_CASE("bilinearSamplingStaysInsideTheRectangle") {
+TEST_CASE("bilinear sampling stays inside the rectangle") {
     // The rectangle is white, all around it black: twice enlarged, no black bleeds in.
     Canvas canvas({8, 8}, {0, 0, 0, 255});
     for (std::uint32_t y = 2; y < 6; ++y) {
@@ -154,7 +154,7 @@ TEST_CASE("bilinearSamplingStaysInsideTheRectangle") {
     for (const std::uint8_t byte : compose(eye, {layer}).bytes) { CHECK(byte == 255); }
 }
 
-TEST_CASE("samplingBetweenTexelsMixesLight") {
+TEST_CASE("sampling between texels mixes light") {
     // A black and a white texel side by side, seen by four pixels: centres at 1/8, 3/8, 5/8 and 7/8, so 0, 1/4, 3/4 and 1 of the way.
     Canvas canvas({2, 1}, {0, 0, 0, 255});
     canvas.set(1, 0, {255, 255, 255, 255});
@@ -165,7 +165,7 @@ TEST_CASE("samplingBetweenTexelsMixesLight") {
     CHECK(at(seen, 3, 0)[0] == 255);
 }
 
-TEST_CASE("linearPicturesAreEncoded") {
+TEST_CASE("linear pictures are encoded") {
     Canvas canvas({2, 2}, {51, 128, 255, 255});
     canvas.transfer = Transfer::kLinear;
     const EyeView eye = eyeOf({2, 2});
@@ -173,14 +173,14 @@ TEST_CASE("linearPicturesAreEncoded") {
     CHECK(encoded(0.2) == 124);  // 0.2 is 0.4845 encoded
 }
 
-TEST_CASE("bgrPicturesSwapTheirChannels") {
+TEST_CASE("BGR pictures swap their channels") {
     Canvas canvas({2, 2}, {10, 20, 30, 255});
     canvas.texels = Texels::kBgra8;
     const EyeView eye = eyeOf({2, 2});
     CHECK(at(compose(eye, {projection(canvas, eye)}), 1, 1) == Rgb{30, 20, 10});
 }
 
-TEST_CASE("halvesBeyondWhiteAreWhiteAndNanIsBlack") {
+TEST_CASE("halves beyond white are white and NaN is black") {
     const EyeView eye = eyeOf({2, 2});
     const Canvas canvas = halves({2, 2}, {0.5f, 7.0f, -1.0f, 1.0f});
     CHECK(at(compose(eye, {projection(canvas, eye)}), 0, 0) == Rgb{188, 255, 0});  // half the light is 188
@@ -188,7 +188,7 @@ TEST_CASE("halvesBeyondWhiteAreWhiteAndNanIsBlack") {
     CHECK(at(compose(eye, {projection(nan, eye)}), 0, 0) == Rgb{0, 255, 0});
 }
 
-TEST_CASE("turningTheViewMovesThePictureByThePredictedPixels") {
+TEST_CASE("turning the view moves the picture by the predicted pixels") {
     // 64 pixels between tangents -1 and 1. The application's view was turned to the left by atan(1/8): a texel at tangent t appears at
     // (t - 1/8) / (1 + t/8) = -1/8 for t = 0, four pixels to the left of the middle. Columns 31 and 32 are white, their common edge is t =
     // 0.
@@ -212,7 +212,7 @@ TEST_CASE("turningTheViewMovesThePictureByThePredictedPixels") {
     CHECK(at(edge, 0, 32)[0] == 255);
 }
 
-TEST_CASE("lookingUpMovesThePictureDown") {
+TEST_CASE("looking up moves the picture down") {
     Canvas canvas({64, 64}, {0, 0, 0, 255});
     for (std::uint32_t x = 0; x < 64; ++x) {
         canvas.set(x, 31, {255, 255, 255, 255});
@@ -226,7 +226,7 @@ TEST_CASE("lookingUpMovesThePictureDown") {
     CHECK(at(seen, 32, 31)[0] == 0);
 }
 
-TEST_CASE("theProjectionsPositionDoesNotMoveIt") {
+TEST_CASE("the projection's position does not move it") {
     const Canvas canvas = noise({16, 16});
     const EyeView eye = eyeOf({16, 16});
     EyeView elsewhere = eye;
@@ -234,7 +234,7 @@ TEST_CASE("theProjectionsPositionDoesNotMoveIt") {
     CHECK(compose(eye, {projection(canvas, elsewhere)}) == compose(eye, {projection(canvas, eye)}));
 }
 
-TEST_CASE("aNarrowerViewFillsOnlyItsPartOfTheEye") {
+TEST_CASE("a narrower view fills only its part of the eye") {
     // Tangents -0.5 to 0.5 of -1 to 1: the middle half, pixels 4 to 11 of 16.
     const Canvas white({4, 4}, {255, 255, 255, 255});
     const double half = std::atan(0.5);
@@ -242,7 +242,7 @@ TEST_CASE("aNarrowerViewFillsOnlyItsPartOfTheEye") {
     for (std::uint32_t x = 0; x < 16; ++x) { CHECK(at(seen, x, 8)[0] == (x >= 4 && x < 12 ? 255 : 0)); }
 }
 
-TEST_CASE("viewsUpsideDownAreTurnedOver") {
+TEST_CASE("views upside down are turned over") {
     Canvas canvas({2, 2}, {0, 0, 0, 255});
     canvas.set(0, 0, {255, 0, 0, 255});
     const EyeView eye = eyeOf({2, 2});
@@ -251,7 +251,7 @@ TEST_CASE("viewsUpsideDownAreTurnedOver") {
     CHECK(at(compose(eye, {projection(canvas, flipped)}), 0, 1) == Rgb{255, 0, 0});
 }
 
-TEST_CASE("aQuadCoversThePixelsThatItsCornersSay") {
+TEST_CASE("a quad covers the pixels that its corners say") {
     // 32 pixels between tangents -1 and 1, 16 per unit. A quad 2 m ahead from x = -0.5 to 1.5 and y = 0 to 1 spans tangents -0.25 to 0.75
     // and 0 to 0.5: columns 12 to 27, rows 8 to 15.
     const Canvas white({4, 4}, {255, 255, 255, 255});
@@ -264,7 +264,7 @@ TEST_CASE("aQuadCoversThePixelsThatItsCornersSay") {
     }
 }
 
-TEST_CASE("aQuadShiftsBetweenTheEyesByItsDisparity") {
+TEST_CASE("a quad shifts between the eyes by its disparity") {
     // 100 pixels per unit of tangent; 0.08 m between the eyes at 2 m are 4 pixels: nearer things lie further left for the right eye.
     const Canvas white({4, 4}, {255, 255, 255, 255});
     const Layer layer = quad(white, {0, 0, -2}, {0.4, 0.4});
@@ -280,7 +280,7 @@ TEST_CASE("aQuadShiftsBetweenTheEyesByItsDisparity") {
     CHECK(firstColumn(0.04) == 88);
 }
 
-TEST_CASE("aQuadsTopLeftTexelIsAtItsTopLeft") {
+TEST_CASE("a quad's top left texel is at its top left") {
     Canvas canvas({2, 2}, {0, 0, 0, 255});
     canvas.set(0, 0, {255, 0, 0, 255});
     canvas.set(1, 0, {0, 255, 0, 255});
@@ -291,7 +291,7 @@ TEST_CASE("aQuadsTopLeftTexelIsAtItsTopLeft") {
     CHECK(at(seen, 2, 29) == Rgb{0, 0, 255});
 }
 
-TEST_CASE("quadsAreSeenFromTheirFrontAndAheadOnly") {
+TEST_CASE("quads are seen from their front and ahead only") {
     const Canvas white({4, 4}, {255, 255, 255, 255});
     QuadLayer turned_away = quad(white, {0, 0, -2}, {9, 9});
     turned_away.stage_from_quad.orientation = glm::angleAxis(std::acos(-1.0), glm::dvec3(0, 1, 0));
@@ -301,7 +301,7 @@ TEST_CASE("quadsAreSeenFromTheirFrontAndAheadOnly") {
     CHECK(at(compose(eyeOf({8, 8}), {quad(white, {0, 0, -2}, {9, 9})}), 4, 4)[0] == 255);
 }
 
-TEST_CASE("quadsCanBeForOneEye") {
+TEST_CASE("quads can be for one eye") {
     const Canvas white({4, 4}, {255, 255, 255, 255});
     QuadLayer layer = quad(white, {0, 0, -1}, {9, 9});
     layer.visibility = Visibility::kRight;
@@ -312,7 +312,7 @@ TEST_CASE("quadsCanBeForOneEye") {
     CHECK(at(compose(eyeOf({4, 4}), {layer}, kRight), 2, 2) == kBlack);
 }
 
-TEST_CASE("laterLayersCoverEarlierOnes") {
+TEST_CASE("later layers cover earlier ones") {
     const Canvas red({2, 2}, {255, 0, 0, 0}), blue({2, 2}, {0, 0, 255, 0});
     const Layer near = quad(red, {0, 0, -1}, {9, 9}), far = quad(blue, {0, 0, -2}, {9, 9});
     // Not by depth, and without the flag alpha does not matter.
@@ -320,25 +320,25 @@ TEST_CASE("laterLayersCoverEarlierOnes") {
     CHECK(at(compose(eyeOf({2, 2}), {far, near}), 0, 0) == Rgb{255, 0, 0});
 }
 
-TEST_CASE("premultipliedAlphaAddsToWhatShinesThrough") {
+TEST_CASE("premultiplied alpha adds to what shines through") {
     const Canvas below({2, 2}, {200, 100, 0, 255}), above({2, 2}, {64, 0, 32, 102});  // alpha 0.4
     const RgbPicture seen = compose(eyeOf({2, 2}), {quad(below, {0, 0, -2}, {9, 9}), blended(quad(above, {0, 0, -1}, {9, 9}), false)});
     CHECK(at(seen, 0, 0) == Rgb{encoded(decoded(64) + 0.6 * decoded(200)), encoded(0.6 * decoded(100)), encoded(decoded(32))});
 }
 
-TEST_CASE("unpremultipliedAlphaMultipliesFirst") {
+TEST_CASE("unpremultiplied alpha multiplies first") {
     const Canvas below({2, 2}, {200, 100, 0, 255}), above({2, 2}, {64, 0, 32, 102});
     const RgbPicture seen = compose(eyeOf({2, 2}), {quad(below, {0, 0, -2}, {9, 9}), blended(quad(above, {0, 0, -1}, {9, 9}), true)});
     CHECK(at(seen, 0, 0) == Rgb{encoded(0.4 * decoded(64) + 0.6 * decoded(200)), encoded(0.6 * decoded(100)), encoded(0.4 * decoded(32))});
 }
 
-TEST_CASE("halfTransparentWhiteOverBlackIsHalfTheLight") {
+TEST_CASE("half-transparent white over black is half the light") {
     const Canvas white = halves({2, 2}, {1.0f, 1.0f, 1.0f, 0.5f});
     CHECK(at(compose(eyeOf({2, 2}), {blended(quad(white, {0, 0, -1}, {9, 9}), true)}), 0, 0) == Rgb{188, 188, 188});
     CHECK(at(compose(eyeOf({2, 2}), {blended(quad(white, {0, 0, -1}, {9, 9}), false)}), 0, 0) == Rgb{255, 255, 255});
 }
 
-TEST_CASE("rectanglesOutsideThePictureAreRefused") {
+TEST_CASE("rectangles outside the picture are refused") {
     const Canvas canvas({4, 4}, {1, 2, 3, 4});
     QuadLayer layer = quad(canvas, {0, 0, -1}, {1, 1});
     for (const Rect& rect : {Rect{{0, 0}, {5, 4}}, Rect{{4, 0}, {1, 1}}, Rect{{0xffffffffu, 0}, {1, 1}}}) {
@@ -350,7 +350,7 @@ TEST_CASE("rectanglesOutsideThePictureAreRefused") {
     CHECK_THROWS_AS((void)compose(eyeOf({2, 2}), {layer}), std::invalid_argument);
 }
 
-TEST_CASE("emptyRectanglesShowNothing") {
+TEST_CASE("empty rectangles show nothing") {
     const Canvas canvas({4, 4}, {255, 255, 255, 255});
     const EyeView eye = eyeOf({2, 2});
     for (const Rect& rect : {Rect{{0, 0}, {0, 4}}, Rect{{0, 0}, {4, 0}}, Rect{{4, 4}, {0, 0}}}) {
@@ -369,12 +369,12 @@ TEST_CASE("emptyRectanglesShowNothing") {
     }
 }
 
-TEST_CASE("eyesSideBySideKeepTheirPixels") {
+TEST_CASE("eyes side by side keep their pixels") {
     const RgbPicture left{{1, 2}, {1, 2, 3, 4, 5, 6}}, right{{2, 1}, {7, 8, 9, 10, 11, 12}};
     CHECK(sideBySide(left, right) == RgbPicture{{3, 2}, {1, 2, 3, 7, 8, 9, 10, 11, 12, 4, 5, 6, 0, 0, 0, 0, 0, 0}});
 }
 
-TEST_CASE("picturesInFilesComeBackAndTheFilesAreTheSameEveryTime") {
+TEST_CASE("pictures in files come back and the files are the same every time") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("binosplat_compose_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     const EyeView eye = eyeOf({33, 17});
@@ -398,7 +398,7 @@ TEST_CASE("picturesInFilesComeBackAndTheFilesAreTheSameEveryTime") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("aPictureIsNotWrittenThroughALinkOrOverAnUnfinishedOne") {
+TEST_CASE("a picture is not written through a link or over an unfinished one") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("binosplat_planted_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "victim") << "keep me";
@@ -416,7 +416,7 @@ TEST_CASE("aPictureIsNotWrittenThroughALinkOrOverAnUnfinishedOne") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("aCylindersPictureLiesOnItsArcAboutTheMiddle") {
+TEST_CASE("a cylinder's picture lies on its arc about the middle") {
     // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.
     Canvas canvas({2, 1}, {255, 0, 0, 255});
     canvas.set(1, 0, {0, 0, 255, 255});
@@ -445,7 +445,7 @@ TEST_CASE("aCylindersPictureLiesOnItsArcAboutTheMiddle") {
     CHECK(at(compose(eyeOf({200, 200}), {layer}, kRight), 150, 100) == Rgb{0, 0, 255});
 }
 
-TEST_CASE("aSpheresPictureLiesBetweenItsAngles") {
+TEST_CASE("a sphere's picture lies between its angles") {
     Canvas canvas({2, 2}, {255, 0, 0, 255});
     canvas.set(1, 0, {0, 255, 0, 255});
     canvas.set(0, 1, {0, 0, 255, 255});
@@ -476,7 +476,7 @@ TEST_CASE("aSpheresPictureLiesBetweenItsAngles") {
     CHECK(looking(0.0, 0.0) == kBlack);
 }
 
-TEST_CASE("aCubeMapsFacesAreInVulkansOrder") {
+TEST_CASE("a cube map's faces are in Vulkan's order") {
     const std::array<Canvas, 6> faces{Canvas({2, 2}, {255, 0, 0, 255}),   Canvas({2, 2}, {0, 255, 0, 255}),
                                       Canvas({2, 2}, {0, 0, 255, 255}),   Canvas({2, 2}, {255, 255, 0, 255}),
                                       Canvas({2, 2}, {255, 0, 255, 255}), Canvas({2, 2}, {0, 255, 255, 255})};
@@ -500,7 +500,7 @@ TEST_CASE("aCubeMapsFacesAreInVulkansOrder") {
     CHECK(looking(0, 0) == kBlack);
 }
 
-TEST_CASE("theTopLeftTexelOfACubesFaceIsWhereVulkanHasIt") {
+TEST_CASE("the top left texel of a cube's face is where Vulkan has it") {
     // On -z, s grows towards -x and t towards -y.
     Canvas marked({8, 8}, {0, 0, 0, 255});
     for (std::uint32_t y = 0; y < 4; ++y) {
@@ -514,7 +514,7 @@ TEST_CASE("theTopLeftTexelOfACubesFaceIsWhereVulkanHasIt") {
     CHECK(at(seen, 6, 6) == kBlack);
 }
 
-TEST_CASE("theRoomShowsAsFarAsAlphaLetsItOrIsAdded") {
+TEST_CASE("the room shows as far as alpha lets it or is added") {
     const Backdrop room{{1.0, 0.0, 0.0}, false}, added{{1.0, 0.0, 0.0}, true};
     const auto seen = [](const std::vector<Layer>& layers, const Backdrop& backdrop) {
         return at(composeEye(eyeOf({2, 2}), kLeft, layers, backdrop), 0, 0);

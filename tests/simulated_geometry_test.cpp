@@ -36,27 +36,27 @@ const Fov kFov{std::atan(-1.0), std::atan(0.5), std::atan(0.75), std::atan(-1.25
 
 }  // namespace
 
-TEST_CASE("composedPosesApplyTheInnerFirst") {
+TEST_CASE("composed poses apply the inner first") {
     // A metre ahead of a head that looks left is at -x.
     const Pose pose = compose(turnedLeft(kQuarter, {1, 0, 0}), Pose{{1, 0, 0, 0}, {0, 0, -1}});
     CHECK(isNear(pose.position, {0, 0, 0}));
     CHECK(isNear(transform(pose, {0, 0, -2}), {-2, 0, 0}));
 }
 
-TEST_CASE("aPoseAndItsInverseCancel") {
+TEST_CASE("a pose and its inverse cancel") {
     const Pose pose = compose(turnedLeft(0.3, {1, 2, 3}), Pose{glm::angleAxis(0.7, glm::dvec3(1, 0, 0)), {-4, 5, 6}});
     CHECK(isNear(transform(inverse(pose), transform(pose, {7, 8, 9})), {7, 8, 9}));
     CHECK(isNear(compose(pose, inverse(pose)).position, {0, 0, 0}));
 }
 
-TEST_CASE("interpolationMeetsItsEnds") {
+TEST_CASE("interpolation meets its ends") {
     const Pose from = turnedLeft(0.2, {1, 2, 3}), to = turnedLeft(1.0, {3, 2, 1});
     CHECK(isNear(interpolate(from, to, 0.0).position, from.position));
     CHECK(isNear(interpolate(from, to, 1.0).position, to.position));
     CHECK(isNear(interpolate(from, to, 0.25).orientation * glm::dvec3(0, 0, -1), {-std::sin(0.4), 0, -std::cos(0.4)}));
 }
 
-TEST_CASE("levellingKeepsTheHeadingAlone") {
+TEST_CASE("levelling keeps the heading alone") {
     const Pose tilted{turnedLeft(0.5, {}).orientation * glm::angleAxis(0.6, glm::dvec3(1, 0, 0)) * glm::angleAxis(0.2, glm::dvec3(0, 0, 1)),
                       {1, 2, 3}};
     const Pose level = levelled(tilted);
@@ -65,12 +65,12 @@ TEST_CASE("levellingKeepsTheHeadingAlone") {
     CHECK(isNear(level.orientation * glm::dvec3(0, 1, 0), {0, 1, 0}));
 }
 
-TEST_CASE("levellingAHeadThatLooksStraightUpKeepsItsRight") {
+TEST_CASE("levelling a head that looks straight up keeps its right") {
     const Pose up{turnedLeft(0.5, {}).orientation * glm::angleAxis(kQuarter, glm::dvec3(1, 0, 0)), {}};
     CHECK(isNear(levelled(up).orientation * glm::dvec3(1, 0, 0), {std::cos(0.5), 0, -std::sin(0.5)}));
 }
 
-TEST_CASE("theLeftEyeIsOnTheLeftAndTurnsLeft") {
+TEST_CASE("the left eye is on the left and turns left") {
     const Pose left = headFromEye(kLeft, 0.06, 0.1), right = headFromEye(kRight, 0.06, 0.1);
     CHECK(isNear(left.position, {-0.03, 0, 0}));
     CHECK(isNear(right.position, {0.03, 0, 0}));
@@ -78,7 +78,7 @@ TEST_CASE("theLeftEyeIsOnTheLeftAndTurnsLeft") {
     CHECK((right.orientation * glm::dvec3(0, 0, -1)).x == doctest::Approx(std::sin(0.1)));
 }
 
-TEST_CASE("hiddenAndVisibleMeshFillTheViewTogether") {
+TEST_CASE("hidden and visible mesh fill the view together") {
     const Mesh hidden = hiddenMesh(kFov), visible = visibleMesh(kFov);
     REQUIRE(hidden.indices.size() % 3 == 0);
     CHECK(areaOf(hidden) + areaOf(visible) == doctest::Approx(1.5 * 2.0));
@@ -86,13 +86,13 @@ TEST_CASE("hiddenAndVisibleMeshFillTheViewTogether") {
     CHECK(areaOf(visible) == doctest::Approx(32.0 * std::sin(std::numbers::pi / 32.0) * 0.75 * 1.0));
 }
 
-TEST_CASE("maskTrianglesAreCounterClockwise") {
+TEST_CASE("mask triangles are counter-clockwise") {
     for (const Mesh& mesh : {hiddenMesh(kFov), visibleMesh(kFov)}) {
         for (std::size_t triangle = 0; triangle < mesh.indices.size() / 3; ++triangle) { CHECK(signedArea(mesh, triangle) > 0.0); }
     }
 }
 
-TEST_CASE("maskVerticesStayInsideTheView") {
+TEST_CASE("mask vertices stay inside the view") {
     for (const Mesh& mesh : {hiddenMesh(kFov), visibleMesh(kFov), visibleOutline(kFov)}) {
         for (const std::uint32_t index : mesh.indices) { REQUIRE(index < mesh.vertices.size()); }
         for (const glm::vec2& vertex : mesh.vertices) {
@@ -104,7 +104,7 @@ TEST_CASE("maskVerticesStayInsideTheView") {
     }
 }
 
-TEST_CASE("theOutlineTouchesTheFourEdges") {
+TEST_CASE("the outline touches the four edges") {
     const Mesh outline = visibleOutline(kFov);
     const auto [left, right] = std::ranges::minmax(outline.vertices, {}, &glm::vec2::x);
     CHECK(left.x == doctest::Approx(-1.0));

@@ -45,9 +45,9 @@ FrameRecord someRecord() {
 
 }  // namespace
 
-TEST_CASE("aFrameIsOneLine") { CHECK(frameLine(someRecord()).find('\n') == std::string::npos); }
+TEST_CASE("a frame is one line") { CHECK(frameLine(someRecord()).find('\n') == std::string::npos); }
 
-TEST_CASE("numbersInTheLogReadBackAsTheyWere") {
+TEST_CASE("numbers in the log read back as they were") {
     const Json json = Json::parse(frameLine(someRecord()));
     CHECK(json["frame"] == 7);
     CHECK(json["blend_mode"] == "ADDITIVE");
@@ -57,12 +57,12 @@ TEST_CASE("numbersInTheLogReadBackAsTheyWere") {
     CHECK(json["eyes"][0]["fov"]["left"].get<double>() == -0.7);
 }
 
-TEST_CASE("quaternionsInTheLogAreXyzw") {
+TEST_CASE("quaternions in the log are x, y, z, w") {
     const Json json = Json::parse(frameLine(someRecord()));
     CHECK(json["head"]["orientation"] == Json::array({0.2, 0.3, 0.4, 0.1}));
 }
 
-TEST_CASE("everyLayerIsLogged") {
+TEST_CASE("every layer is logged") {
     const Json json = Json::parse(frameLine(someRecord()));
     REQUIRE(json["layers"].size() == 2);
     const Json &projection = json["layers"][0], &quad = json["layers"][1];
@@ -79,14 +79,14 @@ TEST_CASE("everyLayerIsLogged") {
     CHECK(json["events"] == Json::array({"state VISIBLE", "slow-images 3"}));
 }
 
-TEST_CASE("framesWithoutLayersHaveEmptyLists") {
+TEST_CASE("frames without layers have empty lists") {
     const Json json = Json::parse(frameLine(FrameRecord{}));
     CHECK(json["layers"].is_array());
     CHECK(json["layers"].empty());
     CHECK(json["should_render"] == true);
 }
 
-TEST_CASE("whatHappensBetweenFramesHasALineWithoutANumber") {
+TEST_CASE("what happens between frames has a line without a number") {
     const Json states = Json::parse(betweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
     CHECK(states == Json{{"session_state", "EXITING"}, {"display_time_ns", 7}, {"events", {"state IDLE", "state EXITING"}}});
     const Json refused = Json::parse(betweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
@@ -97,13 +97,13 @@ TEST_CASE("whatHappensBetweenFramesHasALineWithoutANumber") {
     CHECK(refused["events"].empty());
 }
 
-TEST_CASE("namesThatAreNoUtf8DoNotStopTheLog") {
+TEST_CASE("names that are no UTF-8 do not stop the log") {
     FrameRecord record;
     record.events = {"\xff\xfe"};
     CHECK(Json::parse(frameLine(record))["events"].size() == 1);
 }
 
-TEST_CASE("aFrameThatHasAPictureNamesIt") {
+TEST_CASE("a frame that has a picture names it") {
     FrameRecord record = someRecord();
     CHECK_FALSE(Json::parse(frameLine(record)).contains("picture"));
     record.picture = pictureName(12);
@@ -111,7 +111,7 @@ TEST_CASE("aFrameThatHasAPictureNamesIt") {
     CHECK(pictureName(1234567) == "frame_1234567.png");
 }
 
-TEST_CASE("linesAreThereBeforeTheLogIsClosed") {
+TEST_CASE("lines are there before the log is closed") {
     const std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_log_" + std::to_string(::getpid()) + ".jsonl");
     FrameLog log(path);
     log.write(frameLine(someRecord()));
@@ -164,7 +164,7 @@ struct UsedFolder {
 
 }  // namespace
 
-TEST_CASE("aFolderIsEmptiedOfWhatAnEarlierRunsLogNamesAndOfNothingElse") {
+TEST_CASE("a folder is emptied of what an earlier run's log names and of nothing else") {
     const std::set<std::string> others{"frame_12.png",      "frame_00000a.png", "frame_000000.jpg", "my_frame_000000.png",
                                        "frame_0000007.png", "notes.txt",        "frame_000001.png", ".frame_000005.unfinished.png"};
     std::set<std::string> all = others;
@@ -180,7 +180,7 @@ TEST_CASE("aFolderIsEmptiedOfWhatAnEarlierRunsLogNamesAndOfNothingElse") {
     removeOldOutput(folder.path / "nowhere", true, {});
 }
 
-TEST_CASE("aRunsFilesDoNotReplaceOthers") {
+TEST_CASE("a run's files do not replace others") {
     SUBCASE("a log") {
         const UsedFolder folder({"frame_000000.png"});
         std::ofstream(folder.path / kLogName) << "somebody else's log\n";

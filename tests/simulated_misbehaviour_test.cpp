@@ -32,7 +32,7 @@ std::size_t shownBetween(const HelloXr& run, std::size_t first, std::size_t end)
 
 }  // namespace
 
-TEST_CASE("anExitOfTheWearerEndsTheProgram") {
+TEST_CASE("an exit of the wearer ends the program") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -42,7 +42,7 @@ TEST_CASE("anExitOfTheWearerEndsTheProgram") {
     CHECK(run.output.find("XR_SESSION_STATE_EXITING") != std::string::npos);
 }
 
-TEST_CASE("framesThatShouldNotBeRenderedHaveNoLayers") {
+TEST_CASE("frames that should not be rendered have no layers") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 should-render off\nat 0.3 should-render on\nat 0.4 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -53,7 +53,7 @@ TEST_CASE("framesThatShouldNotBeRenderedHaveNoLayers") {
     CHECK(run.frames.at(30)["should_render"] == true);
 }
 
-TEST_CASE("aProgramMayNotRenderItsVeryFirstVisibleFrames") {
+TEST_CASE("a program may not render its very first visible frames") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at -1 should-render off\nat 0.2 should-render on\nat 0.3 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -61,7 +61,7 @@ TEST_CASE("aProgramMayNotRenderItsVeryFirstVisibleFrames") {
     CHECK(shownBetween(run, 20, 30) == 10);
 }
 
-TEST_CASE("aHiddenSessionComesBack") {
+TEST_CASE("a hidden session comes back") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 visible off\nat 0.3 visible on\nat 0.5 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -71,7 +71,7 @@ TEST_CASE("aHiddenSessionComesBack") {
     CHECK(count(run, "state FOCUSED") == 2);
 }
 
-TEST_CASE("aSessionWithoutFocusIsStillSeen") {
+TEST_CASE("a session without focus is still seen") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 focused off\nat 0.4 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -79,7 +79,7 @@ TEST_CASE("aSessionWithoutFocusIsStillSeen") {
     CHECK(shownBetween(run, 20, 40) == 20);
 }
 
-TEST_CASE("aLostSessionIsLeftAndMadeAnew") {
+TEST_CASE("a lost session is left and made anew") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 lose-session\nat 0.6 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -93,14 +93,14 @@ TEST_CASE("aLostSessionIsLeftAndMadeAnew") {
     }
 }
 
-TEST_CASE("aLostInstanceIsLeftAndMadeAnew") {
+TEST_CASE("a lost instance is left and made anew") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 lose-instance\nat 0.6 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
     CHECK(count(run, "state FOCUSED") == 2);
 }
 
-TEST_CASE("slowImagesDoNotStopAProgramThatWaitsForThem") {
+TEST_CASE("slow images do not stop a program that waits for them") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.1 slow-images 7\nat 0.3 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -108,7 +108,7 @@ TEST_CASE("slowImagesDoNotStopAProgramThatWaitsForThem") {
     CHECK(shownBetween(run, 5, 30) == 25);
 }
 
-TEST_CASE("changedAnglesReachTheProgramInTheirFrame") {
+TEST_CASE("changed angles reach the program in their frame") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "at 0.2 eye left angles -30 20 25 -35\nat 0.4 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -124,7 +124,7 @@ TEST_CASE("changedAnglesReachTheProgramInTheirFrame") {
     CHECK(submitted(20, 1, "left") == doctest::Approx(-45.0));
 }
 
-TEST_CASE("submittedPosesAreTheHeadsOfTheirDisplayTime") {
+TEST_CASE("submitted poses are the head's of their display time") {
     if (!haveHelloXr()) { return; }
     // A metre per second to the right, in LOCAL, whose origin is the head at time 0.
     const HelloXr run(kQuiet + "head 0 position 0 1.6 0\nhead 1 position 1 1.6 0\nat 0.4 exit\n");
@@ -137,7 +137,7 @@ TEST_CASE("submittedPosesAreTheHeadsOfTheirDisplayTime") {
     }
 }
 
-TEST_CASE("aRecordedWalkReachesTheProgramAsItWasWalked" * needsSharedData()) {
+TEST_CASE("a recorded walk reaches the program as it was walked" * needsSharedData()) {
     const auto data = sharedData();
     if (!data || !haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "head-motion \"" + std::filesystem::absolute(*data / "headmotion" / "User3.csv").string() +
@@ -165,7 +165,7 @@ TEST_CASE("aRecordedWalkReachesTheProgramAsItWasWalked" * needsSharedData()) {
     CHECK(way_m < 2.0);
 }
 
-TEST_CASE("theMenuButtonReachesTheProgramsQuitAction") {
+TEST_CASE("the menu button reaches the program's quit action") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "press left menu 0.2 0.3\nat 3 exit\n");
     CHECK_MESSAGE(run.exit_status == 0, run.output);
@@ -173,14 +173,14 @@ TEST_CASE("theMenuButtonReachesTheProgramsQuitAction") {
     CHECK(run.frames.size() < 50);
 }
 
-TEST_CASE("aProgramWhoseExtensionIsMissingSaysSo") {
+TEST_CASE("a program whose extension is missing says so") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kQuiet + "extension XR_KHR_vulkan_enable2 off\nat 0.2 exit\n");
     CHECK(run.frames.empty());
     CHECK(run.output.find("XR_ERROR_EXTENSION_NOT_PRESENT") != std::string::npos);
 }
 
-TEST_CASE("aBrokenScriptIsNamedWithItsLine") {
+TEST_CASE("a broken script is named with its line") {
     if (!haveHelloXr()) { return; }
     const HelloXr run("size 64 64\nhed 0 position 0 0 0\n");
     CHECK(run.frames.empty());

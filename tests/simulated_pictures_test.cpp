@@ -87,7 +87,7 @@ std::map<std::string, std::string> filesOf(const std::filesystem::path& folder) 
 
 }  // namespace
 
-TEST_CASE("helloXrLooksAsItDid") {
+TEST_CASE("hello_xr looks as it did") {
     if (!haveHelloXr()) { return; }
     const HelloXr run(kScript);
     REQUIRE_MESSAGE(run.exit_status == 0, run.output);
@@ -111,7 +111,7 @@ TEST_CASE("helloXrLooksAsItDid") {
     CHECK(psnrDb(golden, run.eye(10, kLeft)) < kLeastDb);
 }
 
-TEST_CASE("lockStepRunsWriteTheSameFiles") {
+TEST_CASE("lock-step runs write the same files") {
     if (!haveHelloXr()) { return; }
     const HelloXr once(kScript), again(kScript);
     REQUIRE(once.exit_status == 0);
@@ -120,7 +120,7 @@ TEST_CASE("lockStepRunsWriteTheSameFiles") {
     CHECK(files == filesOf(again.written));
 }
 
-TEST_CASE("aCubeAheadHasItsDisparityAndIsUpright") {
+TEST_CASE("a cube ahead has its disparity and is upright") {
     if (!haveHelloXr()) { return; }
     // hello_xr puts a cube of 0.25 m 2 m ahead of the head; its near face, 1.875 m away, is the +z side, pure blue. 150 pixels per unit
     // of tangent; eyes 0.1 m apart: left at 150 + 150 * 0.05 / 1.875 = 154 pixels, right at 146, and in the middle of the height.
@@ -140,7 +140,7 @@ TEST_CASE("aCubeAheadHasItsDisparityAndIsUpright") {
     CHECK(std::abs(centre(kLeft).y - 150.0) <= 0.5);
 }
 
-TEST_CASE("controllersAreSeenWhereTheScriptHoldsThem") {
+TEST_CASE("controllers are seen where the script holds them") {
     if (!haveHelloXr()) { return; }
     // Cubes of 0.1 m. The right one is held 0.3 m to the right, 0.2 m above the eyes' height, its near face 0.45 + 0.05 m ahead.
     const std::string script =

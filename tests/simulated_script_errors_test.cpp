@@ -50,14 +50,14 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 }  // namespace
 
-TEST_CASE("unknownCommandsAreNamedWithTheirLine") {
+TEST_CASE("unknown commands are named with their line") {
     refuses("rate 90\n\n# so\nhed 0 position 0 0 0", "a.script:4: hed is not a command, must be one of: aim, at, axis");
     refuses("Rate 90", "a.script:1: Rate is not a command");
     refuses(std::string("ra\0te 90", 8), "ra?te is not a command");
     refuses(std::string(5000, 'x'), "xxx... is not a command");
 }
 
-TEST_CASE("missingNumbersAreSaid") {
+TEST_CASE("missing numbers are said") {
     refuses("rate", "a.script:1: the rate in frames per second is missing, must be a number from 1 to 1000");
     refuses("\nsize 100", "a.script:2: the height in pixels is missing");
     refuses("head 0 position 1 2", "position z is missing");
@@ -67,14 +67,14 @@ TEST_CASE("missingNumbersAreSaid") {
     refuses("at 1 slow-images", "the number of slow images is missing");
 }
 
-TEST_CASE("numbersThatAreNoneAreSaid") {
+TEST_CASE("numbers that are none are said") {
     for (const char* word : {"nan", "inf", "-inf", "1e999", "12x", "0x10", "1,5", "--1", "+-1", "1.2.3"}) {
         refuses(std::string("ipd ") + word, std::string("the eye distance in metres is ") + word + ", must be a number from 0 to 1");
     }
     refuses("head nan position 0 0 0", "the time in seconds is nan");
 }
 
-TEST_CASE("numbersOutOfRangeAreRefused") {
+TEST_CASE("numbers out of range are refused") {
     refuses("rate 0", "must be a number from 1 to 1000");
     refuses("rate 1001", "must be a number from 1 to 1000");
     refuses("size 0 100", "the width in pixels is 0, must be a whole number from 1 to 16384");
@@ -89,7 +89,7 @@ TEST_CASE("numbersOutOfRangeAreRefused") {
     refuses("axis left thumbstick 0 0 -1.5", "the axis upwards is -1.5");
 }
 
-TEST_CASE("anglesMustMakeAView") {
+TEST_CASE("angles must make a view") {
     refuses("eye left angles -90 40 40 -40", "the angle to the left in degrees is -90, must be a number from -85 to 85");
     refuses("eye left angles 40 40 40 -40", "the angles are 40 to the left and 40 to the right, left must be less");
     refuses("eye left angles -40 40 -40 40", "the angles are -40 up and 40 down, down must be less");
@@ -97,12 +97,12 @@ TEST_CASE("anglesMustMakeAView") {
     refuses("at 1 eye right angles -40 40 86 -40", "a.script:1: the angle up in degrees is 86");
 }
 
-TEST_CASE("aRotationOfLengthZeroIsNone") {
+TEST_CASE("a rotation of length zero is none") {
     refuses("head 0 rotation 0 0 0 0", "a.script:1: the rotation's length is 0, must be 1");
     refuses("controller left 0 rotation 0 1e-9 0 0", "the rotation's length is 1e-09");
 }
 
-TEST_CASE("timesMustIncrease") {
+TEST_CASE("times must increase") {
     refuses("head 1 position 0 0 0\nhead 0.5 position 0 0 0", "a.script:2: the time is 0.5, must be after the key before, at 1");
     refuses("head 1 position 0 0 0\nhead 1 position 0 0 0", "a.script:2: the time is 1, must be after");
     refuses("controller left 1 turn 0 0\ncontroller right 0 turn 0 0\ncontroller left 0 turn 0 0", "a.script:3: the time is 0");
@@ -112,7 +112,7 @@ TEST_CASE("timesMustIncrease") {
     refuses("press left a 2 2", "it lasts from 2 to 2, must end after it begins");
 }
 
-TEST_CASE("choicesAreListed") {
+TEST_CASE("choices are listed") {
     refuses("eye middle cant 5", "the side is middle, must be left or right");
     refuses("eye left", "what is set is missing, must be angles or cant");
     refuses("at 1 should-render maybe", "whether to render is maybe, must be on or off");
@@ -135,13 +135,13 @@ TEST_CASE("choicesAreListed") {
     refuses("head 0", "the pose is missing, must be position X Y Z");
 }
 
-TEST_CASE("whatIsTooMuchIsRefused") {
+TEST_CASE("what is too much is refused") {
     refuses("rate 90 100", "a.script:1: unexpected 100 at the end of the line");
     refuses("head 0 position 0 0 0 sideways", "unexpected sideways at the end of the line");
     refuses("frames none at all", "unexpected at at the end of the line");
 }
 
-TEST_CASE("gazesWithMistakesAreRefused") {
+TEST_CASE("gazes with mistakes are refused") {
     refuses("eye-tracking maybe", "a.script:1: whether eyes are tracked is maybe, must be on, off or refused");
     refuses("eye-tracking on\neye-tracking on", "a.script:2: eye-tracking is set again, first on line 1");
     refuses("gaze 0 10", "a.script:1: the turn upwards in degrees is missing");
@@ -151,23 +151,23 @@ TEST_CASE("gazesWithMistakesAreRefused") {
     refuses("at 1 gaze off\nat 1 gaze on", "a.script:2: the time is 1, must be after the one of the same change before");
 }
 
-TEST_CASE("settingsStandOnce") {
+TEST_CASE("settings stand once") {
     refuses("rate 90\nsize 1 1\nrate 90", "a.script:3: rate is set again, first on line 1, must be set once");
     refuses("eye left cant 1\neye left cant 2", "eye left cant is set again");
     refuses("extension XR_KHR_visibility_mask off\nextension XR_KHR_visibility_mask off", "XR_KHR_visibility_mask is off already");
     CHECK(messageOf("eye left cant 1\neye right cant 2\neye left angles -1 1 1 -1") == "accepted");
 }
 
-TEST_CASE("extensionsAreThoseOfTheRuntimeAndCanOnlyBeTurnedOff") {
+TEST_CASE("extensions are those of the runtime and can only be turned off") {
     refuses("\nextension XR_KHR_visibilty_mask off",
             "a.script:2: XR_KHR_visibilty_mask is no extension of this runtime, must be one of: XR_KHR_vulkan_enable2, ");
     refuses("extension KHR_visibility_mask off", "KHR_visibility_mask is no extension of this runtime");
     refuses("extension XR_KHR_visibility_mask on", "what to do with it is on, must be off");
 }
 
-TEST_CASE("openQuotesAreRefused") { refuses("headset \"a b.toml", "a.script:1: a quote is not closed"); }
+TEST_CASE("open quotes are refused") { refuses("headset \"a b.toml", "a.script:1: a quote is not closed"); }
 
-TEST_CASE("filesThatCannotBeReadAreSaidWithTheLineThatNamesThem") {
+TEST_CASE("files that cannot be read are said with the line that names them") {
     const Folder folder;
     folder.refuses("\nheadset none.toml", "a.script:2: ");
     folder.refuses("\nheadset none.toml", "none.toml: cannot be read (No such file or directory), must be a TOML file of a headset");
@@ -187,14 +187,14 @@ TEST_CASE("filesThatCannotBeReadAreSaidWithTheLineThatNamesThem") {
     CHECK_THROWS_AS((void)Script::load("/dev/zero"), ScriptError);
 }
 
-TEST_CASE("aHeadsetStandsBeforeWhatChangesIt") {
+TEST_CASE("a headset stands before what changes it") {
     const Folder folder;
     folder.write("h.toml", kHeadset);
     folder.refuses("ipd 0.06\nheadset h.toml", "a.script:2: headset sets ipd, too, must stand before it");
     folder.refuses("headset h.toml\nipd 0.06", "accepted");
 }
 
-TEST_CASE("headsetFilesWithMistakesAreRefusedWithTheirOwnLine") {
+TEST_CASE("headset files with mistakes are refused with their own line") {
     const Folder folder;
     const auto refusesHeadset = [&](const std::string& text, const std::string& part) {
         folder.write("h.toml", text);
@@ -215,7 +215,7 @@ TEST_CASE("headsetFilesWithMistakesAreRefusedWithTheirOwnLine") {
     refusesHeadset(replaced(kHeadset, "canting_deg", "kanting"), "h.toml:4: kanting is not a key of a headset, must be name, source");
 }
 
-TEST_CASE("recordingsWithMistakesAreRefusedWithTheirOwnLine") {
+TEST_CASE("recordings with mistakes are refused with their own line") {
     const Folder folder;
     const auto refusesMotion = [&](const std::string& text, const std::string& part) {
         folder.write("m.csv", text);
@@ -236,7 +236,7 @@ TEST_CASE("recordingsWithMistakesAreRefusedWithTheirOwnLine") {
     folder.refuses("head 0 turn 0 0\nhead 1 turn 0 0\nhead-motion m.csv", "a.script:3: the head has keys on more than one line");
 }
 
-TEST_CASE("aScriptCutOffAnywhereIsAScriptOrAnError") {
+TEST_CASE("a script cut off anywhere is a script or an error") {
     std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     text += "headset \"none such.toml\"\nvisibility-mask on\naim left turn 5 5\nat 5 eye left angles -1 1 1 -1\nat 6 controller left off\n";
@@ -252,7 +252,7 @@ TEST_CASE("aScriptCutOffAnywhereIsAScriptOrAnError") {
     CHECK(refused > 200);
 }
 
-TEST_CASE("inputsThatTheControllersLackAreNamedWithTheirLine") {
+TEST_CASE("inputs that the controllers lack are named with their line") {
     refuses("profile valve/index\n", "a.script:1: valve/index is not a profile of controllers, must be one of: oculus/touch_controller, ");
     refuses("profile htc/vive_pro\n", "htc/vive_pro is not a profile of controllers");
     refuses("press left a 0 1\nprofile oculus/touch_controller\n",
@@ -270,12 +270,12 @@ TEST_CASE("inputsThatTheControllersLackAreNamedWithTheirLine") {
     refuses(simple_first + "press left x 0 1\n", "a.script:3: the left hand of khr/simple_controller has no x");
 }
 
-TEST_CASE("aHeadCannotLookAtItself") {
+TEST_CASE("a head cannot look at itself") {
     refuses("head 0 position 1 2 3 look 1 2 3", "a.script:1: the point to look at is where it looks from");
     refuses("head 0 look 1 2", "position z is missing");
 }
 
-TEST_CASE("aScriptWithAnyByteChangedIsAScriptOrAnError") {
+TEST_CASE("a script with any byte changed is a script or an error") {
     std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     std::size_t refused = 0;
@@ -292,7 +292,7 @@ TEST_CASE("aScriptWithAnyByteChangedIsAScriptOrAnError") {
     CHECK(refused > 1000);
 }
 
-TEST_CASE("headsetsAndRecordingsCutOffAnywhereAreReadOrRefused") {
+TEST_CASE("headsets and recordings cut off anywhere are read or refused") {
     const Folder folder;
     const std::string motion = "time_ms,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n16.5,1e-1,-2,3,0.70710678,0,0.70710678,0\n";
     for (const auto& [command, whole] : {std::pair("headset", kHeadset), std::pair("head-motion", motion)}) {

@@ -46,7 +46,7 @@ struct Folder {
 
 }  // namespace
 
-TEST_CASE("anEmptyScriptIsTheRestingHeadset") {
+TEST_CASE("an empty script is the resting headset") {
     const Script script = parse("");
     CHECK(script.rate_hz == 90.0);
     CHECK(script.size_px == glm::uvec2(1024, 1024));
@@ -65,13 +65,13 @@ TEST_CASE("anEmptyScriptIsTheRestingHeadset") {
     CHECK(script.eventsIn(-kForever, kForever).empty());
 }
 
-TEST_CASE("commentsBlanksAndCarriageReturnsDoNotCount") {
+TEST_CASE("comments, blanks and carriage returns do not count") {
     const Script script = parse("\xef\xbb\xbf# a comment\r\n\r\n \t rate  72 # another\r\nsize 640\t480#and another");
     CHECK(script.rate_hz == 72.0);
     CHECK(script.size_px == glm::uvec2(640, 480));
 }
 
-TEST_CASE("headKeysMoveOnStraightLines") {
+TEST_CASE("head keys move on straight lines") {
     const Script script = parse("head 1 position 0 1 0\nhead 3 position 4 2 -8\n");
     CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.0, 0.0));
     CHECK(isNear(script.at(1.5).stage_from_head.position, {1.0, 1.25, -2.0}));
@@ -80,25 +80,25 @@ TEST_CASE("headKeysMoveOnStraightLines") {
     CHECK(script.at(9.0).stage_from_head.position == glm::dvec3(4.0, 2.0, -8.0));
 }
 
-TEST_CASE("orientationsMoveOnGreatArcs") {
+TEST_CASE("orientations move on great arcs") {
     // From ahead to a quarter turn to the left (+90 degrees about y): a third of the way is 30 degrees, looking along (-1/2, 0, -cos 30).
     const Script script = parse("head 0 rotation 0 0 0 1\nhead 3 rotation 0 0.70710678118654752 0 0.70710678118654752");
     CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {-0.5, 0.0, -std::sqrt(0.75)}));
     CHECK(isNear(forwardOf(script.at(3.0).stage_from_head), {-1.0, 0.0, 0.0}));
 }
 
-TEST_CASE("orientationsTakeTheShorterArc") {
+TEST_CASE("orientations take the shorter arc") {
     // -q is the same rotation as q: half-way between q and -q' with q' 90 degrees on is still 45 degrees.
     const Script script = parse("head 0 rotation 0 0 0 1\nhead 1 rotation 0 -0.70710678118654752 0 -0.70710678118654752");
     CHECK(isNear(forwardOf(script.at(0.5).stage_from_head), {-kHalfRoot, 0.0, -kHalfRoot}));
 }
 
-TEST_CASE("rotationsAreMadeToLengthOne") {
+TEST_CASE("rotations are made to length one") {
     const Script script = parse("head 0 rotation 0 3 0 3");
     CHECK(isNear(script.at(0.0).stage_from_head.orientation, glm::dquat(kHalfRoot, 0.0, kHalfRoot, 0.0)));
 }
 
-TEST_CASE("looksGoToAPointOfTheRoomUpright") {
+TEST_CASE("looks go to a point of the room upright") {
     const Pose down = parse("head 0 position 1 2 3 look 1 0 1").at(0).stage_from_head;
     CHECK(isNear(forwardOf(down), glm::dvec3(0.0, -1.0, -1.0) / std::sqrt(2.0)));
     // Upright: the right-hand side stays level.
@@ -110,21 +110,21 @@ TEST_CASE("looksGoToAPointOfTheRoomUpright") {
     CHECK(isNear(forwardOf(parse("head 0 position 5 1 0\nhead 1 look 6 1 0").at(1).stage_from_head), {1.0, 0.0, 0.0}));
 }
 
-TEST_CASE("turnsGoLeftThenUp") {
+TEST_CASE("turns go left then up") {
     CHECK(isNear(forwardOf(parse("head 0 turn 90 0").at(0).stage_from_head), {-1.0, 0.0, 0.0}));
     CHECK(isNear(forwardOf(parse("head 0 turn 0 90").at(0).stage_from_head), {0.0, 1.0, 0.0}));
     // Up by 30 degrees after a quarter to the left.
     CHECK(isNear(forwardOf(parse("head 0 turn 90 30").at(0).stage_from_head), {-std::sqrt(0.75), 0.5, 0.0}));
 }
 
-TEST_CASE("whatAPoseLeavesOutStaysAsItWas") {
+TEST_CASE("what a pose leaves out stays as it was") {
     const Script script = parse("head 0 position 1 2 3 turn 90 0\nhead 1 position 4 5 6\nhead 2 turn 0 0");
     CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {-1.0, 0.0, 0.0}));
     CHECK(script.at(2.0).stage_from_head.position == glm::dvec3(4.0, 5.0, 6.0));
     CHECK(parse("head 0 turn 5 0").at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
 }
 
-TEST_CASE("eyesTurnOutwardsAndStandBesideTheNose") {
+TEST_CASE("eyes turn outwards and stand beside the nose") {
     const Script script = parse("ipd 0.07\neye left cant 10\neye right cant 5\nhead 0 position 0 0 0 turn 90 0");
     const State state = script.at(0.0);
     // The wearer looks along -x; to the left of that is +z.
@@ -134,12 +134,12 @@ TEST_CASE("eyesTurnOutwardsAndStandBesideTheNose") {
     CHECK(isNear(forwardOf(state.eyes[kRight].stage_from_eye), {-std::cos(5 * kDegree), 0.0, -std::sin(5 * kDegree)}));
 }
 
-TEST_CASE("eyeAnglesAreLeftRightUpDown") {
+TEST_CASE("eye angles are left, right, up, down") {
     const Fov fov = parse("eye right angles -40 54 44 -55").at(0.0).eyes[kRight].fov;
     CHECK(fov == Fov{-40 * kDegree, 54 * kDegree, 44 * kDegree, -55 * kDegree});
 }
 
-TEST_CASE("anglesChangeAtTheirTime") {
+TEST_CASE("angles change at their time") {
     const Script script = parse("eye left angles -40 40 40 -40\nat 1 eye left angles -30 30 30 -30\nat 2 eye left angles -20 20 20 -20");
     const auto left = [&](double time_s) { return script.at(time_s).eyes[kLeft].fov.left_rad / kDegree; };
     CHECK(left(0.999) == doctest::Approx(-40.0));
@@ -149,7 +149,7 @@ TEST_CASE("anglesChangeAtTheirTime") {
     CHECK(script.at(5.0).eyes[kRight].fov.left_rad / kDegree == doctest::Approx(-45.0));
 }
 
-TEST_CASE("localStandsWhereTheHeadIsAtTimeZeroWithoutItsTilt") {
+TEST_CASE("LOCAL stands where the head is at time zero without its tilt") {
     const Script script = parse("head -1 position 0 0 0 turn 0 0\nhead 1 position 2 3.2 0 turn 60 0");
     const Pose local = script.stageFromLocal();
     CHECK(isNear(local.position, {1.0, 1.6, 0.0}));
@@ -157,7 +157,7 @@ TEST_CASE("localStandsWhereTheHeadIsAtTimeZeroWithoutItsTilt") {
     CHECK(isNear(forwardOf(parse("head 0 turn 90 40").stageFromLocal()), {-1.0, 0.0, 0.0}));
 }
 
-TEST_CASE("localStandsWhereTheScriptSaysUntilItIsRecentred") {
+TEST_CASE("LOCAL stands where the script says until it is recentred") {
     const Script script =
         parse("local position 3 0.5 1 turn 90 0\nhead 0 position 0 1.6 0\nhead 2 position 2 1.6 0 turn 0 30\nat 1 recentre\nat 2 recentre");
     CHECK(isNear(script.stageFromLocal(0.999).position, {3.0, 0.5, 1.0}));
@@ -169,7 +169,7 @@ TEST_CASE("localStandsWhereTheScriptSaysUntilItIsRecentred") {
     CHECK(script.eventsIn(0.5, 1.5).at(0).kind == ScriptEvent::Kind::kRecentre);
 }
 
-TEST_CASE("whatIsKnownOfTheHeadAndWhetherItIsWornChangeAtTheirTime") {
+TEST_CASE("what is known of the head and whether it is worn change at their time") {
     const Script script = parse("at 1 head off\nat 2 head turn-only\nat 3 head on\nat 4 worn off\nat 5 worn on");
     const auto known = [&](double time_s) {
         const State state = script.at(time_s);
@@ -184,7 +184,7 @@ TEST_CASE("whatIsKnownOfTheHeadAndWhetherItIsWornChangeAtTheirTime") {
     CHECK(script.at(5.0).worn);
 }
 
-TEST_CASE("controllersMoveAndAimFromTheirGrip") {
+TEST_CASE("controllers move and aim from their grip") {
     const Script script =
         parse("controller right 0 position 0 1 0 turn 90 0\ncontroller right 2 position 0 3 0\naim right position 0 0 -0.1 turn 0 90\n");
     const ControllerState right = script.at(1.0).controllers[kRight];
@@ -195,7 +195,7 @@ TEST_CASE("controllersMoveAndAimFromTheirGrip") {
     CHECK(isNear(script.at(1.0).controllers[kLeft].stage_from_grip.position, {-0.2, 1.2, -0.35}));
 }
 
-TEST_CASE("pressesLastFromTheirBeginningUntilBeforeTheirEnd") {
+TEST_CASE("presses last from their beginning until before their end") {
     const Script script = parse("press right trigger 1 2\npress left a 1 2");
     const auto right = [&](double time_s, const char* input) { return script.at(time_s).controllers[kRight].input(input); };
     CHECK(right(0.999, "trigger/value") == 0.0);
@@ -209,7 +209,7 @@ TEST_CASE("pressesLastFromTheirBeginningUntilBeforeTheirEnd") {
     CHECK(script.at(1.5).controllers[kLeft].inputs.count("a/value") == 0);
 }
 
-TEST_CASE("gesturesHaveAValueAndAreReady") {
+TEST_CASE("gestures have a value and are ready") {
     const Script script = parse("press right pinch_ext 1 2\ntouch right pinch_ext 3 4\naxis left grasp_ext 0 0\naxis left grasp_ext 1 1");
     const auto right = [&](double time_s, const char* input) { return script.at(time_s).controllers[kRight].input(input); };
     CHECK(right(1.5, "pinch_ext/value") == 1.0);
@@ -220,13 +220,13 @@ TEST_CASE("gesturesHaveAValueAndAreReady") {
     CHECK(script.at(0.5).controllers[kLeft].input("grasp_ext/ready_ext") == 1.0);
 }
 
-TEST_CASE("touchesDoNotPress") {
+TEST_CASE("touches do not press") {
     const ControllerState left = parse("touch left thumbstick 0 1").at(0.5).controllers[kLeft];
     CHECK(left.input("thumbstick/touch") == 1.0);
     CHECK(left.input("thumbstick/click") == 0.0);
 }
 
-TEST_CASE("axesAreLinearBetweenTheirTimes") {
+TEST_CASE("axes are linear between their times") {
     const Script script = parse("axis left thumbstick 0 -1 0\naxis left thumbstick 4 1 0.5\naxis left squeeze 0 0\naxis left squeeze 1 1");
     const auto left = [&](double time_s, const char* input) { return script.at(time_s).controllers[kLeft].input(input); };
     CHECK(left(1.0, "thumbstick/x") == doctest::Approx(-0.5));
@@ -240,7 +240,7 @@ TEST_CASE("axesAreLinearBetweenTheirTimes") {
     CHECK(left(0.0, "squeeze/touch") == 0.0);
 }
 
-TEST_CASE("aControllerThatIsNotTrackedRests") {
+TEST_CASE("a controller that is not tracked rests") {
     const Script script = parse("press right trigger 0 9\nat 1 controller right off\nat 2 controller right on");
     CHECK(script.at(0.5).controllers[kRight].tracked);
     CHECK_FALSE(script.at(1.0).controllers[kRight].tracked);
@@ -249,7 +249,7 @@ TEST_CASE("aControllerThatIsNotTrackedRests") {
     CHECK(script.at(1.5).controllers[kLeft].tracked);
 }
 
-TEST_CASE("renderingVisibilityAndFocusChangeAtTheirTimes") {
+TEST_CASE("rendering, visibility and focus change at their times") {
     const Script script = parse("at 1 should-render off\nat 2 visible off\nat 2 should-render on\nat 3 focused off");
     CHECK(script.at(0.9).should_render);
     CHECK_FALSE(script.at(1.0).should_render);
@@ -259,7 +259,7 @@ TEST_CASE("renderingVisibilityAndFocusChangeAtTheirTimes") {
     CHECK_FALSE(script.at(3.0).focused);
 }
 
-TEST_CASE("eventsHappenOnceInTheFrameThatReachesThem") {
+TEST_CASE("events happen once in the frame that reaches them") {
     const Script script = parse("at -1 slow-images 3\nat 1 lose-session\nat 1 lose-instance\nat 2 exit");
     const auto first = script.eventsIn(-kForever, 0.0);
     REQUIRE(first.size() == 1);
@@ -275,7 +275,7 @@ TEST_CASE("eventsHappenOnceInTheFrameThatReachesThem") {
     CHECK(std::string(nameOf(ScriptEvent::Kind::kExit)) == "exit");
 }
 
-TEST_CASE("framesAreChosenByNumber") {
+TEST_CASE("frames are chosen by number") {
     const auto chosen = [](const std::string& text) {
         const Script script = parse(text);
         std::string frames;
@@ -292,14 +292,14 @@ TEST_CASE("framesAreChosenByNumber") {
     CHECK(chosen("frames from 1 to 8 every 3") == "147");
 }
 
-TEST_CASE("extensionsAndTheMaskCanBeSwitched") {
+TEST_CASE("extensions and the mask can be switched") {
     const Script script = parse("extension XR_KHR_visibility_mask off\nvisibility-mask on");
     CHECK_FALSE(script.allowsExtension("XR_KHR_visibility_mask"));
     CHECK(script.allowsExtension("XR_KHR_vulkan_enable2"));
     CHECK(script.visibility_mask);
 }
 
-TEST_CASE("headsetFilesGiveSizeDistanceCantingAndAngles") {
+TEST_CASE("headset files give size, distance, canting and angles") {
     const Script script = Script::parse("headset index.toml\nipd 0.064", std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets/a.script");
     CHECK(script.system_name == "Valve Index");
     CHECK(script.size_px == glm::uvec2(2468, 2740));
@@ -310,7 +310,7 @@ TEST_CASE("headsetFilesGiveSizeDistanceCantingAndAngles") {
     CHECK(isNear(forwardOf(state.eyes[kLeft].stage_from_eye), {-std::sin(5 * kDegree), 0.0, -std::cos(5 * kDegree)}));
 }
 
-TEST_CASE("everyHeadsetOfTheProjectIsRead") {
+TEST_CASE("every headset of the project is read") {
     std::size_t headsets = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets")) {
         INFO(entry.path().string());
@@ -320,7 +320,7 @@ TEST_CASE("everyHeadsetOfTheProjectIsRead") {
     CHECK(headsets >= 10);
 }
 
-TEST_CASE("recordedMotionStartsWhereTheHeadLineSaysAndKeepsItsTilt") {
+TEST_CASE("recorded motion starts where the head line says and keeps its tilt") {
     const Folder folder;
     // A recording that faces a quarter turn to the left and moves 1 m ahead of there: that is ahead of the wearer, too. Its second
     // pose also looks up by 60 degrees.
@@ -335,7 +335,7 @@ TEST_CASE("recordedMotionStartsWhereTheHeadLineSaysAndKeepsItsTilt") {
     CHECK(isNear(forwardOf(script.at(3.0).stage_from_head), {0.0, std::sqrt(0.75), -0.5}, 1e-9));
 }
 
-TEST_CASE("aRecordingThatBeginsTiltedStaysTiltedAsItWas") {
+TEST_CASE("a recording that begins tilted stays tilted as it was") {
     const Folder folder;
     // Looks up by 60 degrees at first and moves a metre up: up in STAGE, too, and not along the tilted head's axes.
     folder.write("m.csv", "0,0,0,0,0.5,0,0,0.86602540378443865\n1,0,1,0,0,0,0,1\n");
@@ -345,7 +345,7 @@ TEST_CASE("aRecordingThatBeginsTiltedStaysTiltedAsItWas") {
     CHECK(isNear(forwardOf(script.at(1.0).stage_from_head), {0.0, 0.0, -1.0}, 1e-9));
 }
 
-TEST_CASE("unityRecordingsAreMirrored") {
+TEST_CASE("Unity recordings are mirrored") {
     const Folder folder;
     // Left-handed with z ahead: a positive turn about y looks right, and +z is ahead.
     folder.write("m.csv", "0,0,0,0,0,0,0,1\n1,1,0,2,0,0.70710678118654752,0,0.70710678118654752\n");
@@ -354,7 +354,7 @@ TEST_CASE("unityRecordingsAreMirrored") {
     CHECK(isNear(forwardOf(state.stage_from_head), {1.0, 0.0, 0.0}));
 }
 
-TEST_CASE("theBeginningOfARecordingCanBeSkipped") {
+TEST_CASE("the beginning of a recording can be skipped") {
     const Folder folder;
     folder.write("m.csv", "0,0,0,0,0,0,0,1\n2,2,0,0,0,0,0,1\n4,2,0,8,0,0,0,1\n");
     const Script script = folder.script("head 0 position 0 0 0\nhead-motion m.csv skip 1");
@@ -363,7 +363,7 @@ TEST_CASE("theBeginningOfARecordingCanBeSkipped") {
     CHECK(isNear(script.at(2.0).stage_from_head.position, {1.0, 0.0, 4.0}));
 }
 
-TEST_CASE("recordingsInTicksAreRead" * binosplat::test::needsSharedData()) {
+TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
     const auto data = binosplat::test::sharedData();
     if (!data) { return; }
     const Script script = Script::parse("head-motion User3.csv axes unity", (*data / "headmotion" / "a.script").string());
@@ -377,7 +377,7 @@ TEST_CASE("recordingsInTicksAreRead" * binosplat::test::needsSharedData()) {
     CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
 }
 
-TEST_CASE("bindingPathsSayHandAndInput") {
+TEST_CASE("binding paths say hand and input") {
     const auto trigger = parseInputPath("/user/hand/right/input/trigger/value");
     REQUIRE(trigger.has_value());
     CHECK(trigger->side == kRight);
@@ -388,7 +388,7 @@ TEST_CASE("bindingPathsSayHandAndInput") {
     CHECK_FALSE(parseInputPath("/user/hand/left/input/").has_value());
 }
 
-TEST_CASE("theSameTimeGivesTheSameState") {
+TEST_CASE("the same time gives the same state") {
     const Script script = Script::load(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     const State once = script.at(1.7);
     (void)script.at(3.0);
@@ -398,7 +398,7 @@ TEST_CASE("theSameTimeGivesTheSameState") {
     CHECK(script.eventsIn(-kForever, kForever).back().kind == ScriptEvent::Kind::kExit);
 }
 
-TEST_CASE("theGazeMovesFromKeyToKeyOnTheHeadAndMayBeLost") {
+TEST_CASE("the gaze moves from key to key on the head and may be lost") {
     const Script script = parse("head 0 turn 90 0\ngaze 1 0 0\ngaze 2 20 -10\nat 3 gaze degraded\nat 4 gaze off\nat 5 gaze on\n");
     const auto onHead = [](const State& state) {
         return transform(inverse(state.stage_from_head), transform(state.device(kGaze).stage_from_aim, {0, 0, -1}));
@@ -417,7 +417,7 @@ TEST_CASE("theGazeMovesFromKeyToKeyOnTheHeadAndMayBeLost") {
     CHECK_FALSE(parse("eye-tracking refused").at(0.0).device(kGaze).tracked);
 }
 
-TEST_CASE("theDocumentedExampleIsTheFile") {
+TEST_CASE("the documented example is the file") {
     const std::string root = BINOSPLAT_SOURCE_DIR;
     const auto readAll = [](const std::string& path) {
         std::ifstream stream(path);
@@ -443,7 +443,7 @@ TEST_CASE("theDocumentedExampleIsTheFile") {
     CHECK(commands == 31);
 }
 
-TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {
+TEST_CASE("every extension of the runtime is documented") {
     std::ifstream stream(std::string(BINOSPLAT_SOURCE_DIR) + "/docs/openxr_runtime.md");
     const std::string page{std::istreambuf_iterator<char>(stream), {}};
     for (const Extension& extension : kExtensions) {
@@ -452,7 +452,7 @@ TEST_CASE("everyExtensionOfTheRuntimeIsDocumented") {
     }
 }
 
-TEST_CASE("everyScriptThatComesAlongIsOne") {
+TEST_CASE("every script that comes along is one") {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated")) {
         CAPTURE(entry.path().string());
