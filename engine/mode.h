@@ -41,11 +41,12 @@ enum class TileChoice {
     kPast,       // those of the greatest expected error for their cost and for each frame that they have waited, of both eyes together
 };
 
+// Of a frame that has no past.
 constexpr TileChoice choiceOf(Mode mode) {
-    return mode == Mode::kReproject   ? TileChoice::kNone
-           : mode == Mode::kPaper     ? TileChoice::kPaper
-           : mode == Mode::kPredicted ? TileChoice::kPredicted
-                                      : TileChoice::kAll;
+    return mode == Mode::kReproject                              ? TileChoice::kNone
+           : mode == Mode::kPaper                                ? TileChoice::kPaper
+           : mode == Mode::kPredicted || mode == Mode::kTemporal ? TileChoice::kPredicted
+                                                                 : TileChoice::kAll;
 }
 
 // What splats are blended by, front to back.

@@ -93,6 +93,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.square_boxes = false;
     frame.gazes = views.gazes;
     frame.mark = governed_count_;
+    frame.keep_past = true;
     if (settings.backdrop != Backdrop::kAsSet) { frame.background = colourOf(settings.backdrop); }
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // One eye's picture for both is seen through either lens.

@@ -35,7 +35,7 @@ public:
 
     [[nodiscard]] static Asked askedBy(std::span<const Eye> eyes, const FrameSettings& settings);
     [[nodiscard]] bool mayMove(const FrameSettings& settings, const Asked& asked) const {
-        return settings.mode != Mode::kPredicted || asked != asked_ || pays_;
+        return choiceOf(settings.mode) != TileChoice::kPredicted || asked != asked_ || pays_;
     }
     // A frame comes that is asked for so.
     void ask(const Asked& asked, bool may_move) {
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] const Asked& asked() const { return asked_; }
     // What became of a frame that was asked for `asked`.
     void learn(const FrameSettings& settings, const Asked& asked, bool pays) {
-        if (asked == asked_) { pays_ = settings.mode != Mode::kPredicted || pays; }
+        if (asked == asked_) { pays_ = choiceOf(settings.mode) != TileChoice::kPredicted || pays; }
     }
     void forget() { *this = {}; }
 

@@ -44,7 +44,7 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     prepare(eyes, settings);
     Commands& commands = flight().commands;
     // `predicted` may find that moving does not pay.
-    if (settings.mode == Mode::kPredicted) {
+    if (choiceOf(settings.mode) == TileChoice::kPredicted) {
         recorder().record(commands, planFrame(settings, eyes, false));
         commands.drop();
     }

@@ -47,7 +47,7 @@ void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<
     FrameSettings other = settings;
     if (settings.mode == Mode::kPaper) {
         other.stereo.center_rois = !settings.stereo.center_rois;
-    } else if (settings.mode == Mode::kPredicted) {
+    } else if (settings.mode == Mode::kPredicted || settings.mode == Mode::kTemporal) {
         other.gazes = {Gaze{}, Gaze{}};
     } else if (settings.mode == Mode::kShared) {
         other.order = settings.order == Order::kDepth ? Order::kDistance : Order::kDepth;
@@ -70,6 +70,7 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
             FrameSettings settings = frameSettings(camera, ahead.stereo);
             settings.mode = mode;
             settings.half_floats = true;
+            settings.keep_past = true;
             settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
             settings.keep_classes = ahead.tint;
             settings.square_boxes = false;

@@ -1,0 +1,197 @@
+// Facts about frames that are made from the ones before: what they equal where nothing moves, what they cost, and that the device's warp is
+// the twin's.
+#include "engine/frame/stereo_frame.h"
+#include "engine/picture/metrics.h"
+#include "engine/reference/past.h"
+#include "tests/frame_runs.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+TEST_SUITE_BEGIN("past_frames");
+
+using namespace binosplat;
+using test::Gpu;
+using test::ViewedScene;
+
+namespace {
+
+FrameSettings makeSettings(Mode mode, double budget = 0.2) {
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.keep_past = true;
+    settings.stereo.budget = budget;
+    return settings;
+}
+
+ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {208, 176}, 20000); }
+
+// A head that walks by 3 mm a frame, and turns a little.
+std::array<Eye, 2> eyesAt(const Eye& middle, double step) {
+    Eye eye = middle;
+    eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
+    eye.world_from_camera.orientation =
+        eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+    return stereoPair(eye, 0.063);
+}
+
+// Frames one after another, and beside each the full renders.
+class Walk {
+public:
+    Walk(const Context& context, const FrameSettings& settings)
+        : scene_(context, view_.scene), frame_(context, scene_), full_(context, scene_), settings_(settings), kept_(context, frame_) {}
+
+    FrameResult go(double step) {
+        eyes_ = eyesAt(view_.eye, step);
+        return frame_.render(eyes_, settings_);
+    }
+    std::array<Image, 2> shown() { return {frame_.readPicture(kLeft), frame_.readPicture(kRight)}; }
+    std::array<Image, 2> full() {
+        full_.render(eyes_, makeSettings(Mode::kShared));
+        return {full_.readPicture(kLeft), full_.readPicture(kRight)};
+    }
+    // Of the worse eye.
+    double psnr() {
+        const auto pictures = shown(), wanted = full();
+        return std::min(compare(pictures[0], wanted[0]).psnrDb(), compare(pictures[1], wanted[1]).psnrDb());
+    }
+    StereoFrame& frame() { return frame_; }
+    [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
+    [[nodiscard]] const Scene& scene() const { return view_.scene; }
+
+private:
+    ViewedScene view_ = viewAtelier();
+    GpuScene scene_;
+    StereoFrame frame_, full_;
+    FrameSettings settings_;
+    test::KeptKernels kept_;
+    std::array<Eye, 2> eyes_;
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "where no past is kept, temporal is predicted and alternate is shared, frame after frame") {
+    const ViewedScene view = viewAtelier();
+    for (const auto& [mode, same] : {std::pair(Mode::kTemporal, Mode::kPredicted), std::pair(Mode::kAlternate, Mode::kShared)}) {
+        const GpuScene scene(context(), view.scene);
+        StereoFrame frame(context(), scene), other(context(), scene);
+        const test::KeptKernels kept(context(), frame);
+        for (int step = 0; step < 2; ++step) {
+            FrameSettings settings = makeSettings(mode);
+            settings.keep_past = false;
+            frame.render(eyesAt(view.eye, step), settings);
+            other.render(eyesAt(view.eye, step), makeSettings(same));
+            for (const int eye : {kLeft, kRight}) { CHECK(frame.readPicture(eye).values == other.readPicture(eye).values); }
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 frames, and then for good, for no work") {
+    Walk walk(context(), makeSettings(Mode::kTemporal));
+    for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
+    for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
+    const auto full = walk.full();
+    for (int frame = 0; frame < 3; ++frame) {
+        const FrameResult result = walk.go(4.0);
+        CHECK(result.work_rendered == 0.0);
+        const auto shown = walk.shown();
+        for (const int eye : {kLeft, kRight}) {
+            CHECK(shown[static_cast<std::size_t>(eye)].values == full[static_cast<std::size_t>(eye)].values);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
+    Walk walk(context(), makeSettings(Mode::kTemporal));
+    walk.go(0.0);
+    CHECK(walk.shown()[0].values == walk.full()[0].values);  // nothing was there to be made from
+    for (int frame = 1; frame <= 24; ++frame) {
+        const FrameResult result = walk.go(frame);
+        REQUIRE(result.counters.warped);
+        CHECK(result.work_rendered > 0.15);
+        CHECK(result.work_rendered < 0.22);  // a tile more than the budget at most
+        CHECK(result.counters.warped->tiles_patched > 0);
+        CHECK(result.counters.commands <= 42);
+        if (frame % 6 == 0) { CHECK(walk.psnr() > 36.0); }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "more budget is a better picture, and all of it is the full render") {
+    std::vector<double> reached;
+    for (const double budget : {0.05, 0.2, 0.5}) {
+        Walk walk(context(), makeSettings(Mode::kTemporal, budget));
+        for (int frame = 0; frame < 12; ++frame) { walk.go(frame); }
+        reached.push_back(walk.psnr());
+    }
+    CHECK(reached[0] < reached[1]);
+    CHECK(reached[1] < reached[2]);
+    Walk walk(context(), makeSettings(Mode::kTemporal, 1.0));
+    for (int frame = 0; frame < 3; ++frame) { walk.go(frame); }
+    CHECK(walk.psnr() > 80.0);
+}
+
+TEST_CASE_FIXTURE(Gpu, "after a jump of the head nothing is made from what it saw before") {
+    Walk walk(context(), makeSettings(Mode::kTemporal));
+    for (int frame = 0; frame < 3; ++frame) { walk.go(frame); }
+    walk.go(200.0);
+    CHECK(walk.shown()[1].values == walk.full()[1].values);
+}
+
+TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the other is what its last full render shows from there") {
+    Walk walk(context(), makeSettings(Mode::kAlternate));
+    walk.go(0.0);
+    std::array<int, 2> turns{};
+    for (int frame = 1; frame <= 6; ++frame) {
+        walk.go(frame);
+        const auto shown = walk.shown(), full = walk.full();
+        const bool left = shown[0].values == full[0].values, right = shown[1].values == full[1].values;
+        CHECK(left != right);
+        ++turns[left ? 0 : 1];
+        CHECK(std::min(compare(shown[0], full[0]).psnrDb(), compare(shown[1], full[1]).psnrDb()) > 35.0);
+    }
+    CHECK(turns == std::array{3, 3});
+}
+
+TEST_CASE_FIXTURE(Gpu, "frames that are not waited for are the same ones") {
+    for (const Mode mode : {Mode::kTemporal, Mode::kAlternate}) {
+        Walk waited(context(), makeSettings(mode));
+        const ViewedScene view = viewAtelier();
+        const GpuScene scene(context(), view.scene);
+        StereoFrame ahead(context(), scene);
+        for (int frame = 0; frame < 5; ++frame) {
+            waited.go(frame);
+            ahead.renderAhead(eyesAt(view.eye, frame), makeSettings(mode));
+        }
+        ahead.finish();
+        const auto shown = waited.shown();
+        for (const int eye : {kLeft, kRight}) { CHECK(ahead.readPicture(eye).values == shown[static_cast<std::size_t>(eye)].values); }
+    }
+}
+
+// The twin samples all pixels with six taps each way and looks for each by itself, in float64: pixels at edges, for which the device takes
+// four, are all that differs.
+TEST_CASE_FIXTURE(Gpu, "a picture that is only warped is the float64 twin's") {
+    Walk walk(context(), makeSettings(Mode::kTemporal, 0.0));
+    walk.go(0.0);
+    const std::array<Eye, 2> before = walk.eyes();
+    walk.go(1.0);
+    const std::array<Image, 2> shown = walk.shown();
+    for (const int e : {kLeft, kRight}) {
+        const auto eye = static_cast<std::size_t>(e);
+        const reference::Settings settings{.inverse_depth_moments = true};
+        const reference::Past past = reference::pastOf(before[eye], reference::render(walk.scene(), before[eye], settings));
+        const reference::WarpedPast warped = reference::warpPast(past, walk.eyes()[eye]);
+        Image twin{walk.eyes()[eye].size_px, 4, {}};
+        for (const glm::dvec4& value : warped.picture.rgba) {
+            for (int channel = 0; channel < 4; ++channel) { twin.values.push_back(static_cast<float>(value[channel])); }
+        }
+        const double psnr_db = compare(shown[eye], twin).psnrDb();
+        MESSAGE("to the twin: " << psnr_db << " dB");
+        CHECK(psnr_db > 45.0);
+    }
+}
+
+TEST_SUITE_END();
