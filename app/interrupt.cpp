@@ -1,6 +1,8 @@
 // A signal handler may only set a mark, and only a global one.
 #include "app/interrupt.h"
 
+#include "engine/platform.h"
+
 #include <csignal>
 
 namespace binosplat {
@@ -22,6 +24,7 @@ Interrupt::Interrupt() {
     g_signal = 0;
     std::signal(SIGINT, mark);
     std::signal(SIGTERM, mark);
+    watchForEnd(mark);
 }
 
 Interrupt::~Interrupt() {

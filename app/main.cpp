@@ -1,4 +1,13 @@
 // The program's entry point.
 #include "app/program.h"
+#include "engine/platform.h"
 
-int main(int argument_count, char** arguments) { return binosplat::runProgram(argument_count, arguments); }
+#include <string>
+#include <vector>
+
+int main(int argument_count, char** arguments) {
+    const std::vector<std::string> words = binosplat::programArguments(argument_count, arguments);
+    std::vector<const char*> pointers;
+    for (const std::string& word : words) { pointers.push_back(word.c_str()); }
+    return binosplat::runProgram(static_cast<int>(pointers.size()), pointers.data());
+}

@@ -1,5 +1,9 @@
 # What `cmake --install` puts where, and the packages that `cpack` makes of it: two .deb files and a .tar.gz.
 # The viewer's component is here; the simulated runtime's, "runtime", is in xr/simulated.
+if(WIN32)
+    include(${CMAKE_CURRENT_LIST_DIR}/windows/package.cmake)
+    return()
+endif()
 include(GNUInstallDirs)
 
 install(TARGETS binosplat RUNTIME COMPONENT viewer)

@@ -40,7 +40,7 @@ void run(int argument_count, const char* const* arguments) {
 
 int report(ExitCode code, std::string message) {
     std::ranges::replace(message, '\n', ' ');
-    fmt::print(stderr, "binosplat: {}\n", message);
+    tellUser("binosplat: " + message);
     return static_cast<int>(code);
 }
 

@@ -32,6 +32,26 @@ std::filesystem::path userConfigFolder();
 
 bool isTerminal(std::FILE* stream);
 
+// What `main` was given, as UTF-8.
+std::vector<std::string> programArguments(int count, const char* const* arguments);
+
+// Whether it was started by a click, in a console of its own that ends with it.
+bool isStartedByClick();
+// A line for standard error, which is also shown in a window if a click started the program.
+void tellUser(const std::string& line);
+// Asks in a window if a click started the program; false if the answer is no, or if nobody can be asked.
+bool askUser(const std::string& question);
+
+// Has `end` called with SIGINT or SIGTERM where the system tells the program in other ways than by these signals to end: a console that is
+// closed, a user who logs off. The system then waits for the program, for some seconds.
+void watchForEnd(void (*end)(int signal));
+
+// Whether there may be a window.
+bool hasDisplay();
+// Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first. They need not exist.
+std::vector<std::filesystem::path> systemFonts();
+std::vector<std::filesystem::path> furtherSystemFonts();
+
 std::uint64_t processId();
 // How long the calling thread has worked: what it waited does not count.
 double threadSeconds();

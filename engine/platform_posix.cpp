@@ -64,6 +64,36 @@ fs::path userConfigFolder() { return userFolder("XDG_CONFIG_HOME", ".config"); }
 
 bool isTerminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
+std::vector<std::string> programArguments(int count, const char* const* arguments) { return {arguments, arguments + count}; }
+
+bool isStartedByClick() { return false; }
+
+void tellUser(const std::string& line) { fmt::print(stderr, "{}\n", line); }
+
+bool askUser(const std::string&) { return false; }
+
+void watchForEnd(void (*)(int)) {}
+
+bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
+
+std::vector<fs::path> systemFonts() {
+    std::vector<fs::path> files;
+    for (const char* folder : {"truetype/dejavu", "TTF", "dejavu-sans-fonts", "dejavu"}) {
+        files.push_back(fs::path("/usr/share/fonts") / folder / "DejaVuSans.ttf");
+    }
+    return files;
+}
+
+std::vector<fs::path> furtherSystemFonts() {
+    std::vector<fs::path> files = systemFonts();
+    for (const char* file :
+         {"opentype/noto/NotoSansCJK-Regular.ttc", "noto-cjk/NotoSansCJK-Regular.ttc", "google-noto-cjk/NotoSansCJK-Regular.ttc",
+          "truetype/wqy/wqy-microhei.ttc", "truetype/droid/DroidSansFallbackFull.ttf"}) {
+        files.push_back(fs::path("/usr/share/fonts") / file);
+    }
+    return files;
+}
+
 std::uint64_t processId() { return static_cast<std::uint64_t>(::getpid()); }
 
 double threadSeconds() {

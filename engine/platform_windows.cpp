@@ -5,13 +5,17 @@
 
 #include <windows.h>
 
+#include <shellapi.h>
+
 #include <fcntl.h>
 #include <io.h>
 #include <share.h>
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <random>
@@ -86,6 +90,62 @@ bool isTerminal(std::FILE* stream) {
     DWORD mode = 0;
     return ::_isatty(::_fileno(stream)) != 0 && ::GetConsoleMode(handleOf(stream), &mode) != 0 &&
            ::SetConsoleMode(handleOf(stream), mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+std::vector<std::string> programArguments(int count, const char* const* arguments) {
+    // Those of `main` are in the code page of the system, which may lack their letters.
+    int words = 0;
+    wchar_t** const split = ::CommandLineToArgvW(::GetCommandLineW(), &words);
+    if (split == nullptr) { return {arguments, arguments + count}; }
+    std::vector<std::string> result(static_cast<std::size_t>(words));
+    std::transform(split, split + words, result.begin(), narrow);
+    ::LocalFree(split);
+    return result;
+}
+
+bool isStartedByClick() {
+    std::array<DWORD, 2> others{};  // in the console
+    return ::GetConsoleProcessList(others.data(), static_cast<DWORD>(others.size())) == 1 && isTerminal(stderr);
+}
+
+void tellUser(const std::string& line) {
+    fmt::print(stderr, "{}\n", line);
+    if (isStartedByClick()) { ::MessageBoxW(nullptr, wide(line).c_str(), L"binosplat", MB_OK | MB_ICONERROR | MB_SETFOREGROUND); }
+}
+
+bool askUser(const std::string& question) {
+    return isStartedByClick() &&
+           ::MessageBoxW(nullptr, wide(question).c_str(), L"binosplat", MB_YESNO | MB_ICONQUESTION | MB_SETFOREGROUND) == IDYES;
+}
+
+static void (*g_end)(int) = nullptr;  // the system calls back without anything of ours
+
+void watchForEnd(void (*end)(int)) {
+    g_end = end;
+    ::SetConsoleCtrlHandler(
+        [](DWORD event) -> BOOL {
+            if (event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT) { return FALSE; }  // a signal
+            g_end(SIGTERM);
+            ::Sleep(INFINITE);  // the process ends as soon as this returns
+            return TRUE;
+        },
+        TRUE);
+}
+
+bool hasDisplay() { return true; }
+
+static std::vector<fs::path> fontFiles(std::initializer_list<const char*> names) {
+    const fs::path folder = fs::path(wide(environment("WINDIR"))) / "Fonts";
+    std::vector<fs::path> files;
+    for (const char* name : names) { files.push_back(folder / name); }
+    return files;
+}
+
+std::vector<fs::path> systemFonts() { return fontFiles({"segoeui.ttf", "arial.ttf", "tahoma.ttf", "DejaVuSans.ttf"}); }
+
+std::vector<fs::path> furtherSystemFonts() {
+    return fontFiles(
+        {"segoeui.ttf", "seguisym.ttf", "msyh.ttc", "YuGothM.ttc", "meiryo.ttc", "malgun.ttf", "msgothic.ttc", "simsun.ttc", "arial.ttf"});
 }
 
 std::uint64_t processId() { return ::GetCurrentProcessId(); }

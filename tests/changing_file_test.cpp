@@ -4,7 +4,7 @@
 #include "engine/scene/procedural.h"
 #include "engine/scene/spz.h"
 #include "tests/hostile_scenes.h"
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 #include "tests/sog_scenes.h"
 #endif
 
@@ -45,7 +45,7 @@ std::vector<std::string> writeFiles(const Folder& folder) {
                                    folder.write("a.splat", makeSplatFile()), folder.write("a.spz", gzip(makeSpz(3).bytes())),
                                    folder.file("large.ply")};
     writePly(makeBuiltin("builtin:atelier", 5000), paths.back());
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
     paths.push_back(folder.write("a.sog", makeZip(makeSog())));
 #endif
     return paths;
@@ -85,7 +85,7 @@ TEST_CASE("a file that is removed or replaced while it is read is read as it was
     }
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 TEST_CASE("a SOG folder that loses a picture while it is read is refused in one line") {
     const Folder folder;
     const std::string path = writeSogFolder(folder, "sog", makeSog());

@@ -46,7 +46,7 @@ TEST_CASE("a scene goes through PLY unchanged and through SPZ within its quanta"
     }
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 TEST_CASE("a scene goes through SOG and back, and stays discs") {
     const Workplace work;
     const Outcome outcome = work.run("convert builtin:slanted-wall a.sog");
@@ -88,7 +88,7 @@ TEST_CASE("each format says in one line what it loses") {
         "positions in steps of 1.53e-05 units, scales of 6 %; colours and opacities of 8 bits; rotations of 10 bits a component; that its "
         "splats are discs (render it with --flatten)");
     CHECK(lossOf("a.spz b.spz").find("discs") == std::string::npos);
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
     CHECK(lossOf("a.ply a.sog") ==
           "the order of the splats; positions of 16 bits over the logarithm of the scene's extent; scales and colours of 256 values each; "
           "rotations and opacities of 8 bits");

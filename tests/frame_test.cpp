@@ -168,7 +168,7 @@ TEST_CASE_FIXTURE(Gpu, "colours of light are blended as light, over the light of
     }
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO  // which reads SOG
+#ifdef BINOSPLAT_SOG  // which reads SOG
 TEST_CASE_FIXTURE(Gpu, "a real scene of 3D Gaussians is rendered as the twin renders it, dimmed or not" * test::needsSharedData()) {
     const auto data = test::sharedData();
     if (!data) { return; }

@@ -3,7 +3,7 @@
 #include "tests/gltf_files.h"
 #include "tests/hostile_scenes.h"
 #include "tests/ksplat_files.h"
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 #include "tests/streamed_scenes.h"
 #endif
 
@@ -56,7 +56,7 @@ std::multimap<std::string, std::string> makeSeeds() {
     seeds.emplace("gltf", gltf.glb());
     seeds.emplace("gltf", makeGltf(0).embedded());
 #endif
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
     for (const int version : {1, 2}) {
         SogText files = makeSog(version, version == 1);
         seeds.emplace("sog_meta", files["meta.json"]);

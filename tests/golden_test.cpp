@@ -66,8 +66,8 @@ ViewedScene viewOf(const Golden& golden) { return test::viewBuiltin(golden.scene
 }  // namespace
 
 TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render") {
-#ifndef BINOSPLAT_OPENIMAGEIO
-    MESSAGE("skipped: built without OpenImageIO, golden pictures are PNG files");
+#ifndef BINOSPLAT_HAS_PNG
+    MESSAGE("skipped: built without PNG, golden pictures are PNG files");
 #else
     const char* write = std::getenv("BINOSPLAT_WRITE_GOLDENS");
     for (const Golden& golden : kGoldens) {
@@ -84,7 +84,7 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render") {
 }
 
 TEST_CASE("golden pictures differ from each other and from themselves shifted") {
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_HAS_PNG
     std::vector<Image> images;
     for (const Golden& golden : kGoldens) { images.push_back(readPicture(goldenStem(golden).string() + ".png")); }
     for (std::size_t i = 0; i < images.size(); ++i) {

@@ -196,7 +196,7 @@ TEST_CASE("weightsThatOverflowAreRefused") {
     CHECK_THROWS_AS(static_cast<void>(lpips.measure(makeWaves({17, 17}, 0.0), makeWaves({17, 17}, 1.0))), Error);
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_HAS_PNG
 TEST_CASE("teddysViewsAreAsFarApartAsAnotherProgramSays" * needsSharedData()) {
     const auto data = sharedData(), file = trainedWeights();
     if (!file) { return; }

@@ -15,7 +15,7 @@ TEST_CASE("a SOG scene names the build that reads it") {
     for (const std::string& source : {folder.file("."), folder.file("streamed"), folder.file("streamed/lod-meta.json"),
                                       folder.file("meta.json"), folder.write("a.sog", "PK\x03\x04 and so on")}) {
         const std::string message = loadError(source);
-        CHECK(contains(message, "a SOG scene, which this build cannot read: configure with BINOSPLAT_OPENIMAGEIO=ON"));
+        CHECK(contains(message, "a SOG scene, which this build cannot read: configure with BINOSPLAT_SOG=ON"));
         CHECK(message.find('\n') == std::string::npos);
     }
 }

@@ -90,7 +90,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     sketch.pages.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.contains(chinese));
     CHECK(isThere(0x5d0));
-    const std::vector<fs::path> further = furtherFontFiles();
+    const std::vector<fs::path> further = furtherSystemFonts();
     if (std::ranges::any_of(further, [](const fs::path& file) { return fs::exists(file) && file.filename() != "DejaVuSans.ttf"; })) {
         CHECK(isThere(0x68ee));
         CHECK(isThere(0x6797));

@@ -120,7 +120,7 @@ TEST_CASE("failedWriteLeavesNothing") {
     CHECK(fs::is_empty(folder.path));
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_HAS_PNG
 
 TEST_CASE("colours of a picture with alpha are read as they are stored") {
     // One pixel: 200, 100, 50, and an alpha of 128.

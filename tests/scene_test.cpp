@@ -184,7 +184,7 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene,
     CHECK(contains(loadError(root.string() + "/point_cloud"), "is a directory"));
 
     place("meta.json", "{}");
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
     CHECK(contains(loadError(root.string()), "meta.json"));
     CHECK_FALSE(contains(loadError(root.string()), "lod-meta.json"));
     place("lod-meta.json", "{}");

@@ -11,7 +11,7 @@
 #include "tests/gpu_fixture.h"
 #include "tests/run_program.h"
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 #include "tests/sog_scenes.h"
 #endif
 
@@ -80,7 +80,7 @@ TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was s
     CHECK_FALSE(scenes.loading().has_value());
 }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or without a slash at its end") {
     fs::create_directory(path / "statue");
     for (const auto& [name, bytes] : makeSog()) { std::ofstream(path / "statue" / name, std::ios::binary) << bytes; }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also those of the checks of .ci/run.
+# Installs the Debian packages that the build needs and that are missing, and nothing else; with --ci also those of the checks of .ci/run, with
+# --windows those of the build for Windows.
 set -euo pipefail
 
 packages=(
@@ -15,6 +16,8 @@ packages=(
 )
 # For continuous integration besides: the check of the format.
 [[ ${1:-} != --ci ]] || packages+=(clang-format)
+# For Windows: the compiler, and what unpacks and compiles Debian's source packages.
+[[ ${1:-} != --windows ]] || packages+=(g++-mingw-w64-x86-64-posix libz-mingw-w64-dev xz-utils patch make python3-jinja2)
 
 if ! command -v dpkg-query >/dev/null; then
     echo "third_party/install.sh: this is not a Debian system; install by hand: ${packages[*]}" >&2

@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 // A headset that rests has been seen after a second.
 constexpr std::uint64_t kFramesAtRest = 90;
 
-bool hasDisplay() { return !environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty(); }
-
 // Beside the program, as it is built, or where it and its package are installed.
 fs::path findManifest() {
     const fs::path folder = programFile().parent_path();

@@ -1,4 +1,5 @@
-// Image files: EXR and PNG through OpenImageIO, which nothing outside this folder knows; PFM and PPM in a build without it.
+// Image files: EXR and PNG through OpenImageIO, or through OpenEXR and libpng, which nothing outside this folder knows; PFM and PPM in a
+// build without any of them.
 // A failed write leaves no file. Files that others may watch are written where OutputFiles stages them.
 #pragma once
 

@@ -3,7 +3,7 @@
 
 #include "engine/error.h"
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 #include <webp/decode.h>
 #include <webp/encode.h>
 #endif
@@ -52,7 +52,7 @@ glm::uvec2 streamSize(std::span<const std::byte> stream) {
 
 glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name) { return streamSize(findStream(file, name)); }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 
 bool canDecodeWebp() { return true; }
 

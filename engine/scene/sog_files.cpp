@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 #include <zip.h>
 #endif
 
@@ -51,7 +51,7 @@ private:
     std::string folder_;
 };
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 
 struct ArchiveCloser {
     void operator()(zip_t* archive) const { zip_discard(archive); }
@@ -145,7 +145,7 @@ private:
 
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) { return std::make_unique<FolderFiles>(folder); }
 
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
 
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { return std::make_unique<BundleFiles>(file.name(), file.sizeBytes()); }
 

@@ -25,7 +25,7 @@ public:
 
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
 
-// Only in a build with OpenImageIO, as all of SOG. Throws Error if `file` is no zip archive or holds no meta.json.
+// Only in a build with SOG. Throws Error if `file` is no zip archive or holds no meta.json.
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file);
 
 struct NamedBytes {

@@ -134,8 +134,8 @@ void unpackSplat(const SogMeta& meta, const SogPictures& pictures, std::size_t s
 }  // namespace
 
 void requireSogDecoder(const std::string& source) {
-    check(canDecodeWebp(),
-          "{}: a SOG scene, which this build cannot read: configure with BINOSPLAT_OPENIMAGEIO=ON, or convert it to PLY or SPZ", source);
+    check(canDecodeWebp(), "{}: a SOG scene, which this build cannot read: configure with BINOSPLAT_SOG=ON, or convert it to PLY or SPZ",
+          source);
 }
 
 SogSplats::SogSplats(std::unique_ptr<SogFiles> files) : files_(std::move(files)) {

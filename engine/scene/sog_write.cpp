@@ -118,7 +118,7 @@ std::vector<NamedBytes> encodeAll(std::vector<std::pair<std::string, Pixels>>& p
 std::size_t sogPaletteSize(const Scene& scene) { return std::min(std::bit_floor(scene.size()), kMostPaletteEntries); }
 
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress) {
-    check(canDecodeWebp(), "{}: this build cannot write SOG: configure with BINOSPLAT_OPENIMAGEIO=ON, or write PLY or SPZ", path);
+    check(canDecodeWebp(), "{}: this build cannot write SOG: configure with BINOSPLAT_SOG=ON, or write PLY or SPZ", path);
     check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
     PartFile file(path);
     const glm::uvec2 size_px = choosePictureSize(scene.size(), path);

@@ -180,7 +180,7 @@ constexpr auto kTargets = std::to_array<Target>({
 #endif
     {"sog_meta", readSogMeta},
     {"lod_meta", readLodMeta},
-#ifdef BINOSPLAT_OPENIMAGEIO
+#ifdef BINOSPLAT_SOG
     {"sog_bundle", readScene},
 #endif
     {"settings", readSettings},

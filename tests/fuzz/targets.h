@@ -13,7 +13,7 @@ struct Target {
     void (*read)(std::span<const std::uint8_t> input);
 };
 
-// All of this build: a build without OpenImageIO has no SOG.
+// All of this build: one may be without SOG.
 std::span<const Target> targets();
 
 // Reads `input` as target `name` does. Ends the process if what is thrown is no Error or its message is not one line.

@@ -3,7 +3,7 @@
 include(GNUInstallDirs)
 set(manifest_folder ${CMAKE_INSTALL_DATADIR}/openxr/1)
 file(RELATIVE_PATH library_folder /prefix/${manifest_folder} /prefix/${CMAKE_INSTALL_LIBDIR})
-set(SIMULATED_LIBRARY_PATH ${library_folder}/lib${SIMULATED_NAME}.so)
+set(SIMULATED_LIBRARY_PATH ${library_folder}/${SIMULATED_LIBRARY_FILE})
 configure_file(simulated_runtime.json.in ${CMAKE_BINARY_DIR}/install/${SIMULATED_NAME}.json @ONLY)
 install(TARGETS binosplat_simulated_runtime LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
 install(FILES ${CMAKE_BINARY_DIR}/install/${SIMULATED_NAME}.json DESTINATION ${manifest_folder} COMPONENT runtime)

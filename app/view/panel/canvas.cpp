@@ -95,6 +95,12 @@ void Canvas::startImGui() {
 }
 
 void Canvas::startBackend() {
+    // Where the backend is compiled without Vulkan's functions of its own.
+    const auto find = [](const char* name, void* context) {
+        const Context& my = *static_cast<const Context*>(context);
+        return my.instance().getDispatcher()->vkGetInstanceProcAddr(*my.instance(), name);
+    };
+    check(ImGui_ImplVulkan_LoadFunctions(find, const_cast<Context*>(&context_)), "the overlay cannot be drawn: Vulkan lacks a function");
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = *context_.instance();
     info.PhysicalDevice = *context_.physicalDevice();

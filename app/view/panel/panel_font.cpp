@@ -83,29 +83,11 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
     return true;
 }
 
-std::vector<fs::path> dejavuFiles() {
-    std::vector<fs::path> files;
-    for (const char* folder : {"truetype/dejavu", "TTF", "dejavu-sans-fonts", "dejavu"}) {
-        files.push_back(fs::path("/usr/share/fonts") / folder / "DejaVuSans.ttf");
-    }
-    return files;
-}
-
 }  // namespace
 
 std::vector<fs::path> fontFiles() {
     if (const std::string chosen = environment("BINOSPLAT_FONT"); !chosen.empty()) { return {chosen}; }
-    return dejavuFiles();
-}
-
-std::vector<fs::path> furtherFontFiles() {
-    std::vector<fs::path> files = dejavuFiles();
-    for (const char* file :
-         {"opentype/noto/NotoSansCJK-Regular.ttc", "noto-cjk/NotoSansCJK-Regular.ttc", "google-noto-cjk/NotoSansCJK-Regular.ttc",
-          "truetype/wqy/wqy-microhei.ttc", "truetype/droid/DroidSansFallbackFull.ttf"}) {
-        files.push_back(fs::path("/usr/share/fonts") / file);
-    }
-    return files;
+    return systemFonts();
 }
 
 bool looksLikeFont(std::span<const unsigned char> bytes) {
@@ -173,7 +155,7 @@ void PanelFont::build() {
     // They are large, and only now needed.
     std::vector<SystemFont> wanted = fontsWith({added_.begin(), added_.end()});
     if (wanted.empty() && fonts_.size() == 1) {
-        for (const fs::path& file : furtherFontFiles()) { wanted.push_back({file}); }
+        for (const fs::path& file : furtherSystemFonts()) { wanted.push_back({file}); }
     }
     for (const SystemFont& font : wanted) {
         const bool is_there = std::ranges::any_of(

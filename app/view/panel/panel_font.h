@@ -21,11 +21,8 @@ namespace binosplat {
 // Of a line. Capitals of DejaVu Sans are 0.63 times as high: half a degree, which is read at arm's length in any headset.
 inline constexpr float kFontPx = 24.0f;
 
-// Where the font may lie, the best place first: BINOSPLAT_FONT alone if it is set, else where systems keep DejaVu Sans.
+// Where the font may lie, the best place first: BINOSPLAT_FONT alone if it is set, else where the system keeps its own.
 std::vector<std::filesystem::path> fontFiles();
-// For letters that the font lacks where the system does not tell which fonts have them (system_fonts.h): where systems keep DejaVu Sans and
-// fonts of Chinese, Japanese and Korean.
-std::vector<std::filesystem::path> furtherFontFiles();
 
 // Whether the tables that a TrueType or OpenType font says it has, and those that are needed, lie within these bytes; of a collection, its
 // first font.

@@ -69,7 +69,7 @@ void explain(const char* function, const Refusal& refusal) {
     // that it has heard of, also without an instance after one was refused; that is no mistake of the application's.
     const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
     if (!is_loaders) queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason);
-    const bool is_wanted = settingOf("EXPLAIN").value != nullptr && !is_loaders;
+    const bool is_wanted = settingOf("EXPLAIN").is_there && !is_loaders;
     if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) return;
     say(std::string(function) + ": " + nameOf(refusal.result) + ": " + refusal.reason);
 }

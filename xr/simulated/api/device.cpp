@@ -1,13 +1,12 @@
 // The runtime's own Vulkan calls: images and their memory, layouts, and texels copied back.
 #include "xr/simulated/api/device.h"
 
-#include <dlfcn.h>
-
 #include <array>
 #include <cstring>
 #include <vulkan/vulkan.hpp>
 
 #include "xr/simulated/api/answer.h"
+#include "xr/simulated/system.h"
 
 namespace simulated {
 namespace {
@@ -51,10 +50,9 @@ vk::ImageLayout layoutOf(const ImageInfo& info) {
 }  // namespace
 
 PFN_vkGetInstanceProcAddr systemVulkanLoader() {
-    // Held open for good: the application's Vulkan objects may outlive this runtime's interest in them.
-    static void* const library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-    require(library != nullptr, XR_ERROR_RUNTIME_FAILURE, "there is no libvulkan.so.1");
-    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library, "vkGetInstanceProcAddr"));
+    void* const function = vulkanLoadersFunction("vkGetInstanceProcAddr");
+    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, "there is no ", kVulkanLoader);
+    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(function);
 }
 
 struct Device::Implementation {

@@ -2,6 +2,7 @@
 #include "xr/simulated/api/layers.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "xr/simulated/api/poses.h"
 #include "xr/simulated/api/spaces.h"
@@ -59,7 +60,7 @@ void checkView(const Session& session, const XrCompositionLayerProjectionView& v
     checkType(view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW);
     checkPose(view.pose);
     for (const float angle : {view.fov.angleLeft, view.fov.angleRight, view.fov.angleUp, view.fov.angleDown}) {
-        require(std::abs(angle) < static_cast<float>(M_PI_2), XR_ERROR_VALIDATION_FAILURE, "a view angle is ", angle,
+        require(std::abs(angle) < static_cast<float>(std::numbers::pi / 2), XR_ERROR_VALIDATION_FAILURE, "a view angle is ", angle,
                 ", must be within a quarter turn");
     }
     checkColour(checkSubImage(session, view.subImage));

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "xr/simulated/api/api.h"
+#include "xr/simulated/system.h"
 
 namespace {
 
@@ -49,6 +50,7 @@ bool isUnderstood(const NegotiateRuntimeRequest* request) {
 extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(const NegotiateLoaderInfo* loader_info,
                                                                                              NegotiateRuntimeRequest* request) {
     if (!isUnderstood(loader_info) || !isUnderstood(request)) return XR_ERROR_INITIALIZATION_FAILED;
+    simulated::keepThisLibrary();
     request->interface_version = kInterfaceVersion;
     // What this runtime implements, or what the loader can do with.
     request->api_version = std::min<XrVersion>(kApiVersion, loader_info->most_api_version);

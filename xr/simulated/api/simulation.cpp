@@ -15,9 +15,9 @@ namespace {
 
 bool wantsRealClock() {
     const Setting setting = settingOf("CLOCK");
-    const std::string_view clock = setting.isSet() ? setting.value : "lockstep";
+    const std::string clock = setting.isSet() ? setting.value : "lockstep";
     if (clock != "lockstep" && clock != "real") {
-        throw std::runtime_error(setting.variable + " is '" + std::string(clock) + "', must be lockstep or real");
+        throw std::runtime_error(setting.variable + " is '" + clock + "', must be lockstep or real");
     }
     return clock == "real";
 }
@@ -52,10 +52,7 @@ std::unique_ptr<Simulation>& survivor() {
 
 std::string originOfEnvironment() {
     std::string origin;
-    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) {
-        const Setting setting = settingOf(name);
-        origin.append(setting.isSet() ? setting.value : "").append("\n");
-    }
+    for (const char* name : {"SCRIPT", "CLOCK", "OUT", "PROFILE"}) { origin.append(settingOf(name).value).append("\n"); }
     return origin;
 }
 

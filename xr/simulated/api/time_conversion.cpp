@@ -35,7 +35,7 @@ XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct
         require(time < INT64_MAX - std::max<std::int64_t>(offset, 0) && time + offset >= 0, XR_ERROR_TIME_INVALID,
                 "CLOCK_MONOTONIC does not have the time ", time);
         output.tv_sec = (time + offset) / kSecond;
-        output.tv_nsec = (time + offset) % kSecond;
+        output.tv_nsec = static_cast<long>((time + offset) % kSecond);
         return XR_SUCCESS;
     });
 }

@@ -42,10 +42,10 @@ bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDe
 std::size_t wantedDevice() {
     const Setting setting = settingOf("GPU");
     if (!setting.isSet()) return 0;
-    const char* const text = setting.value;
+    const std::string& text = setting.value;
     std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text, text + std::strlen(text), index);
-    require(error == std::errc() && *end == '\0', XR_ERROR_RUNTIME_FAILURE, setting.variable, " is '", text,
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    require(error == std::errc() && end == text.data() + text.size(), XR_ERROR_RUNTIME_FAILURE, setting.variable, " is '", text,
             "', must be a whole number from 0 on");
     return index;
 }

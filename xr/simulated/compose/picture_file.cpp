@@ -1,12 +1,16 @@
 // PNG files through libpng's simplified interface; the only place here that knows it.
 #include "xr/simulated/compose/picture_file.h"
 
+#include "xr/simulated/system.h"
+
 #include <fmt/format.h>
 #include <png.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -45,7 +49,7 @@ void writePng(const fs::path& path, const RgbPicture& picture) {
     // Fast to pack: a run writes many.
     image.flags = PNG_IMAGE_FLAG_FAST;
     // Exclusively: what lies or links there is somebody else's.
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(unfinished.c_str(), "wbx"), &std::fclose);
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(createFile(unfinished), &std::fclose);
     if (file == nullptr) { refuse(path, "written", std::strerror(errno)); }
     std::error_code error;
     std::string reason;
@@ -63,8 +67,11 @@ void writePng(const fs::path& path, const RgbPicture& picture) {
 }
 
 RgbPicture readPng(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) { refuse(path, "read", std::strerror(errno)); }
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
     PngImage image;
-    if (png_image_begin_read_from_file(&image, path.c_str()) == 0) { refuse(path, "read", image.message); }
+    if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) { refuse(path, "read", image.message); }
     if ((image.format & PNG_FORMAT_FLAG_COLOR) == 0) { refuse(path, "read", "not a colour picture"); }
     image.format = PNG_FORMAT_RGB;
     RgbPicture picture{{image.width, image.height}, std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};

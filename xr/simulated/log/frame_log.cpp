@@ -1,6 +1,8 @@
 // The log of frames. nlohmann-json writes the shortest digits that read back as the same double.
 #include "xr/simulated/log/frame_log.h"
 
+#include "xr/simulated/system.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cerrno>
@@ -84,7 +86,7 @@ std::string betweenLine(const BetweenRecord& record) {
     return textOf(json);
 }
 
-FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "wbx"), &std::fclose) {
+FrameLog::FrameLog(const std::filesystem::path& path) : path_(path), file_(createFile(path), &std::fclose) {
     if (file_ == nullptr) { throw std::runtime_error(path_.string() + ": cannot be made (" + std::strerror(errno) + ")"); }
 }
 

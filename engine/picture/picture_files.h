@@ -1,0 +1,25 @@
+// PNG and EXR, and whatever else the library of this build knows: one of picture_files_*.cpp.
+#pragma once
+
+#include "engine/picture/image.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+
+namespace binosplat {
+
+// Values that a picture may have: a broken file must not ask for all there is.
+inline constexpr std::uint64_t kMostPictureValues = std::uint64_t{1} << 30;
+
+// Without, neither of the next two is called.
+bool hasPngAndExr();
+// float32. Throws Error; the file is gone then.
+void writeExr(const std::filesystem::path& path, const Image& image);
+// 8 bits, of an image of three channels. Throws Error; the file is gone then.
+void writePng(const std::filesystem::path& path, const Image& rgb);
+
+// `file` is the file `path`, at its beginning. Throws Error.
+Image readPictureFile(const std::filesystem::path& path, std::FILE* file);
+
+}  // namespace binosplat
