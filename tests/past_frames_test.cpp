@@ -146,11 +146,13 @@ TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the othe
     std::array<int, 2> turns{};
     for (int frame = 1; frame <= 6; ++frame) {
         walk.go(frame);
+        // The order of splats is the eye's own, so that a few bits may differ.
         const auto shown = walk.shown(), full = walk.full();
-        const bool left = shown[0].values == full[0].values, right = shown[1].values == full[1].values;
+        const std::array psnr_db{compare(shown[0], full[0]).psnrDb(), compare(shown[1], full[1]).psnrDb()};
+        const bool left = psnr_db[0] > 70.0, right = psnr_db[1] > 70.0;
         CHECK(left != right);
         ++turns[left ? 0 : 1];
-        CHECK(std::min(compare(shown[0], full[0]).psnrDb(), compare(shown[1], full[1]).psnrDb()) > 35.0);
+        CHECK(std::min(psnr_db[0], psnr_db[1]) > 35.0);
     }
     CHECK(turns == std::array{3, 3});
 }

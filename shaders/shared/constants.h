@@ -159,6 +159,8 @@ BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
 // What a pixel counts for that the past did not see: a squared error in three channels.
 BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
+// What a pixel that moved counts for at least, (1/4000)^2 in three channels, so that every tile has its turn.
+BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
 // How much of a tile's growth of error is what was measured when it was last rendered; the rest is the model's. A quarter of it in which
 // much was not seen grows by the model alone.
 BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;

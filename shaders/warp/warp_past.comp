@@ -296,7 +296,9 @@ void main() {
             [[unroll]] for (int i = 0; i < 2; ++i) {
                 grown += lossAt(clamp(corner + ivec2(1 + i, 2 + 3 * i), ivec2(0), last), last, shares, uncertain_px);
             }
-            atomicAdd(cell_grown[cell], uint(0.5 * float(kColumns * kRows) * grown * kErrorSteps));
+            // What lies between the two may be worse, unless nothing moves.
+            const float least = any(notEqual(moves.mean, vec2(0))) ? kLeastGrowth : 0;
+            atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * max(0.5 * grown, least) * kErrorSteps));
             resampleBlock(view, first, moves, last);
         } else {
             block_depths[thread] = depths;
