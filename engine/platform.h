@@ -42,6 +42,9 @@ void tellUser(const std::string& line);
 // Asks in a window if a click started the program; false if the answer is no, or if nobody can be asked.
 bool askUser(const std::string& question);
 
+// With rights over the whole machine, so that it may not go by what its user's environment says.
+bool runsAsAdministrator();
+
 // Has `end` called with SIGINT or SIGTERM where the system tells the program in other ways than by these signals to end: a console that is
 // closed, a user who logs off. The system then waits for the program, for some seconds.
 void watchForEnd(void (*end)(int signal));

@@ -6,6 +6,7 @@
 #include <windows.h>
 
 #include <shellapi.h>
+#include <shlobj.h>
 
 #include <fcntl.h>
 #include <io.h>
@@ -117,6 +118,8 @@ bool askUser(const std::string& question) {
     return isStartedByClick() &&
            ::MessageBoxW(nullptr, wide(question).c_str(), L"binosplat", MB_YESNO | MB_ICONQUESTION | MB_SETFOREGROUND) == IDYES;
 }
+
+bool runsAsAdministrator() { return ::IsUserAnAdmin() != 0; }
 
 static void (*g_end)(int) = nullptr;  // the system calls back without anything of ours
 

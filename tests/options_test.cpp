@@ -73,6 +73,25 @@ std::string errorOf(Act&& act) {
 
 }  // namespace
 
+TEST_CASE("a scene in the place of a command is viewed, any other word is a usage error") {
+    const Workplace work;
+    const std::string file = (work.path / "Größe 日本.ply").string();
+    std::ofstream(fs::path(file)) << "not looked into";
+    const auto viewed = parse<ViewOptions>({file, "--frames", "3", "--mode", "mono"});
+    CHECK(viewed.scene == file);
+    CHECK(viewed.frames == 3);
+    CHECK(parse<ViewOptions>({work.path.string()}).scene == work.path.string());
+    CHECK(parse<ViewOptions>({"builtin:no-such-scene"}).scene == "builtin:no-such-scene");
+    CHECK(errorOf([&] { parse<ViewOptions>({file, "--out", "out"}); }) == "--out is given without --simulate");
+    try {
+        parse<ViewOptions>({file + "x"});
+        FAIL("a file that is not there was taken");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::kUsage);
+        CHECK(std::string(error.what()).starts_with(file + "x is not a command; must be one of: render, "));
+    }
+}
+
 TEST_CASE("defaultConfigSaysTheDefaults") {
     const RunOptions none = render({});
     const RunOptions file = render({"--config", (kConfigs / "default.toml").string()});

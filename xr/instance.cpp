@@ -4,6 +4,7 @@
 #include "engine/platform.h"
 #include "xr/bindings.h"
 #include "xr/platform.h"
+#include "xr/runtime_place.h"
 
 #include <algorithm>
 #include <cstring>
@@ -14,24 +15,17 @@ namespace {
 
 // Of OpenXR 1.1; older headers lack its name.
 constexpr const char* kLocalFloorExtension = "XR_EXT_local_floor";
-constexpr const char* kHint = "start one (Monado, SteamVR, WiVRn) or try `binosplat view SCENE --simulate`";
 
 [[noreturn]] void refuse(const std::string& what, XrResult result) {
-    const std::string line = fmt::format("{} ({}); {}", what, nameOf(result), kHint);
+    const std::string line = fmt::format("{} ({}); {}", what, nameOf(result), kRuntimeHint);
     if (result == XR_ERROR_RUNTIME_FAILURE) { throw RuntimeFailed(ExitCode::kNoDevice, line); }
     throw Error(ExitCode::kNoDevice, line);
-}
-
-// The runtime is the loader's choice: XR_RUNTIME_JSON, or active_runtime.json of the user or the system.
-std::string whereLookedFor() {
-    const std::string chosen = environment("XR_RUNTIME_JSON");
-    return !chosen.empty() ? fmt::format("XR_RUNTIME_JSON={}", chosen) : "openxr/1/active_runtime.json";
 }
 
 std::vector<XrExtensionProperties> listExtensions() {
     std::uint32_t count = 0;
     XrResult result = xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
-    if (XR_FAILED(result)) { refuse(fmt::format("no OpenXR runtime found: looked for {}", whereLookedFor()), result); }
+    if (XR_FAILED(result)) { refuse(fmt::format("no OpenXR runtime found: looked for {}", whereRuntimeIs()), result); }
     std::vector<XrExtensionProperties> extensions(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
     result = BINOSPLAT_XR(xrEnumerateInstanceExtensionProperties(nullptr, count, &count, extensions.data()));
     extensions.resize(count);
@@ -96,7 +90,7 @@ void Instance::create(const InstanceOptions& options) {
     info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     info.enabledExtensionNames = extensions.data();
     const XrResult result = xrCreateInstance(&info, &instance_);
-    if (XR_FAILED(result)) { refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereLookedFor()), result); }
+    if (XR_FAILED(result)) { refuse(fmt::format("the OpenXR runtime does not start: looked for {}", whereRuntimeIs()), result); }
 }
 
 void Instance::findSystem(const InstanceOptions& options) {

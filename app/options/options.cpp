@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cctype>
 #include <deque>
+#include <filesystem>
 #include <string_view>
 
 namespace binosplat {
@@ -77,27 +78,32 @@ Settings settingsOf(const CommandLine& line) {
 }
 
 // CLI11 takes "-.5,0,0" for an option but "-0.5,0,0" for a value.
-std::vector<std::string> readableArguments(int count, const char* const* arguments) {
-    std::vector<std::string> reversed;
-    for (int i = count - 1; i > 0; --i) {
-        std::string argument = arguments[i];
+std::vector<std::string> readableArguments(std::vector<std::string> words) {
+    std::ranges::reverse(words);
+    for (std::string& argument : words) {
         const bool bare_fraction =
             argument.size() > 2 && argument[0] == '-' && argument[1] == '.' && std::isdigit(static_cast<unsigned char>(argument[2])) != 0;
         if (bare_fraction) { argument.insert(1, "0"); }
-        reversed.push_back(argument);
     }
-    return reversed;
+    return words;
 }
 
-// CLI11 would say of a word that is no command that a command is missing.
-void refuseOtherCommands(int count, const char* const* arguments) {
-    const std::string_view word = count > 1 ? arguments[1] : "-";
-    if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return; }
+// A scene instead of a command is one to view: a file that is dropped onto the program, or opened with it. CLI11 would say of any other
+// word that a command is missing.
+std::vector<std::string> withCommand(std::vector<std::string> words) {
+    const std::string word = words.empty() ? "-" : words.front();
+    if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }
+    std::error_code unknown;
+    if (word.starts_with("builtin:") || std::filesystem::exists(word, unknown)) {
+        words.insert(words.begin(), "view");
+        return words;
+    }
     std::string names;
     for (const Command& command : commands()) {
         if (!command.hidden) { names += fmt::format("{}{}", names.empty() ? "" : ", ", command.name); }
     }
-    throw Error(ExitCode::kUsage, fmt::format("{} is not a command; must be one of: {} (see `binosplat --help`)", word, names));
+    throw Error(ExitCode::kUsage,
+                fmt::format("{} is not a command; must be one of: {}, or a scene to view (see `binosplat --help`)", word, names));
 }
 
 std::string oneLine(std::string text) {
@@ -113,14 +119,15 @@ RunOptions runOptions(const Settings& settings, RunOptions options) {
 }
 
 Options parseOptions(int argument_count, const char* const* arguments) {
-    refuseOtherCommands(argument_count, arguments);
+    const std::vector<std::string> words =
+        withCommand(argument_count > 1 ? std::vector<std::string>(arguments + 1, arguments + argument_count) : std::vector<std::string>());
     CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
     std::deque<CommandLine> lines;  // CLI11 keeps addresses within
     for (const Command& command : commands()) { addCommand(app, lines.emplace_back(), command); }
     try {
-        app.parse(readableArguments(argument_count, arguments));
+        app.parse(readableArguments(words));
     } catch (const CLI::CallForHelp&) {
         const auto chosen = app.get_subcommands();
         return HelpText{chosen.empty() ? app.help() : chosen.front()->help("binosplat")};

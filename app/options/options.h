@@ -116,6 +116,7 @@ struct ViewOptions {
     std::uint64_t frames = 0;       // stop after so many; 0: never
     bool load_first = false;        // before the session starts, so that runs repeat
     bool hide_panel = false;        // at the start
+    bool browse = false;            // the panel begins with the scenes there are
     bool hide_hands = false;        // nor controllers
     std::filesystem::path shaders;  // folder to reload them from; see shaderFolder
 };

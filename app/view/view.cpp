@@ -26,6 +26,7 @@ ViewSettings startSettings(const ViewOptions& options) {
     ViewSettings settings;
     settings.stereo = options.run.stereo;
     settings = readViewSettings(options.tables, settings);
+    if (options.browse) { settings.page = PanelPage::kScenes; }
     if (options.hide_panel) { settings.panel = false; }
     if (options.hide_hands) { settings.hands = false; }
     if (environment("BINOSPLAT_VISIBILITY_MASK") == "0") { settings.visibility_mask = false; }
@@ -58,10 +59,7 @@ void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Ins
     context.requireNoValidationMessages();
 }
 
-}  // namespace
-
-void runView(const ViewOptions& given) {
-    ViewOptions options = given;
+void viewOnce(ViewOptions options) {
     if (options.simulate) { simulateHeadset(options); }
     readCameraFiles(options.run.camera);  // what is wrong with them is known before there is a headset
     const ViewSettings settings = startSettings(options);
@@ -83,6 +81,20 @@ void runView(const ViewOptions& given) {
               "--simulate: the simulated headset does not begin with {}, see docs/simulated_script.md", options.script);
         check(!options.simulate || options.out.empty(), "--out: the simulated headset does not begin with {}", options.out.string());
         throw;
+    }
+}
+
+}  // namespace
+
+void runView(const ViewOptions& options) {
+    try {
+        viewOnce(options);
+    } catch (const Error& error) {
+        const bool lacks_headset = error.code() == ExitCode::kNoDevice && !options.simulate;
+        if (!lacks_headset || !askUser(fmt::format("{}\n\nShow the scene in a window, without a headset?", error.what()))) { throw; }
+        ViewOptions in_window = options;
+        in_window.simulate = true;
+        viewOnce(in_window);
     }
 }
 

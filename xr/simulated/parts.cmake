@@ -3,5 +3,6 @@ add_library(binosplat_simulated_parts STATIC compose/geometry.cpp script/hand_mo
             api/profiles.cpp compose/compose.cpp compose/seen_shapes.cpp compose/texels.cpp
             compose/picture_file.cpp log/frame_log.cpp compose/old_output.cpp
             $<IF:$<BOOL:${WIN32}>,system_windows.cpp,system_posix.cpp>)
+set_source_files_properties(system_windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # <windows.h> defines words of others
 set_target_properties(binosplat_simulated_parts PROPERTIES POSITION_INDEPENDENT_CODE ON)
 target_link_libraries(binosplat_simulated_parts PUBLIC binosplat_flags third_party_glm binosplat_files ${CMAKE_DL_LIBS} PRIVATE third_party_fmt_inside third_party_json third_party_png)
