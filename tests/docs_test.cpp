@@ -135,8 +135,10 @@ std::string wrongChoice(const OptionDescription& option, const std::string& valu
 }
 
 // "" or what `binosplat CALL` would refuse.
-std::string wrongCall(const std::vector<std::string>& call) {
+std::string wrongCall(std::vector<std::string> call) {
     if (call[0] == "--help" || call[0] == "--version") { return ""; }
+    // A file in the place of a command is viewed.
+    if (call[0] == "FILE" || call[0].ends_with(".ply") || call[0].starts_with("builtin:")) { call.insert(call.begin(), "view"); }
     const auto command = std::ranges::find_if(commands(), [&](const Command& each) { return each.name == call[0]; });
     if (command == commands().end()) { return fmt::format("there is no command {}", call[0]); }
     const std::vector<OptionDescription> options = optionsOf(*command);

@@ -24,8 +24,9 @@ namespace {
 // As slow as a viewer believes of a headset: the wearer's time costs as little as it can.
 constexpr int kRate = 10;
 constexpr double kRound = 10.0;  // seconds
-// After so many rounds whatever is kept for later is there: two scenes were shown in turn. Ten minutes for who walks longer.
-constexpr int kFewestWarm = 3, kMostWarm = 60;
+// After so many rounds whatever is kept for later is there: two scenes were shown in turn, and the panel has pictures of both. Ten minutes
+// for who walks longer.
+constexpr int kFewestWarm = 5, kMostWarm = 60;
 
 // Rounds of ten seconds. The wearer is at rest whenever the panel comes before the eyes, so that it can be pointed at.
 std::string walkOf(int rounds, const std::string& folder) {

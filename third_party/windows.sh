@@ -3,7 +3,7 @@
 # then build/windows/bin/binosplat.exe with the simulated runtime beside it, and packs both: build/windows/binosplat-VERSION-windows-x64.zip.
 #   third_party/windows.sh               everything
 #   third_party/windows.sh TARGET...     these targets of the build, and no package
-# BINOSPLAT_JOBS says how many compilers run at a time. tests/windows/run.sh tries the package under Wine; docs/windows.md says what was seen.
+# BINOSPLAT_JOBS says how many compilers run at a time. docs/windows.md says what was seen to work.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=${BINOSPLAT_JOBS:-$(nproc)}
