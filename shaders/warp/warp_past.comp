@@ -340,5 +340,5 @@ void main() {
     }
     const uint at = tile.y * view.size_tiles.x + tile.x;
     pass.tiles.at[at] = now;
-    if (pass.tile_kinds.at[at] != kTileHidden) { pass.tile_kinds.at[at] = 0; }
+    if (!kHiddenTiles || pass.tile_kinds.at[at] != kTileHidden) { pass.tile_kinds.at[at] = 0; }  // nobody has written it yet where none is hidden
 }
