@@ -151,6 +151,7 @@ TEST_CASE("withoutADeviceTheExitCodeIsThree") {
     CHECK(work.isEmpty());
 }
 
+#ifdef BINOSPLAT_OPENXR
 TEST_CASE("viewSaysWhatIsMissing") {
     const Workplace work;
     checkRefused(work.run("view builtin:one-splat", "XR_RUNTIME_JSON=/nonexistent/runtime.json"), 3, "OpenXR");
@@ -158,6 +159,7 @@ TEST_CASE("viewSaysWhatIsMissing") {
     checkRefused(work.run("view builtin:one-splat --cameras missing.json", "XR_RUNTIME_JSON=/nonexistent/runtime.json"), 1, "missing.json");
     checkRefused(work.run("view builtin:one-splat --view 1"), 2, "--view is given without --cameras");
 }
+#endif
 
 TEST_CASE("configErrorsNameFileAndLine") {
     const Workplace work;

@@ -79,6 +79,12 @@ double meanChange(const Image& a, const Image& b) {
     return sum / static_cast<double>(difference.values.size());
 }
 
+void setTimes(MotionFrame& frame, const FrameResult& result) {
+    frame.total_ms = result.gpu_total_ms;
+    frame.stage_ms = stagesOf(frame.mode, result.gpu_ms);
+    frame.pass_ms = byLabel(result.gpu_ms);
+}
+
 // One scene, view and size: all poses, and at each all methods.
 class MotionPoint {
 public:
@@ -89,10 +95,13 @@ public:
         }
     }
 
-    void warmUp(const Cameras& cameras, std::uint32_t count) {
-        for (std::uint32_t i = 0; i < count; ++i) {
-            for (const MethodHistory& sequence : sequences_) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
+    // What each method's frame took.
+    std::vector<FrameResult> time(const Cameras& cameras) {
+        std::vector<FrameResult> results;
+        for (const MethodHistory& sequence : sequences_) {
+            results.push_back(frames_.render(cameras, camera_, sequence.method.stereo, false, true).result);
         }
+        return results;
     }
 
     // A pose that is not scored, and still is the past of one that is.
@@ -120,8 +129,7 @@ public:
             row.mode = mode;
             row.number = number;
             row.time_s = time_s;
-            row.total_ms = rendered.gpu_total_ms;
-            row.stage_ms = stagesOf(mode, rendered.gpu_ms);
+            setTimes(row, rendered);
             row.work_rendered = pairsOf(rendered) / full.pairs;
             for (const int eye : {kLeft, kRight}) {
                 const auto e = static_cast<std::size_t>(eye);
@@ -156,19 +164,28 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     if (size_px.x > 0) { view_run.camera.size_px = size_px; }
     const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
     std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
-    MotionPoint point(context, gpu_scene, view_run, plan, name);
-    point.warmUp(start, plan.warm_up);
-    ProgressLine progress(name);
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
+    const auto camerasAt = [&](double time_s) {
+        return moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+    };
+    // A GPU shows how fast it is only while nobody keeps it waiting: its times are those of a run without pictures.
+    std::vector<std::vector<FrameResult>> timed;
+    if (!context.isSoftware()) {
+        MotionPoint point(context, gpu_scene, view_run, plan, name);
+        warmUp(context, plan.warm_up, [&] { point.time(start); });
+        for (const double time_s : times_s) { timed.push_back(point.time(camerasAt(time_s))); }
+    }
+    MotionPoint point(context, gpu_scene, view_run, plan, name);
+    for (std::uint32_t i = 0; timed.empty() && i < plan.warm_up; ++i) { point.time(start); }
+    ProgressLine progress(name);
     for (std::size_t i = 0; i < times_s.size(); ++i) {
-        const double time_s = times_s[i];
-        const Pose world_from_middle = motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit);
-        const Cameras cameras = moveCameras(start, world_from_middle);
         if (i % options.every != 0) {
-            point.pass(cameras);
+            point.pass(camerasAt(times_s[i]));
             continue;
         }
-        point.play(cameras, i, time_s, run.frames);
+        const std::size_t first = run.frames.size();
+        point.play(camerasAt(times_s[i]), i, times_s[i], run.frames);
+        for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
 }

@@ -142,6 +142,13 @@ std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOption
     return render(cameras, camera, stereo).result.peak_gpu_bytes;
 }
 
+void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const auto least = context.isSoftware() || rounds == 0 ? std::chrono::milliseconds(0) : std::chrono::milliseconds(500);
+    for (std::uint32_t i = 0; i < rounds || Clock::now() - begin < least; ++i) { round(); }
+}
+
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
     MethodFrames frames(context, point.gpu_scene);
@@ -155,17 +162,19 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
     for (const BenchMethod& method : plan.methods) {
         runners.push_back(prepare(method, point, plan, frames, full_by_order.at(method.stereo.order)));
     }
-    for (std::uint32_t i = 0; i < plan.warm_up; ++i) {
+    warmUp(context, plan.warm_up, [&] {
         for (Runner& runner : runners) { frames.render(point.cameras, camera, runner.method.stereo); }
-    }
+    });
     Runner twin;
     twin.method.name = "float64 twin, one eye";
     twin.is_twin = true;
     for (std::uint32_t i = 0; i < plan.repeats; ++i) {
         for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
-        if (plan.twin) { twin.count(renderTwin(point)); }
     }
-    if (plan.twin) { runners.push_back(twin); }
+    if (plan.twin) {
+        for (std::uint32_t i = 0; i < plan.repeats; ++i) { twin.count(renderTwin(point)); }
+        runners.push_back(twin);
+    }
     std::vector<BenchResult> results;
     for (const Runner& runner : runners) { results.push_back(summarize(runner, point)); }
     return results;

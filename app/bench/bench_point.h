@@ -7,6 +7,7 @@
 #include "engine/frame/stereo_frame.h"
 #include "engine/scene/scene.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -52,6 +53,10 @@ struct BenchPoint {
     const Cameras& cameras;
     std::string series, view, headset;
 };
+
+// Renders `round` until the device is as fast as it gets: `rounds` times, and half a second long on a GPU, whose clocks fall while it waits
+// for pictures to be compared (by a factor of four, NVIDIA H100) and take a while to rise again.
+void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round);
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan);
 

@@ -78,6 +78,15 @@ Json statisticsJson(const std::vector<double>& values) {
             {"worst", std::ranges::max(values)}};
 }
 
+// Medians, in the order of the last frame, which has a past if any has.
+Json passesJson(const Sequence& sequence) {
+    Json passes = Json::object();
+    for (const auto& [label, ms] : sequence.frames.back()->pass_ms) {
+        passes[label] = median(valuesOf(sequence, [&](const MotionFrame& frame) { return sumOf(frame.pass_ms, label); }));
+    }
+    return passes;
+}
+
 // Null where the pictures are equal: JSON has no infinity.
 Json psnrJson(double mean_square) { return mean_square > 0.0 ? Json(psnrOf(mean_square)) : Json(); }
 
@@ -118,7 +127,8 @@ std::string motionJson(const MotionRun& run) {
                   {"mode", nameOf(sequence.frames[0]->mode)},
                   {"frames", sequence.frames.size()},
                   {"gpu_total_ms", statisticsJson(valuesOf(sequence, totalMs))},
-                  {"stage_ms", stages}};
+                  {"stage_ms", stages},
+                  {"pass_ms", passesJson(sequence)}};
         if (isLossy(sequence)) {
             const std::vector<double> errors = valuesOf(sequence, meanSquare);
             json["psnr_db"] = {{"median", psnrJson(median(errors))},

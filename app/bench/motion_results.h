@@ -19,7 +19,7 @@ struct MotionFrame {
     std::size_t number = 0;  // of the frame, from 0
     double time_s = 0.0;     // of the segment
     double total_ms = 0.0;
-    NamedTimes stage_ms;
+    NamedTimes stage_ms, pass_ms;     // the latter by label
     double work_rendered = 1.0;       // pairs of tile and splat, of those of both full eyes
     std::uint64_t pixels_warped = 0;  // in tiles that were not rendered
     std::array<double, 2> mean_square{};

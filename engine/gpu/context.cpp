@@ -18,6 +18,10 @@ constexpr const char* kHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    // NVIDIA's driver asks for an instance's function by this, too: nothing that the program could do otherwise.
+    if (data->pMessageIdName != nullptr && std::strcmp(data->pMessageIdName, "WARNING-vkGetDeviceProcAddr-device") == 0) {
+        return VK_FALSE;
+    }
     const auto& sink = *static_cast<std::function<void(const char*)>*>(user);
     sink(data->pMessage);
     return VK_FALSE;
@@ -201,6 +205,7 @@ void Context::createDevice(const ContextOptions& options) {
     vk::PhysicalDeviceScalarBlockLayoutFeatures scalar_layout(VK_TRUE);
     vk::PhysicalDeviceBufferDeviceAddressFeatures addresses(VK_TRUE);
     scalar_layout.pNext = &addresses;
+    addresses.pNext = options.device_features;
     void* features = &scalar_layout;
     std::vector<const char*> extensions;
     for (const vk::ExtensionProperties& offered : physical_device_.enumerateDeviceExtensionProperties()) {
@@ -233,6 +238,7 @@ void Context::readLimits() {
     const auto& vulkan10 = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& vulkan11 = properties.get<vk::PhysicalDeviceVulkan11Properties>();
     device_name_ = std::string(vulkan10.deviceName.data());
+    is_software_ = vulkan10.deviceType == vk::PhysicalDeviceType::eCpu;
     max_allocation_bytes_ = vulkan11.maxMemoryAllocationSize;
     subgroup_size_ = min_subgroup_size_ = max_subgroup_size_ = vulkan11.subgroupSize;
     if (vulkan10.apiVersion >= VK_API_VERSION_1_3) {

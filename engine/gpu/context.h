@@ -33,6 +33,7 @@ struct ContextOptions {
     DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
     std::vector<const char*> instance_extensions = {};  // beside those that the passes need; literals
     std::vector<const char*> device_extensions = {};    // likewise, where the device has them
+    void* device_features = nullptr;                    // likewise: structs of features, chained
 };
 
 // Shaders by name, as SPIR-V.
@@ -61,6 +62,8 @@ public:
     // Whoever uses the queue, itself or through OpenXR, holds this: a scene may be on its way up from a second thread.
     [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
+    // A processor's program, not a GPU.
+    [[nodiscard]] bool isSoftware() const { return is_software_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
     // Of memoryUse(); 0: none.
     [[nodiscard]] std::uint64_t memoryLimitBytes() const { return memory_limit_bytes_; }
@@ -134,6 +137,7 @@ private:
     mutable std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     std::string device_name_;
+    bool is_software_ = false;
     std::set<std::string> device_extensions_;
     std::uint64_t max_allocation_bytes_ = 0, memory_limit_bytes_ = 0;
     double timestamp_period_ns_ = 0.0;
