@@ -2,6 +2,7 @@
 #include "engine/passes/sort.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -10,9 +11,15 @@ namespace binosplat {
 
 namespace {
 
-// Four subgroups; where their width may vary never more than eight, since each has 1 KiB of shared memory.
+// A GPU has many subgroups under way to hide how long memory takes: sixteen, or eight where shared memory, of which each has 1 KiB for its
+// digits, is as small as Vulkan allows. Narrow subgroups are a processor's vectors, which run one after the other: four of these.
 gpu::uint threadsOf(const Context& context) {
-    return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
+    constexpr gpu::uint kWide = 32;
+    if (context.subgroupSize() < kWide) {
+        return std::clamp(gpu::kSortSubgroups * context.subgroupSize(), 32u, std::min(8 * context.minSubgroupSize(), 128u));
+    }
+    const gpu::uint most_subgroups = context.sharedMemory() >= 32768 ? 16 : 8;
+    return std::min({512u, most_subgroups * context.minSubgroupSize(), std::bit_floor(context.maxGroupInvocations())});
 }
 
 gpu::uint comparedLanes(const Context& context, DigitMatch match) {

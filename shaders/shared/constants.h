@@ -22,9 +22,9 @@ BINOSPLAT_CONSTANT uint kGroupSize = 128;
 BINOSPLAT_CONSTANT uint kCullBlock = 512;
 BINOSPLAT_CONSTANT uint kListBlock = 256;
 
-// Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups, so that its histograms, one a
-// subgroup, keep to 4 KiB of shared memory and 16 keys a thread of 32-wide subgroups amortise them. From half a million keys on blocks
-// grow. Counts are summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads a thread.
+// Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups where these are narrow, of more where
+// they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. From half a million keys on blocks grow. Counts are
+// summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads a thread.
 BINOSPLAT_CONSTANT uint kMaxDigits = 256;
 BINOSPLAT_CONSTANT uint kSortBlock = 2048;
 BINOSPLAT_CONSTANT uint kMaxSortBlocks = 256;
