@@ -145,7 +145,7 @@ std::uint64_t MethodFrames::peakAlone(const Cameras& cameras, const CameraOption
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round) {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
-    const auto least = context.isSoftware() || rounds == 0 ? std::chrono::milliseconds(0) : std::chrono::milliseconds(500);
+    const auto least = context.isSoftware() || rounds == 0 ? std::chrono::seconds(0) : std::chrono::seconds(2);
     for (std::uint32_t i = 0; i < rounds || Clock::now() - begin < least; ++i) { round(); }
 }
 

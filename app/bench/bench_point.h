@@ -54,8 +54,8 @@ struct BenchPoint {
     std::string series, view, headset;
 };
 
-// Renders `round` until the device is as fast as it gets: `rounds` times, and half a second long on a GPU, whose clocks fall while it waits
-// for pictures to be compared (by a factor of four, NVIDIA H100) and take a while to rise again.
+// Renders `round` until the device is as fast as it gets: `rounds` times, and two seconds long on a GPU, whose clocks fall while it waits
+// for scenes to load or pictures to be compared (by a factor of four, NVIDIA H100) and take more than half a second to rise again.
 void warmUp(const Context& context, std::uint32_t rounds, const std::function<void()>& round);
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan);
