@@ -12,6 +12,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         state.views[t] = viewOf(target.eye, plan.near);
         if (target.past) {
             state.targets[t].past = pastViewOf(target.eye, target.past->eye);
+            state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
             state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget});
         }
         if (!target.warp) { continue; }

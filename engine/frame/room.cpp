@@ -23,10 +23,16 @@ void resize(const Context& context, Buffer& buffer, const char* name, std::uint6
 }
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
-    if (target.past) { return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .boxes = 0}; }
+    if (target.past) {
+        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .past = true, .boxes = 0};
+    }
     if (!target.warp) { return {}; }
     const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
-    return {target.eye.size_px, target.keeps_classes || components, target.kept.half_floats, components ? kHoleBoxes : 0};
+    return {.size_px = target.eye.size_px,
+            .classes = target.keeps_classes || components,
+            .half_floats = target.kept.half_floats,
+            .past = false,
+            .boxes = components ? kHoleBoxes : 0};
 }
 
 }  // namespace
@@ -53,7 +59,7 @@ void FrameRoom::forgetUploads() {
 
 void FrameRoom::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
-    for (std::size_t t = 0; t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
+    for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
     // Where eyes have changed their roles, what one had serves the other; what nobody needs any more goes before anything is made.
     for (std::size_t t = 0; t < needs.size(); ++t) {
         for (std::size_t other = 0; other < needs.size() && warps_[t].needs() != needs[t]; ++other) {

@@ -21,7 +21,8 @@ struct TargetState {
     gpu::EyeCounters counters;
     gpu::WarpView warp;  // where it is made from another
     gpu::WarpCounters warp_counters;
-    gpu::PastView past;             // where it is made from its own past
+    gpu::PastView past;  // where it is made from its own past
+    gpu::PastBlockList past_blocks;
     gpu::ListState chosen_tiles;    // likewise: those that are rendered
     gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
 };

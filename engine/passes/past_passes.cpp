@@ -32,6 +32,7 @@ gpu::PastView pastViewOf(const Eye& now, const Eye& past) {
 
 KernelTable pastKernels() {
     KernelTable table = everyVariant<WarpPastKernel>();
+    append(table, everyVariant<WarpPixelsKernel>());
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
     append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
     return table;
@@ -41,14 +42,13 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     in.shown.recordKinds(commands, in.warp.tiles(), WarpBuffers::tileKindsOffset());
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
     const bool is_first = in.index == 0;
+    const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
     const gpu::WarpPastPass pass{
         .view = in.buffers.state.address<gpu::PastView>(FrameBuffers::targetField(in.index, offsetof(TargetState, past))),
         .source = in.source.colours.address<gpu::vec4>(),
-        .half_source = in.source.colours.address<gpu::uvec2>(),
         .source_words = in.source.words.address<gpu::uint>(),
         .source_tiles = in.source.tiles.address<gpu::PastTile>(),
         .target = in.target.colours.address<gpu::vec4>(),
-        .half_target = in.target.colours.address<gpu::uvec2>(),
         .target_words = in.target.words.address<gpu::uint>(),
         .depths = in.target.depths.address<float>(),
         .tiles = in.target.tiles.address<gpu::PastTile>(),
@@ -56,11 +56,16 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tile_mask = in.warp.tileMask(),
         .price_bins = is_first ? in.warp.bins() : gpu::DeviceAddress<gpu::uint>{},
         .shown_mask = in.shown.mask(),
+        .blocks = in.warp.pastBlocks(),
+        .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks),
         .background = in.background};
     const WarpPastKernel kernel{
         .half_colours = in.target.half_floats, .depth = in.target.depths.bytes() > 0, .hidden_tiles = in.shown.hideAny()};
     const glm::uvec2 size_px = in.target.size_px;
     commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, 8 * gpu::kPastColumns), groupsOver(size_px.y, 8 * gpu::kPastRows));
+    commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
+    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles};
+    commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 
 void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes) {

@@ -1,8 +1,9 @@
 // An eye's picture from the one that it showed before, and the tiles of both eyes that are rendered again.
 //
-//   warp_past  what the past shows of each pixel, and the error to expect of each tile
-//   price      what it costs to mend that, with one budget for all eyes
-//   select     the tiles that are rendered
+//   warp_past    what the past shows, block by block, and the error to expect of each tile
+//   warp_pixels  the pixels of other blocks one by one
+//   price        what it costs to mend that, with one budget for all eyes
+//   select       the tiles that are rendered
 #pragma once
 
 #include "engine/gpu/kernel.h"

@@ -19,7 +19,10 @@ WarpBuffers::WarpBuffers(const Context& context, const WarpBufferNeeds& needs)
     tiles_ = Buffer(context, "warp tiles", words * sizeof(gpu::uint));
     if (needs.classes) { classes_ = Buffer(context, "pixel classes", std::uint64_t{sizeTiles().x} * needs.size_px.y * sizeof(gpu::uint)); }
     boxes_ = Buffer(context, "boxes of holes", needs.boxes * sizeof(gpu::PixelBox));
-    if (!sharesRows()) {
+    if (needs.past) {
+        const glm::uvec2 block{gpu::kPastColumns, gpu::kPastRows}, blocks = (needs.size_px + block - 1u) / block;
+        past_blocks_ = Buffer(context, "blocks of a past", std::uint64_t{blocks.x} * blocks.y * sizeof(gpu::PastBlock));
+    } else if (!sharesRows()) {
         planes_ = Buffer(context, "moving pixels", 2 * sizeof(gpu::uint) * std::uint64_t{needs.size_px.x} * needs.size_px.y);
     }
 }

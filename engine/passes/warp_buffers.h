@@ -13,6 +13,7 @@ struct WarpBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
     bool classes = false;      // of the target's pixels
     bool half_floats = false;  // what pictures consist of
+    bool past = false;         // the eye's own past is the source
     std::uint32_t boxes = 0;   // components of holes that get a box of their own, 0 where centre ROIs are off
     bool operator==(const WarpBufferNeeds&) const = default;
 };
@@ -46,6 +47,8 @@ public:
     // Words of a mask of tiles: a bit each, rows begin a word.
     static std::uint64_t maskWords(glm::uvec2 size_px);
 
+    // Of those that are made pixel by pixel.
+    [[nodiscard]] gpu::DeviceAddress<gpu::PastBlock> pastBlocks() const { return past_blocks_.address<gpu::PastBlock>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
     // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
     [[nodiscard]] const Buffer& classesBuffer() const { return classes_; }
@@ -61,14 +64,16 @@ public:
         return sharesRows() ? (needs_.size_px.x + gpu::kArrivalsStep - 1) / gpu::kArrivalsStep : 0;
     }
 
-    [[nodiscard]] std::uint64_t bytes() const { return tiles_.bytes() + classes_.bytes() + boxes_.bytes() + planes_.bytes(); }
+    [[nodiscard]] std::uint64_t bytes() const {
+        return tiles_.bytes() + classes_.bytes() + boxes_.bytes() + planes_.bytes() + past_blocks_.bytes();
+    }
 
 private:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileArray(std::uint64_t i) const { return tileKinds().at(i * tileCount()); }
 
     WarpBufferNeeds needs_;
     std::uint32_t longest_shared_row_ = 0;
-    Buffer tiles_, classes_, boxes_, planes_;
+    Buffer tiles_, classes_, boxes_, planes_, past_blocks_;
 };
 
 }  // namespace binosplat

@@ -36,10 +36,21 @@ uint errorOfPast(PastTile tile) {
     return squares > 0 ? max(uint(min(squares * float(max(tile.age, 1)), 2000) * kErrorSteps), 1) : 0;
 }
 
+// The tile with what this frame's warp is expected to lose. Blur of what is blurred already adds to it as an amplitude.
+PastTile withGrowth(PastTile tile) {
+    [[unroll]] for (uint q = 0; q < 4; ++q) {
+        // An amplitude of a pixel's channel.
+        const float grown = sqrt(float(tile.grown[q]) / (kErrorSteps * 3 * kCellSize * kCellSize));
+        tile.errors[q] += mix(grown, tile.growth, kMeasuredShare * float(tile.growth > 0 && grown < kUnseenGrowth ? 1 : 0));
+    }
+    return tile;
+}
+
 // What a tile's error is worth, and its cost; its cost to the list.
 uint priceOf(uint tile, uvec2 size_tiles) {
     if (kPast) {
-        const PastTile its = pass.past_tiles.at[tile];
+        const PastTile its = withGrowth(pass.past_tiles.at[tile]);
+        pass.past_tiles.at[tile].errors = its.errors;
         const bool hidden = pass.tile_kinds.at[tile] == kTileHidden;
         pass.tile_errors.at[tile] = hidden ? 0 : errorOfPast(its);
         const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;

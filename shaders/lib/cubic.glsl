@@ -1,6 +1,4 @@
-// A cubic kernel (Catmull and Rom 1974) over the source's picture. For resample.
-
-vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
+// A cubic kernel (Catmull and Rom 1974) over the source's picture. For shaders that have sourceAt().
 
 // Weights of the samples at -1, 0, 1, 2 for a place `t` after sample 0. At t = 0 they are exactly 0, 1, 0, 0.
 vec4 cubicWeights(float t) {

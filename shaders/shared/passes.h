@@ -175,22 +175,23 @@ struct ResamplePass {
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
 
-// warp_past: an eye's picture from the one that it showed before; what each tile has gone wrong by so far.
+// warp_past and warp_pixels: an eye's picture from the one that it showed before; what each tile has gone wrong by so far. Of colours that
+// are half floats these are the addresses, too.
 struct WarpPastPass {
     PastViews view;
-    FloatColours source;  // the past: one of the two
-    HalfColours half_source;
-    Uints source_words;  // its pixels' depths: lib/moving_pixel.glsl
+    FloatColours source;  // the past
+    Uints source_words;   // its pixels' depths: lib/moving_pixel.glsl
     PastTiles source_tiles;
-    FloatColours target;  // out: one of the two
-    HalfColours half_target;
-    Uints target_words;  // out
+    FloatColours target;  // out
+    Uints target_words;   // out
     Floats depths;       // out where asked for: D
     PastTiles tiles;     // out
     Uints tile_kinds;    // out: 0, except where it is kTileHidden
     Uints tile_mask;     // out: zeros
     Uints price_bins;    // out: zeros
     Uints shown_mask;    // where parts are hidden: the others; otherwise null
+    PastBlocks blocks;   // from warp_past to warp_pixels: the blocks whose pixels are made one by one
+    PastBlockLists block_list;
     vec3 background;
 };
 

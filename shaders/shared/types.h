@@ -138,12 +138,25 @@ BINOSPLAT_ARRAY_OF(PastView, PastViews);
 
 // What is known of a tile of a picture that later ones are made from.
 struct PastTile {
-    uint cost;     // in pairs, when it was last rendered
-    uint age;      // frames since then
-    float growth;  // of the amplitude of its error in a frame, as it had turned out then
-    vec4 errors;   // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
+    uint cost;      // in pairs, when it was last rendered
+    uint age;       // frames since then
+    float growth;   // of the amplitude of its error in a frame, as it had turned out then
+    vec4 errors;    // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
+    uint grown[4];  // until the choice: sums of what the quarters are expected to take on in this frame, squared, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
+
+// A block of a picture whose pixels are made from the past one by one.
+struct PastBlock {
+    uint place;              // row << 16 | column, in blocks
+    vec2 inverse_depths;     // the least and the greatest in and around it
+};
+BINOSPLAT_ARRAY_OF(PastBlock, PastBlocks);
+struct PastBlockList {
+    DispatchSize per_group;  // workgroups of kGroupSize, a thread a pixel, at most kMaxGroupsX
+    uint count;
+};
+BINOSPLAT_ARRAY_OF(PastBlockList, PastBlockLists);
 
 // A hole's pixel while holes are grouped: it lies where its colour would (of float colours, in its first half), since all holes are
 // rendered.

@@ -56,6 +56,7 @@ shared uint open_bits[kFindsOpen ? (kMostTiles + 31) / 32 : 1];
 shared uint open_count;
 
 #include "lib/row_arrivals.glsl"
+vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
 #include "lib/cubic.glsl"
 #include "lib/moved_error.glsl"
 #include "lib/copy_arrived.glsl"

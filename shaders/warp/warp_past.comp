@@ -1,11 +1,7 @@
 // warp_past: an eye's picture from the one that it showed before, and what each tile has gone wrong by so far. A workgroup makes 32x64 pixels, a
 // thread a block of 4x8. Where a block's places in the past lie as its pixels do, shifted and a little turned, its thread goes over the source
-// pixels row by row and resamples first along the row, then along columns, so that each is read once. The pixels of other blocks, where
-// depths differ or the past ends, are listed and made one by one.
-//
-// A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a place says where the place is.
-// Such a search always finds something, so that a place counts only if the past's pixel there, moved forwards, meets the pixel that it is
-// wanted for. Of what is found from the nearest and from the farthest depth around the nearer counts.
+// pixels row by row and resamples first along the row, then along columns, so that each is read once. Other blocks, where depths differ or
+// the past ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -22,81 +18,54 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 #include "lib/picture.glsl"
 #include "lib/moving_pixel.glsl"
 #include "lib/move_pixel.glsl"
+#include "lib/past.glsl"
 #include "lib/lagrange.glsl"
-#include "lib/cubic.glsl"
 
 const uvec2 kRegion = uvec2(kPastColumns, kPastRows) * 8;  // 8x8 blocks
-const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 const uvec2 kRegionTiles = kRegion / kTileSize, kRegionCells = kRegion / kCellSize;
 const uint kRegionBlocks = 8;
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
-shared uint listed_pixels[kRegion.x * kRegion.y];  // y << 16 | x
-shared uint listed_count;
-shared vec2 block_depths[kPastGroup];  // the least and the greatest inverse depth in and around a block
+shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
 shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // sums of what this step is expected to lose, squared, in kErrorSteps
 shared uint cell_carried[kRegionCells.x * kRegionCells.y];  // the greatest error of where a cell comes from, as bits
-
-bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
-
-// What the past shows at a place.
-struct Seen {
-    uint word;  // lib/moving_pixel.glsl
-    float inverse_depth;  // as the picture that is made sees it
-    vec2 off_px;          // where that pixel's middle comes to lie, less where `wanted_px` is
-};
-
-uint wordAt(PastView view, vec2 place_px) {
-    const uvec2 at = uvec2(clamp(place_px, vec2(0), vec2(view.past_size_px) - 1));
-    const bool hidden = kHiddenTiles && !isInMask(pass.shown_mask, view.past_size_tiles, at / kTileSize);
-    return hidden ? 0 : pass.source_words.at[at.y * view.past_size_px.x + at.x];
-}
-
-Seen look(PastView view, vec2 place_px, vec2 wanted_px) {
-    const uint word = wordAt(view, place_px);
-    const vec2 middle_px = floor(place_px) + 0.5;
-    const float inverse_depth = word == 0 ? 0 : inverseDepthOf(word);
-    const vec3 moves = moveOfPixel(view.now_from_past, middle_px, inverse_depth);
-    return Seen(moves.z > 0 ? word : 0, inverse_depth / max(moves.z, 1e-6), (middle_px - wanted_px) + moves.xy);
-}
-
-// How far a place in the past moves for a unit of inverse depth.
-vec2 disparity(PastView view, vec2 pixel_px) { return view.past_from_now.shift.xy - pixel_px * view.past_from_now.shift.z; }
-
-// The amplitude of what an uncertain depth costs. `across` and `down`: how the picture changes from pixel to pixel.
-vec2 uncertainMove(vec2 disparity_px, float spread) {
-    const vec2 move_px = disparity_px * spread;
-    const float length_px = length(move_px);
-    return length_px > kMaxSpread ? move_px * (kMaxSpread / length_px) : move_px;
-}
-
-bool isHidden(PastView view, uvec2 pixel) {
-    return kHiddenTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
-}
-
-void putWord(PastView view, uvec2 pixel, uint word) {
-    if (any(greaterThanEqual(pixel, view.size_px))) { return; }
-    pass.target_words.at[pixel.y * view.size_px.x + pixel.x] = isHidden(view, pixel) ? 0 : word;
-}
-
-// Once its word is there.
-void putPixel(PastView view, uvec2 pixel, vec4 colour) {
-    if (any(greaterThanEqual(pixel, view.size_px))) { return; }
-    const uint at = pixel.y * view.size_px.x + pixel.x;
-    const vec4 shown = isHidden(view, pixel) ? vec4(pass.background, 0) : colour;
-    putColour(pass.target, pass.half_target, at, shown);
-    if (kDepth) {
-        const uint word = pass.target_words.at[at];
-        const float inverse_depth = word == 0 ? 0 : inverseDepthOf(word);
-        pass.depths.at[at] = inverse_depth > 0 ? shown.a / inverse_depth : 0;
-    }
-}
 
 // How a block's pixels lie in the past, less how they lie in the block: from its middle, by column and by row.
 struct BlockMoves {
     vec2 mean;
     vec2 across, down;  // how that changes from column to column and from row to row
 };
+
+// A row of a block, in one store of 16 bytes where rows of the picture begin at multiples of them.
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WordQuads { uvec4 at[]; };
+
+void putWords(PastView view, uvec2 first, uvec4 words) {
+    if (first.y >= view.size_px.y) { return; }
+    if (view.size_px.x % kPastColumns == 0) {
+        const uint at = (first.y * view.size_px.x + first.x) / kPastColumns;
+        WordQuads(uvec2(pass.target_words)).at[at] = isHidden(view, first) ? uvec4(0) : words;
+        return;
+    }
+    [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
+        if (first.x + c < view.size_px.x) { putWord(view, first + uvec2(c, 0), words[c]); }
+    }
+}
+
+void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
+    if (first.y >= view.size_px.y) { return; }
+    if (kHalfColours && !kDepth && view.size_px.x % kPastColumns == 0) {
+        const bool hidden = isHidden(view, first);
+        const uint at = (first.y * view.size_px.x + first.x) / 2;
+        [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {
+            const vec4 left = hidden ? vec4(pass.background, 0) : colours[c], right = hidden ? vec4(pass.background, 0) : colours[c + 1];
+            WordQuads(uvec2(pass.target)).at[at + c / 2] = uvec4(packHalves(left), packHalves(right));
+        }
+        return;
+    }
+    [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
+        if (first.x + c < view.size_px.x) { putPixel(view, first + uvec2(c, 0), colours[c]); }
+    }
+}
 
 // The squared error that one pixel of a block is expected to take on in this step.
 float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px) {
@@ -145,12 +114,13 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
                 if (t >= c && t < c + int(kTaps)) { across[c] += weights_x[t - c] * tap; }
             }
         }
+        vec4 complete[kColumns];
         [[unroll]] for (int c = 0; c < kColumns; ++c) {
-            const vec4 complete = sums[0][c] + weights_y[c][kTaps - 1] * across[c];
+            complete[c] = max(sums[0][c] + weights_y[c][kTaps - 1] * across[c], vec4(0));
             [[unroll]] for (int k = 1; k < int(kTaps); ++k) { sums[k - 1][c] = sums[k][c] + weights_y[c][kTaps - 1 - k] * across[c]; }
             sums[kTaps - 1][c] = vec4(0);
-            if (row >= 0) { putPixel(view, first + uvec2(c, row), max(complete, vec4(0))); }
         }
+        if (row >= 0) { putPixels(view, first + uvec2(0, row), complete); }
         ++row;
     } while (row < kRows);
 }
@@ -180,16 +150,18 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     [[unroll]] for (int r = 0; r < kRows; ++r) {
         const int row = clamp(corner.y + r, 0, last.y) * (last.x + 1);
         float in_row = 0;
+        uvec4 words;
         [[unroll]] for (int c = 0; c < kColumns; ++c) {
             const uint word = pass.source_words.at[row + clamp(corner.x + c, 0, last.x)];
             const float there = inverseDepthOf(word), here = there / (depth_there + view.now_from_past.shift.z * there);
             valid = valid && word != 0;
-            putWord(view, first + uvec2(c, r), movingPixel(here, kLanded, word & kSpreadBits));
+            words[c] = movingPixel(here, kLanded, word & kSpreadBits);
             spread_bits = max(spread_bits, word & kSpreadBits);
             depths = vec2(min(depths.x, here), max(depths.y, here));
             in_columns[c] += here;
             in_row += here;
         }
+        putWords(view, first + uvec2(0, r), words);
         sum += in_row;
         lower += r < kRows / 2 ? -in_row : in_row;
     }
@@ -213,48 +185,10 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     return valid && max(max(apart.x, apart.y), farthest * differ) <= kPastSmooth && farthest * (depths.y - depths.x) <= kPastSameDepth;
 }
 
-// Where the past shows what is wanted, from a first guess; whether it does.
-bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 place_px) {
-    float inverse_depth = guess;
-    bool found = false, inside = true;
-    place_px = wanted_px;
-    seen = Seen(0, guess, vec2(0));
-    [[unroll]] for (uint step = 0; step < kPastSteps; ++step) {
-        if (!found && inside) {
-            const vec3 place = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth);
-            place_px = place.xy;
-            inside = place.z > 0 && isInPast(view, place_px);
-            if (inside) {
-                seen = look(view, place_px, wanted_px);
-                found = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kPastAgrees;
-                inverse_depth = seen.inverse_depth;
-            }
-        }
-    }
-    if (found) { place_px = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth).xy; }
-    return found;
-}
-
-// A pixel by itself. Its expected squared error.
-float makePixel(PastView view, uvec2 pixel, vec2 depths) {
-    const vec2 wanted_px = vec2(pixel) + 0.5;
-    Seen from_near, from_far;
-    vec2 near_px, far_px;
-    const bool near_found = search(view, wanted_px, depths.y, from_near, near_px);
-    const bool far_found = search(view, wanted_px, depths.x, from_far, far_px);
-    const bool takes_near = near_found && (!far_found || from_near.inverse_depth >= from_far.inverse_depth);
-    Seen seen = from_far;
-    if (takes_near) { seen = from_near; }
-    const vec2 place_px = takes_near ? near_px : far_px;
-    const vec2 disparity_px = disparity(view, wanted_px);
-    const bool found = near_found || far_found;
-    const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
-    const vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
-    const Sample one = sampleAround(place_px, ivec2(view.past_size_px), uncertain_px);
-    putWord(view, pixel, movingPixel(seen.inverse_depth, kLanded, seen.word & kSpreadBits));
-    putPixel(view, pixel, one.colour);
-    const float amplitude = sqrt(one.lost) + length(one.gradient);
-    return found ? min(amplitude * amplitude, kMaxPixelError) : kUnseenError;
+// Workgroups of warp_pixels over so many blocks.
+uint pixelGroups(uint blocks) {
+    const uint pixels = blocks * kBlock.x * kBlock.y;
+    return min(pixels / kGroupSize + uint(pixels % kGroupSize != 0), kMaxGroupsX);
 }
 
 void main() {
@@ -275,12 +209,15 @@ void main() {
         for (uint i = own; i < kPriceBins; i += all_threads) { pass.price_bins.at[i] = 0; }
     }
 
+    bool is_listed = false;
+    uint in_list = 0;
+    vec2 depths;
     if (thread == 0) { listed_count = 0; }
     if (thread < kRegionCells.x * kRegionCells.y) { cell_grown[thread] = cell_carried[thread] = 0; }
     barrier();
     if (all(lessThan(first, view.size_px))) {
         BlockMoves moves;
-        vec2 depths, source_px;
+        vec2 source_px;
         float spread;
         const bool as_one = findBlock(view, first, last, moves, depths, source_px, spread);
         if (isInPast(view, source_px)) {
@@ -301,27 +238,19 @@ void main() {
             atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * max(0.5 * grown, least) * kErrorSteps));
             resampleBlock(view, first, moves, last);
         } else {
-            block_depths[thread] = depths;
-            const uvec2 size = min(kBlock, view.size_px - first);
-            uint place = atomicAdd(listed_count, size.x * size.y);
-            for (uint y = 0; y < size.y; ++y) {
-                for (uint x = 0; x < size.x; ++x) { listed_pixels[place++] = (block.y * kBlock.y + y) << 16 | (block.x * kBlock.x + x); }
-            }
+            is_listed = true;
+            in_list = atomicAdd(listed_count, 1);
         }
     }
-    groupMemoryBarrier();  // what a block wrote of its pixels' depths is written again
     barrier();
-    uint i = thread;
-    if (i < listed_count) {
-        [[dont_unroll]] do {
-            const uvec2 in_region = uvec2(listed_pixels[i] & 0xffffu, listed_pixels[i] >> 16);
-            const uvec2 its_block = in_region / kBlock, its_cell = in_region / kCellSize;
-            const float grown = makePixel(view, region + in_region, block_depths[its_block.y * kRegionBlocks + its_block.x]);
-            atomicAdd(cell_grown[its_cell.y * kRegionCells.x + its_cell.x], uint(grown * kErrorSteps));
-            i += kPastGroup;
-        } while (i < listed_count);
+    if (thread == 0 && listed_count > 0) {
+        const uint before = atomicAdd(pass.block_list.at[0].count, listed_count);
+        listed_first = before;
+        const uint groups = pixelGroups(before + listed_count) - pixelGroups(before);
+        if (groups > 0) { atomicAdd(pass.block_list.at[0].per_group.x, groups); }
     }
     barrier();
+    if (is_listed) { pass.blocks.at[listed_first + in_list] = PastBlock(first.y / kBlock.y << 16 | first.x / kBlock.x, depths); }
     if (thread >= kRegionTiles.x * kRegionTiles.y) { return; }
     const uvec2 its_tile = uvec2(thread % kRegionTiles.x, thread / kRegionTiles.x), tile = gl_WorkGroupID.xy * kRegionTiles + its_tile;
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
@@ -330,13 +259,12 @@ void main() {
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = uvec2(clamp(movePixelAnywhere(view.past_from_now, middle_px, guess).xy, vec2(0), vec2(view.past_size_px) - 1)) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0));
+    PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uint[4](0, 0, 0, 0));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uvec2 at = its_tile * (kTileSize / kCellSize) + uvec2(q & 1, q >> 1);
         const uint its_cell = at.y * kRegionCells.x + at.x;
-        // An amplitude of a pixel's channel. Blur of what is blurred already adds to it as an amplitude.
-        const float grown = sqrt(float(cell_grown[its_cell]) / (kErrorSteps * 3 * kCellSize * kCellSize));
-        now.errors[q] = uintBitsToFloat(cell_carried[its_cell]) + mix(grown, before.growth, kMeasuredShare * float(before.growth > 0 && grown < kUnseenGrowth ? 1 : 0));
+        now.errors[q] = uintBitsToFloat(cell_carried[its_cell]);
+        now.grown[q] = cell_grown[its_cell];
     }
     const uint at = tile.y * view.size_tiles.x + tile.x;
     pass.tiles.at[at] = now;

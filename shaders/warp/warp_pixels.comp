@@ -1,0 +1,87 @@
+// warp_pixels: the pixels of an eye's picture that warp_past has left out, a thread a pixel.
+//
+// A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a place says where the place is.
+// Such a search always finds something, so that a place counts only if the past's pixel there, moved forwards, meets the pixel that it is
+// wanted for. Of what is found from the nearest and from the farthest depth around the nearer counts.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "passes.h"
+
+layout(constant_id = 0) const bool kHalfColours = false;
+layout(constant_id = 1) const bool kDepth = false;
+layout(constant_id = 2) const bool kHiddenTiles = false;  // a lens hides parts
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
+
+#include "lib/tile_mask.glsl"
+#include "lib/picture.glsl"
+#include "lib/moving_pixel.glsl"
+#include "lib/move_pixel.glsl"
+#include "lib/past.glsl"
+#include "lib/cubic.glsl"
+
+const uint kBlockPixels = kPastColumns * kPastRows;
+
+// Where the past shows what is wanted, from a first guess; whether it does.
+bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 place_px) {
+    float inverse_depth = guess;
+    bool found = false, inside = true;
+    place_px = wanted_px;
+    seen = Seen(0, guess, vec2(0));
+    [[unroll]] for (uint step = 0; step < kPastSteps; ++step) {
+        if (!found && inside) {
+            const vec3 place = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth);
+            place_px = place.xy;
+            inside = place.z > 0 && isInPast(view, place_px);
+            if (inside) {
+                seen = look(view, place_px, wanted_px);
+                found = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kPastAgrees;
+                inverse_depth = seen.inverse_depth;
+            }
+        }
+    }
+    if (found) { place_px = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth).xy; }
+    return found;
+}
+
+// A pixel by itself. Its expected squared error.
+float makePixel(PastView view, uvec2 pixel, vec2 depths) {
+    const vec2 wanted_px = vec2(pixel) + 0.5;
+    Seen from_near, from_far;
+    vec2 near_px, far_px;
+    const bool near_found = search(view, wanted_px, depths.y, from_near, near_px);
+    const bool far_found = search(view, wanted_px, depths.x, from_far, far_px);
+    const bool takes_near = near_found && (!far_found || from_near.inverse_depth >= from_far.inverse_depth);
+    Seen seen = from_far;
+    if (takes_near) { seen = from_near; }
+    const vec2 place_px = takes_near ? near_px : far_px;
+    const vec2 disparity_px = disparity(view, wanted_px);
+    const bool found = near_found || far_found;
+    const float own = kSpreadWeight * sqrt(varianceShareOf(seen.word)) * seen.inverse_depth;
+    const vec2 uncertain_px = uncertainMove(disparity_px, own + 0.5 * (depths.y - depths.x));
+    const Sample one = sampleAround(place_px, ivec2(view.past_size_px), uncertain_px);
+    putWord(view, pixel, movingPixel(seen.inverse_depth, kLanded, seen.word & kSpreadBits));
+    putPixel(view, pixel, one.colour);
+    const float amplitude = sqrt(one.lost) + length(one.gradient);
+    return found ? min(amplitude * amplitude, kMaxPixelError) : kUnseenError;
+}
+
+void main() {
+    const PastView view = pass.view.at[0];
+    const uint pixels = pass.block_list.at[0].count * kBlockPixels;
+    uint i = gl_WorkGroupID.x * kGroupSize + gl_LocalInvocationIndex;
+    if (i >= pixels) { return; }
+    [[dont_unroll]] do {
+        const PastBlock block = pass.blocks.at[i / kBlockPixels];
+        const uint in_block = i % kBlockPixels;
+        const uvec2 pixel = uvec2(block.place & 0xffffu, block.place >> 16) * kBlock + uvec2(in_block % kBlock.x, in_block / kBlock.x);
+        if (all(lessThan(pixel, view.size_px))) {
+            const float grown = makePixel(view, pixel, block.inverse_depths);
+            const uvec2 tile = pixel / kTileSize, quarter = pixel % kTileSize / kCellSize;
+            atomicAdd(pass.tiles.at[tile.y * view.size_tiles.x + tile.x].grown[2 * quarter.y + quarter.x], uint(grown * kErrorSteps));
+        }
+        i += gl_NumWorkGroups.x * kGroupSize;
+    } while (i < pixels);
+}
