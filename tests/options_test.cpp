@@ -150,6 +150,23 @@ TEST_CASE("defaultConfigIsWhatTheTableOfOptionsSays") {
     CHECK(text.find("\n# mode = \"predicted\"") != std::string::npos);
 }
 
+TEST_CASE("framesThatFollowOneAnotherAreTemporalUnlessAModeIsNamed") {
+    const Workplace work;
+    const std::string open = (kConfigs / "default.toml").string(), named = (work.path / "named.toml").string();
+    writeText(named, "mode = \"paper\"\n");
+    const auto viewed = [](std::vector<std::string> words) {
+        words.insert(words.begin(), {"view", "a"});
+        return parse<ViewOptions>(words).run.stereo.mode;
+    };
+    CHECK(render({}).stereo.mode == Mode::kPredicted);
+    CHECK(render({"--path", "b.csv"}).stereo.mode == Mode::kTemporal);
+    CHECK(render({"--path", "b.csv", "--config", named}).stereo.mode == Mode::kPaper);
+    CHECK(viewed({}) == Mode::kTemporal);
+    CHECK(viewed({"--config", open}) == Mode::kTemporal);
+    CHECK(viewed({"--config", named}) == Mode::kPaper);
+    CHECK(viewed({"--config", named, "--mode", "predicted"}) == Mode::kPredicted);
+}
+
 TEST_CASE("commandLineWinsOverConfig") {
     const Workplace work;
     writeText(work.path / "a.toml",

@@ -175,10 +175,9 @@ TEST_CASE("a rate that the headset refuses is said, and is no end") {
 TEST_CASE("sliders take a click, and the resolution changes once the trigger is let go") {
     const Workplace work;
     const Panel panel = startPanel(work);
-    const ViewRun run =
-        runView(work, "slide",
-                kSmall + clickOn(panel, {onMethod("margin (paper)"), onMethod("budget (predicted)"), onMethod("resolution"), {0.9, 0.95}}),
-                kScene + withMethodPage(work));
+    const ViewRun run = runView(
+        work, "slide", kSmall + clickOn(panel, {onMethod("margin (paper)"), onMethod("budget"), onMethod("resolution"), {0.9, 0.95}}),
+        kScene + withMethodPage(work));
     checkClean(run);
     const auto valueOf = [&](const std::string& key) {
         const std::size_t at = run.outcome.output.find(key + " = ");
@@ -248,7 +247,7 @@ TEST_CASE("a recorded walk of 100 frames, with clicks on the way, ends when the 
         time_s += 0.3;
     }
     const std::string start = " --eye 0,0,0 --look 0,0,3 --up 0,-1,0";
-    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kFence + start + withMethodPage(work));
+    const ViewRun run = runView(work, "walk", script + "at 2.3 exit\n", kFence + start + " --mode predicted" + withMethodPage(work));
     checkClean(run);
     CHECK(run.outcome.output.find("the runtime asked for the end") != std::string::npos);
     CHECK(run.frames.size() >= 100);

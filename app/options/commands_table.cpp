@@ -39,9 +39,10 @@ void addOwnCameras(Settings& line, const Settings& config) {
     if (!cameras.empty()) { line.emplace("cameras", Setting{"--view", {cameras.string()}}); }
 }
 
-// The command line, to which cameras may be added, over the config. Tables of the config that `foreign` names are left alone, and go to
-// `rest`.
-RunOptions readRun(Settings& line, const std::set<std::string>& foreign, std::vector<SettingsTable>* rest = nullptr) {
+// The command line, to which cameras may be added, over the config and `standard`. Tables of the config that `foreign` names are left
+// alone, and go to `rest`.
+RunOptions readRun(Settings& line, const std::set<std::string>& foreign, const RunOptions& standard,
+                   std::vector<SettingsTable>* rest = nullptr) {
     const std::string config = wordOf(line, kConfig.text.key);
     Settings config_settings;
     if (!config.empty()) {
@@ -52,16 +53,23 @@ RunOptions readRun(Settings& line, const std::set<std::string>& foreign, std::ve
         }
     }
     addOwnCameras(line, config_settings);
-    RunOptions options = runOptions(mergeLayers(line, config_settings));
+    RunOptions options = runOptions(mergeLayers(line, config_settings), standard);
     options.config = config;
     return options;
+}
+
+// Of frames that follow one another.
+RunOptions withPast() {
+    RunOptions standard;
+    standard.stereo.mode = Mode::kTemporal;
+    return standard;
 }
 
 Options makeRender(const Settings& given) {
     Settings line = given;
     RenderOptions render;
     render.scene = wordOf(line, "SCENE");
-    render.run = readRun(line, {"view"});
+    render.run = readRun(line, {"view"}, line.contains("path") ? withPast() : RunOptions());
     readRows(renderRows(), line, render);
     for (const char* key : {"path-axes", "from", "seconds", "rate"}) {
         if (line.contains(key) && render.path.empty()) { throw Error(ExitCode::kUsage, fmt::format("--{} is given without --path", key)); }
@@ -92,7 +100,7 @@ Options makeBench(const Settings& given) {
     Settings line = given;
     BenchOptions bench;
     if (const auto scenes = line.find("SCENE"); scenes != line.end()) { bench.scenes = scenes->second.items; }
-    bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, &bench.tables);
+    bench.run = readRun(line, {"bench", "series", "methods", "views", "view"}, {}, &bench.tables);
     bench.asked = runOptions(line).camera;
     readRows(benchRows(), line, bench);
     requireBenchKind(bench);
@@ -110,7 +118,7 @@ Options makeView(const Settings& given) {
     view.scene = wordOf(line, "SCENE");
     view.simulate = line.contains("simulate");
     if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
-    view.run = readRun(line, {"view"}, &view.tables);
+    view.run = readRun(line, {"view"}, withPast(), &view.tables);
     readRows(viewRows(), line, view);
     return view;
 }

@@ -45,19 +45,15 @@ std::string writeLine(const std::string& setting, const std::string& help) {
 template <typename Owner>
 std::string writeRow(const OptionRow<Owner>& row) {
     const OptionValue standard = row.field.value(Owner{});
-    const bool has_none = std::holds_alternative<std::monostate>(standard);
+    const bool has_none = std::holds_alternative<std::monostate>(standard), is_open = has_none || row.text.by_command;
     std::string value = tomlOf(standard), help = row.text.help;
     if (has_none) {
         const auto* const found = std::ranges::find(kExamples, row.text.key, &std::pair<std::string_view, const char*>::first);
         value = found == kExamples.end() ? fmt::format("\"{}\"", row.text.value) : found->second;
     }
     if (!row.field.range.empty()) { help += fmt::format(" ({})", row.field.range); }
-    if (row.text.by_command) {
-        help += "; absent: the command's own";
-    } else if (*row.text.standard != '\0') {
-        help += fmt::format("; {}: {}", has_none ? "absent" : value, row.text.standard);
-    }
-    return writeLine(fmt::format("{}{} = {}", has_none || row.text.by_command ? "# " : "", row.text.key, value), help);
+    if (*row.text.standard != '\0') { help += fmt::format("; {}: {}", is_open ? "absent" : value, row.text.standard); }
+    return writeLine(fmt::format("{}{} = {}", is_open ? "# " : "", row.text.key, value), help);
 }
 
 }  // namespace

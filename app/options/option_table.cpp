@@ -77,7 +77,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"background", "camera", kWearer, "r,g,b", "colour behind the scene"}, field::colour<kCamera, &CameraOptions::background>()},
 
         // Stereo.
-        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made", "", /*required*/ false, /*by_command*/ true},
+        {{"mode", "stereo", kTried, "MODE", "how the two pictures are made", "predicted; with view and --path temporal", /*required*/ false,
+          /*by_command*/ true},
          field::mode<kStereo, &StereoOptions::mode>()},
         {{"dominant", "stereo", kWearer, "SIDE", "eye that is rendered in full"},
          field::named<kStereo, &StereoOptions::dominant>({"left", "right"})},
