@@ -1,6 +1,7 @@
 // Where one stands in a scene without cameras: made rooms, streets and objects, tilted, and with one splat in fifty a floater.
 #include "engine/scene/standpoint.h"
 #include "engine/scene/floor_plane.h"
+#include "engine/scene/procedural.h"
 
 #include <doctest/doctest.h>
 
@@ -212,6 +213,27 @@ TEST_CASE("what has no floor has none: a ball, a wall and a handful of splats") 
     CHECK_FALSE(floorOf(Maker().ball({0, 0, 0}, 1.0, 100)));
     CHECK_FALSE(floorOf(Maker()));
     CHECK(floorOf(room())->share == doctest::Approx(0.22).epsilon(0.4));
+}
+
+TEST_CASE("a wall with something before it is a wall, looked at from in front, though most of the splats lie in it") {
+    const auto fence = [] {
+        Maker made;
+        made.wall({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
+        for (const double x : {-0.8, -0.4, 0.0, 0.4, 0.8}) { made.wall({x, -1, -2}, {0.02, 0, 0}, {0, 2, 0}, 2000.0); }
+        return made;
+    };
+    tryLies(fence, [](const Standpoint& point, double) {
+        CHECK_FALSE(isInside(point));
+        CHECK(point.why.find("no floor was found") != std::string::npos);
+    });
+    const Standpoint point = judgeStandpoint(fence().scene());
+    CHECK(glm::distance(point.view.up, kUp) < 1e-12);
+    CHECK(degreesBetween(point.view.look - point.view.eye, {0, 0, 1}) < 1.0);
+    CHECK(point.view.eye.z < -2.0);
+    for (const char* name : {"fence", "step-edge", "slanted-wall", "two-layers"}) {
+        CAPTURE(name);
+        CHECK(glm::distance(judgeStandpoint(makeBuiltin(std::string("builtin:") + name)).view.up, kUp) < 1e-12);
+    }
 }
 
 TEST_CASE("splats that nobody sees, and those that are equal, place nobody at infinity") {

@@ -20,6 +20,7 @@ constexpr double kLeastShare = 0.08;         // of all splats
 constexpr double kMostBehind = 0.15;         // of the others
 constexpr double kUsualCosine = 0.70710678;  // 45 degrees
 constexpr double kMoreThanUsual = 3.0, kLeastUnusualShare = 0.3, kLeastUnusualReach = 1.3;
+constexpr double kHoversFrom = 0.1;  // of the size
 
 struct Plane {
     glm::dvec3 normal{0.0};
@@ -153,6 +154,16 @@ double reachBeyond(const std::vector<SplatSample>& samples, const FloorPlane& fl
     return distances[0].empty() ? 0.0 : findQuantile(distances[1], 0.9) / std::max(findQuantile(distances[0], 0.9), 1e-300);
 }
 
+// Whether nothing but what may be floaters begins at the floor: before a wall things hover, on a floor they stand.
+bool hovers(const std::vector<SplatSample>& samples, const FloorPlane& floor, double size) {
+    std::vector<double> heights;
+    for (const SplatSample& sample : samples) {
+        const double height = glm::dot(sample.centre, floor.up) - floor.height;
+        if (height > 2.0 * floor.thickness) { heights.push_back(height); }
+    }
+    return heights.empty() || findQuantile(heights, 0.05) > kHoversFrom * size;
+}
+
 }  // namespace
 
 std::vector<SplatSample> sampleSplats(const Scene& scene, std::size_t most) {
@@ -199,7 +210,8 @@ std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples
             if (score > best_score) { best_score = score, best[is_usual ? 0 : 1] = floor; }
         }
     }
-    const auto& [usual_one, other] = best;
+    auto& [usual_one, other] = best;
+    if (other && hovers(samples, *other, size)) { other.reset(); }
     if (usual_one && other && other->share >= kMoreThanUsual * usual_one->share) { return other; }
     if (usual_one || !other) { return usual_one; }
     return other->share >= kLeastUnusualShare && reachBeyond(samples, *other) >= kLeastUnusualReach ? other : std::nullopt;

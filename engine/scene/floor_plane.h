@@ -27,8 +27,8 @@ struct FloorPlane {
     bool is_ceiling;   // `up` is right, but what was found is above the rest
 };
 
-// Empty where there is none. Planes within 45 degrees of `usual` count for more: another one must hold three times as many splats or, where
-// there is none of these, three in ten and reach far beyond what stands on it.
+// Empty where there is none. Planes within 45 degrees of `usual` count for more: on another one things must stand, not hover before it as
+// before a wall, and it must hold three times as many splats or, where there is none of these, three in ten and reach far beyond them.
 std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples, const glm::dvec3& usual);
 
 }  // namespace binosplat
