@@ -17,22 +17,6 @@ glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
 
 glm::dvec3 colourOf(Backdrop backdrop) { return glm::dvec3(backdrop == Backdrop::kWhite ? 1.0 : backdrop == Backdrop::kGrey ? 0.5 : 0.0); }
 
-// What the frame would have taken with both eyes in full, by what the dominant one took; 0: it is not known, since each eye was culled and
-// sorted by itself, or there is one alone.
-double losslessMs(const FrameResult& result) {
-    double once_ms = 0.0, dominant_ms = 0.0;
-    bool culls_both = false;
-    for (const auto& [label, ms] : result.gpu_ms) {
-        culls_both = culls_both || label.role == Role::kBoth;
-        if (label.role == Role::kDominant) {
-            dominant_ms += ms;
-        } else if (label.role != Role::kAffiliated) {
-            once_ms += ms;  // for both, or after them: the way to the headset, the panel
-        }
-    }
-    return culls_both ? once_ms + 2.0 * dominant_ms : 0.0;
-}
-
 }  // namespace
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
@@ -65,11 +49,16 @@ void SceneRenderer::makeImages(HeadsetStay& stay, glm::uvec2 size_px) {
 }
 
 void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
-    governor_.wish(settings.quality,
-                   {settings.stereo.mode, settings.stereo.budget, settings.resolution_scale, settings.stereo.foveation_deg});
+    governor_.wish(settings.quality, settings.stereo.mode, {settings.stereo.budget, settings.resolution_scale});
     fitImages(stay, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     stay.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
+}
+
+ShownRate SceneRenderer::rate() const {
+    ShownRate rate{met_.metHz(), met_.displayHz(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
+    if (hasBudget(frame_.mode)) { rate.budget = governor_.settings().budget; }
+    return rate;
 }
 
 void SceneRenderer::dropDepth(HeadsetStay& stay) {
@@ -80,7 +69,6 @@ void SceneRenderer::dropDepth(HeadsetStay& stay) {
 FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views,
                                              Order usual_order) {
     StereoOptions stereo = settings.stereo;
-    stereo.mode = governor_.settings().mode;
     stereo.budget = governor_.settings().budget;
     FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
     // Of the wearer, however large the scene is.
@@ -143,7 +131,7 @@ void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const ViewSett
                        .period_ms = stay.session.periodMs(),
                        .is_old = !is_of_now,
                        .lost_periods = stay.session.lostPeriods(),
-                       .lossless_ms = losslessMs(last_)});
+                       .work = last_.work_rendered});
     sayGoverned();
     sayHidden(one_eye);
     sayShort();

@@ -57,9 +57,7 @@ public:
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
     // How many displays have a new picture, and how large that is.
-    [[nodiscard]] ShownRate rate() const {
-        return {met_.metHz(), met_.displayHz(), governor_.settings().resolution_scale, governor_.isBeaten()};
-    }
+    [[nodiscard]] ShownRate rate() const;
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:

@@ -135,10 +135,10 @@ VKAPI_ATTR VkResult VKAPI_CALL results(VkDevice device, VkQueryPool pool, std::u
                                        void* data, VkDeviceSize stride, VkQueryResultFlags flags) {
     const VkResult result = g_results(device, pool, first, count, bytes, data, stride, flags);
     const char* const apart = std::getenv("BINOSPLAT_FAULT_TICKS");
-    const std::optional<faults::FrameTicks> frame = faults::ticksOf(pool);
+    const std::optional<std::uint64_t> frame = faults::ticksOf(pool);
     if ((apart == nullptr && !frame) || (flags & VK_QUERY_RESULT_64_BIT) == 0) { return result; }
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t ticks = frame ? frame->at(first + i, first + count) : (first + i) * std::strtoull(apart, nullptr, 10);
+        const std::uint64_t ticks = frame ? *frame * (first + i) / (first + count - 1) : (first + i) * std::strtoull(apart, nullptr, 10);
         std::memcpy(static_cast<char*>(data) + i * stride, &ticks, sizeof ticks);
     }
     return result;

@@ -1,14 +1,12 @@
 // Watching what is recorded.
 #include "tests/faults/load.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <map>
 #include <mutex>
-#include <string>
 
 namespace binosplat::faults {
 
@@ -17,13 +15,8 @@ namespace {
 // Since its timestamps were reset.
 struct Recording {
     VkQueryPool timestamps = VK_NULL_HANDLE;
-    bool is_in_present = false, reprojects = false;
+    bool is_in_present = false;
     std::uint64_t groups = 0;  // that present pixels
-    std::uint64_t both_passes = 0, dominant_passes = 0;
-};
-
-struct Load {
-    double rendered_ms = 0.0, reprojected_ms = 0.0;
 };
 
 std::mutex g_load_mutex;
@@ -34,17 +27,15 @@ PFN_vkCmdResetQueryPool g_reset = nullptr;
 PFN_vkCmdDispatch g_dispatch = nullptr;
 PFN_vkCmdBeginDebugUtilsLabelEXT g_begin_label = nullptr;
 
-// By the frame from which on it is so.
-const std::map<std::uint64_t, Load>& loads() {
-    static const std::map<std::uint64_t, Load> all = [] {
-        std::map<std::uint64_t, Load> found;
+// In milliseconds, by the frame from which on it is so.
+const std::map<std::uint64_t, double>& loads() {
+    static const std::map<std::uint64_t, double> all = [] {
+        std::map<std::uint64_t, double> found;
         const char* text = std::getenv("BINOSPLAT_FAULT_LOAD");
         while (text != nullptr && *text != '\0') {
             char* end = nullptr;
             const std::uint64_t frame = std::strtoull(text, &end, 10);
-            Load& load = found[frame];
-            load.rendered_ms = std::strtod(end + 1, &end);
-            load.reprojected_ms = std::strtod(end + 1, &end);
+            found[frame] = std::strtod(end + 1, &end);
             text = *end == ',' ? end + 1 : end;
         }
         return found;
@@ -63,12 +54,7 @@ VKAPI_ATTR void VKAPI_CALL resetQueryPool(VkCommandBuffer commands, VkQueryPool 
 VKAPI_ATTR void VKAPI_CALL beginLabel(VkCommandBuffer commands, const VkDebugUtilsLabelEXT* label) {
     {
         const std::lock_guard lock(g_load_mutex);
-        Recording& recording = g_recordings[commands];
-        recording.is_in_present = std::strcmp(label->pLabelName, "present") == 0;
-        const std::string name = label->pLabelName;
-        recording.reprojects = recording.reprojects || name.find("resample") != std::string::npos;
-        if (name.starts_with("both ")) { ++recording.both_passes; }
-        if (name.starts_with("dominant ")) { ++recording.dominant_passes; }
+        g_recordings[commands].is_in_present = std::strcmp(label->pLabelName, "present") == 0;
     }
     if (g_begin_label != nullptr) { g_begin_label(commands, label); }
 }
@@ -106,27 +92,16 @@ PFN_vkVoidFunction loadFunction(const char* name) {
     return nullptr;
 }
 
-std::uint64_t FrameTicks::at(std::uint64_t stamp, std::uint64_t stamps) const {
-    const std::uint64_t over = (stamp + 1) / 2, passes = stamps / 2, first_passes = both_passes + dominant_passes;
-    if (over <= both_passes) { return 0; }
-    if (over <= first_passes) { return dominant_ticks * (over - both_passes) / dominant_passes; }
-    return dominant_ticks + (ticks - dominant_ticks) * (over - first_passes) / (passes - first_passes);
-}
-
-std::optional<FrameTicks> ticksOf(VkQueryPool pool) {
+std::optional<std::uint64_t> ticksOf(VkQueryPool pool) {
     if (!hasLoad()) { return std::nullopt; }
     const std::lock_guard lock(g_load_mutex);
     for (const auto& [commands, recording] : g_recordings) {
         if (recording.timestamps != pool || recording.groups == 0) { continue; }
         if (g_first_groups == 0) { g_first_groups = recording.groups; }
         const auto after = loads().upper_bound(g_frames++);
-        if (after == loads().begin()) { return FrameTicks{.ticks = 1}; }
-        const Load& load = std::prev(after)->second;
+        if (after == loads().begin()) { return 1; }
         const double share = static_cast<double>(recording.groups) / static_cast<double>(g_first_groups);
-        const auto ticks = [&](double ms) { return static_cast<std::uint64_t>(std::llround(share * ms * 1e6 / g_tick_ns)); };
-        if (!recording.reprojects) { return FrameTicks{.ticks = ticks(load.rendered_ms)}; }
-        const double dominant_ms = std::min(0.5 * load.rendered_ms, load.reprojected_ms);
-        return FrameTicks{recording.both_passes, recording.dominant_passes, ticks(dominant_ms), ticks(load.reprojected_ms)};
+        return static_cast<std::uint64_t>(std::llround(share * std::prev(after)->second * 1e6 / g_tick_ns));
     }
     return std::nullopt;
 }

@@ -69,11 +69,11 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order
     widgets.noteSlider("margin (paper)");
     const SliderRange budgets = sliderOf(*findRunRow("budget"));
     auto budget = static_cast<float>(100.0 * stereo.budget);
-    if (ImGui::SliderFloat("budget (predicted)", &budget, static_cast<float>(100.0 * budgets.least),
-                           static_cast<float>(100.0 * budgets.most), "%.0f %% of an eye")) {
+    if (ImGui::SliderFloat("budget", &budget, static_cast<float>(100.0 * budgets.least), static_cast<float>(100.0 * budgets.most),
+                           stereo.mode == Mode::kTemporal ? "%.0f %% of both eyes" : "%.0f %% of an eye")) {
         stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
     }
-    widgets.noteSlider("budget (predicted)");
+    widgets.noteSlider("budget");
     settings.stereo = stereo;
 }
 

@@ -29,6 +29,7 @@ struct ShownPlace {
 struct ShownRate {
     double met_hz = 0.0, display_hz = 0.0;  // displays that had a new picture, and all; 0: not known yet
     double resolution = 1.0;                // each way, of what the headset recommends
+    std::optional<double> budget;           // how much of the pictures is rendered again at most, where the method has such a share
     bool is_beaten = false;                 // the rate is to be held, and nothing that may be given up is enough
 };
 

@@ -37,9 +37,6 @@ std::vector<std::uint32_t> widthsOf(std::uint32_t width_px) {
     return widths;
 }
 
-// What may come up without a click: the method that was chosen, and what the governor has in its place.
-std::vector<Mode> modesAhead(Mode chosen) { return reprojects(chosen) ? std::vector{chosen, Mode::kShared} : std::vector{chosen}; }
-
 // A method in all its variants, for eyes such as these.
 void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<const Eye> eyes) {
     const auto seen = settings.mode == Mode::kMono ? eyes.first(1) : eyes;
@@ -65,19 +62,16 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
     for (unsigned variant = 0; variant < 4; ++variant) {
         const bool canted = (variant & 1) != 0, hides = (variant & 2) != 0;
         const std::array<Eye, 2> eyes = smallEyes(width_px, canted);
-        for (const Mode mode : modesAhead(ahead.stereo.mode)) {
-            between();
-            FrameSettings settings = frameSettings(camera, ahead.stereo);
-            settings.mode = mode;
-            settings.half_floats = true;
-            settings.keep_past = true;
-            settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
-            settings.keep_classes = ahead.tint;
-            settings.square_boxes = false;
-            // One eye's picture for both is seen through either lens.
-            if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
-            makeKernelsOf(small, settings, eyes);
-        }
+        between();
+        FrameSettings settings = frameSettings(camera, ahead.stereo);
+        settings.half_floats = true;
+        settings.keep_past = true;
+        settings.keep_depth = settings.keep_both_depths = ahead.with_depth;
+        settings.keep_classes = ahead.tint;
+        settings.square_boxes = false;
+        // One eye's picture for both is seen through either lens.
+        if (hides && settings.mode != Mode::kMono) { settings.hidden_tiles = {hidden, hidden}; }
+        makeKernelsOf(small, settings, eyes);
     }
 }
 

@@ -26,8 +26,8 @@ struct FramesAhead {
 };
 
 // A frame of `scene` that is never drawn, and has the kernels of what may come without a click, for StereoFrame::takeKernels: those of the
-// method that was chosen and of what the governor may have in its place, with and without what a lens hides and foveation, with eyes side
-// by side and canted ones. Takes what drivers take; `between` is called now and then and may throw.
+// method that was chosen, with and without what a lens hides and foveation, with eyes side by side and canted ones. Takes what drivers
+// take; `between` is called now and then and may throw.
 std::unique_ptr<StereoFrame> makeKernelsAhead(const Context& context, const GpuScene& scene, const CameraOptions& camera,
                                               const FramesAhead& ahead, const std::function<void()>& between);
 
