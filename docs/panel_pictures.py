@@ -33,7 +33,7 @@ STATES = {
     "other": ("builtin:fence --load-first", LAST + "at 3 should-render off\n"),
     "gone": ("builtin:fence --load-first", LAST + "no-headset-for 100000 after-loss\nat 3 lose-session\n"),
     "replaced": ("builtin:fence --load-first", LAST + "at 12 lose-session\n"),
-    "beaten": ("builtin:fence --load-first --config view.toml", LAST),
+    "beaten": ("builtin:fence --load-first --config view.toml", "rate 90\nsize 1000 1000\nframes none\n"),
     "held": ("builtin:one-splat --load-first --config view.toml", "rate 11\nsize 1000 1000\nframes none\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
