@@ -8,9 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/installed.h"
@@ -177,60 +175,16 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
     CHECK_MESSAGE(python.exit_code == 0, python.output);
 }
 
-TEST_CASE("the page's recipe for GitHub Actions does as it stands there") {
-    if (!haveHelloXr()) return;
-    REQUIRE(fs::exists(installedManifest()));
-    // A project with the runtime as its step built and installed it, and hello_xr as the program to be tested.
-    const fs::path workspace = kWork / "actions";
-    fs::remove_all(workspace);
-    fs::create_directories(workspace);
-    fs::create_directory_symlink(kWork / "installed", workspace / "headset");
-    std::ofstream(workspace / "walk.script") << blockWith("press right trigger 0.5 0.7");
-    std::ofstream(workspace / "program") << "#!/bin/sh\nrm -f keys && mkfifo keys && exec hello_xr -g Vulkan2 0<>keys\n";
-    std::ofstream(workspace / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(tested NONE)\n"
-                                                   "file(COPY_FILE program ${CMAKE_BINARY_DIR}/my_program)\n";
-    fs::permissions(workspace / "program", fs::perms::owner_all);
-    std::istringstream lines(blockWith("runs-on: "));
-    std::string commands, environment, packages, build;
-    const auto after = [](const std::string& line, const char* mark) {
-        const std::size_t place = line.find(mark);
-        return place == std::string::npos ? std::string() : line.substr(place + std::string(mark).size());
+TEST_CASE("the page's recipe for GitHub Actions installs and builds what \"Build it\" does") {
+    const auto restOf = [](const std::string& text, const std::string& mark) {
+        const std::size_t place = text.find(mark);
+        REQUIRE_MESSAGE(place != std::string::npos, mark);
+        return text.substr(place + mark.size(), text.find('\n', place) - place - mark.size());
     };
-    for (std::string line; std::getline(lines, line);) {
-        const std::string command = after(line, "- run: ");
-        if (command.find("sudo ") != std::string::npos)
-            packages = after(command, "apt-get install -y ");
-        else if (command.starts_with("cmake -S simulated "))
-            build = command;
-        else if (!command.empty())
-            commands += command + "\n";
-        const bool is_variable = line.find("XR_RUNTIME_JSON: ") != std::string::npos || line.find("SIMULATED_OPENXR_") != std::string::npos;
-        if (!is_variable) continue;
-        const std::size_t place = line.find(": ");
-        std::string value = line.substr(place + 2);
-        const std::string mark = "${{ github.workspace }}";
-        if (value.starts_with(mark)) value.replace(0, mark.size(), workspace.string());
-        environment += "export " + line.substr(line.find_first_not_of(' '), place - line.find_first_not_of(' ')) + "='" + value + "'\n";
-    }
-    // The steps that need root or a compiler are those of "Build it", under other names.
-    CHECK(!packages.empty());
-    CHECK(pageText().find("\nsudo apt-get install " + packages + "\n") != std::string::npos);
-    std::string built = blockWith("cmake -S xr/simulated -B build");
-    built = built.substr(built.find("cmake -S"));
-    built = built.substr(0, built.find('\n'));
-    for (const auto& [there, here] :
-         {std::pair("xr/simulated", "simulated"), std::pair("-B build", "-B runtime"), std::pair("--build build", "--build runtime"),
-          std::pair("--install build", "--install runtime"), std::pair("$HOME/simulated-openxr", "$PWD/headset")}) {
-        const std::size_t place = built.find(there);
-        REQUIRE_MESSAGE(place != std::string::npos, there);
-        built.replace(place, std::string(there).size(), here);
-    }
-    CHECK(build.starts_with(built));
-    const Run run = shell("cd " + workspace.string() + " && unset BINOSPLAT_SIMULATED_SCRIPT BINOSPLAT_SIMULATED_OUT\n" + environment +
-                          "export CMAKE_GENERATOR=Ninja\nset -ex\n" + commands);
-    CHECK_MESSAGE(run.exit_code == 0, run.output);
-    CHECK(contains(run, "+ ./build/my_program"));
-    CHECK(fs::exists(workspace / "out/frame_000030.png"));
+    const std::string recipe = blockWith("runs-on: ");
+    CHECK(pageText().find("\nsudo apt-get install " + restOf(recipe, "apt-get install -y ") + "\n") != std::string::npos);
+    CHECK(restOf(recipe, "cmake -S simulated ").starts_with("-B runtime "));
+    CHECK(restOf(recipe, "XR_RUNTIME_JSON: ").ends_with("share/openxr/1/simulated_openxr_runtime.json"));
 }
 
 TEST_CASE("the page says where things are installed") {

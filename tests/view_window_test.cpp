@@ -186,38 +186,30 @@ public:
     // As desktops tell programs how large people want things; for as long as somebody is connected.
     void setDpi(int dpi) const {
         const std::string resources = fmt::format("Xft.dpi:\t{}\n", dpi);
+        const unsigned long root = find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_);
         constexpr unsigned long kResourceManager = 23, kString = 31;
-        setText(root(), kResourceManager, kString, resources);
+        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
+            display_, root, kResourceManager, kString, 8, 0, resources.c_str(), static_cast<int>(resources.size()));
         find<int (*)(void*, int)>("XSync")(display_, 0);
     }
     // What a window manager does when somebody clicks on the cross: a message that the window may obey.
-    void clickCross(unsigned long window) const { send(window, messageTo(window, "WM_PROTOCOLS", {atomOf("WM_DELETE_WINDOW")})); }
-    // What a file manager does when somebody lets a file fall on the window (XDND, version 5). Whether the window took it.
-    [[nodiscard]] bool drop(unsigned long window, const std::string& address) const {
-        const unsigned long source =
-            find<unsigned long (*)(void*, unsigned long, int, int, unsigned, unsigned, unsigned, unsigned long, unsigned long)>(
-                "XCreateSimpleWindow")(display_, root(), 0, 0, 1, 1, 0, 0, 0);
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long)>("XSetSelectionOwner")(display_, atomOf("XdndSelection"), source,
-                                                                                                0);
-        send(window, messageTo(window, "XdndEnter", {source, 5UL << 24, atomOf("text/uri-list")}));
-        send(window, messageTo(window, "XdndPosition", {source, 0, 0, 0, atomOf("XdndActionCopy")}));
-        for (Event event; receive(event);) {
-            if (event.type == Event::kSelectionRequest) {
-                const unsigned long asker = event.words[1], selection = event.words[2], format = event.words[3], property = event.words[4];
-                setText(asker, property, format, address + "\r\n");
-                Event answer;
-                answer.type = Event::kSelectionNotify;
-                answer.display = display_;
-                answer.words = {asker, selection, format, property, event.words[5]};
-                send(asker, answer);
-            } else if (event.words[1] == atomOf("XdndStatus")) {
-                if ((event.words[4] & 1) == 0) { return false; }
-                send(window, messageTo(window, "XdndDrop", {source}));
-            } else if (event.words[1] == atomOf("XdndFinished")) {
-                return (event.words[4] & 1) != 0;
-            }
-        }
-        return false;
+    void clickCross(unsigned long window) const {
+        const auto atomOf = [&](const char* name) {
+            return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
+        };
+        // Xlib's XClientMessageEvent in an XEvent of 24 longs: a message that is sent, to which window, its kind, bits of a number, a
+        // number.
+        constexpr unsigned long kClientMessage = 33;
+        std::array<unsigned long, 24> event{kClientMessage,
+                                            0,
+                                            1,
+                                            reinterpret_cast<unsigned long>(display_),
+                                            window,
+                                            atomOf("WM_PROTOCOLS"),
+                                            32,
+                                            atomOf("WM_DELETE_WINDOW")};
+        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, event.data()) != 0);
+        find<int (*)(void*, int)>("XSync")(display_, 0);
     }
     // What the window tells a window manager: whether its size may change, and whether its shape stays.
     [[nodiscard]] std::pair<bool, bool> resizesInShape(unsigned long window) const {
@@ -233,46 +225,6 @@ public:
     }
 
 private:
-    // Xlib's XEvent, of 24 longs, which all begin alike.
-    struct Event {
-        static constexpr int kSelectionRequest = 30, kSelectionNotify = 31, kClientMessage = 33;
-        int type = 0;
-        unsigned long serial = 0;
-        int is_sent = 1;
-        void* display = nullptr;
-        std::array<unsigned long, 20> words{};  // of messages: to which window, kind, bits of a number, numbers
-    };
-
-    [[nodiscard]] unsigned long atomOf(const char* name) const {
-        return find<unsigned long (*)(void*, const char*, int)>("XInternAtom")(display_, name, 0);
-    }
-    [[nodiscard]] unsigned long root() const { return find<unsigned long (*)(void*)>("XDefaultRootWindow")(display_); }
-    void setText(unsigned long window, unsigned long property, unsigned long format, const std::string& text) const {
-        find<int (*)(void*, unsigned long, unsigned long, unsigned long, int, int, const char*, int)>("XChangeProperty")(
-            display_, window, property, format, 8, 0, text.c_str(), static_cast<int>(text.size()));
-    }
-    [[nodiscard]] Event messageTo(unsigned long window, const char* kind, std::initializer_list<unsigned long> numbers) const {
-        Event message;
-        message.type = Event::kClientMessage;
-        message.display = display_;
-        message.words = {window, atomOf(kind), 32};
-        std::ranges::copy(numbers, message.words.begin() + 3);
-        return message;
-    }
-    void send(unsigned long window, Event event) const {
-        CHECK(find<int (*)(void*, unsigned long, int, long, void*)>("XSendEvent")(display_, window, 0, 0, &event) != 0);
-        find<int (*)(void*, int)>("XSync")(display_, 0);
-    }
-    // The next event; false if none comes.
-    bool receive(Event& event) const {
-        pollfd waits{find<int (*)(void*)>("XConnectionNumber")(display_), POLLIN, 0};
-        while (find<int (*)(void*)>("XPending")(display_) == 0) {
-            if (::poll(&waits, 1, kPatienceMs) != 1) { return false; }
-        }
-        find<int (*)(void*, void*)>("XNextEvent")(display_, &event);
-        return true;
-    }
-
     template <typename Function>
     Function find(const char* name) const {
         const auto function = reinterpret_cast<Function>(dlsym(library_, name));
@@ -568,20 +520,6 @@ TEST_CASE("Escape, and the window's cross, end it while the headset is off, not 
             CHECK(viewer.program().said().find("VUID") == std::string::npos);
         }
     }
-}
-
-TEST_CASE("a scene that is let fall on the window is shown") {
-    if (!haveScreen()) { return; }
-    const Workplace work;
-    REQUIRE(work.run("scene step-edge --out 'a room.ply'").exit_code == 0);
-    std::ofstream(work.path / "rest.script") << "rate 30\nsize 96 96\nframes none\n";
-    Viewer viewer(work, "--simulate rest.script --out seen");
-    const unsigned long window = numberOfWindow(viewer.screen(), "^binosplat$", "WINDOW");
-    CHECK(viewer.connection().drop(window, "file://" + work.path.string() + "/a%20room.ply"));
-    CHECK(viewer.program().waitFor("shows " + work.path.string() + "/a room.ply") != "");
-    viewer.hands("key Escape");
-    CHECK(viewer.program().exitCode() == 0);
-    CHECK(viewer.program().said().find("VUID") == std::string::npos);
 }
 
 TEST_CASE("a lost device ends the viewer with three, also beside a window") {
