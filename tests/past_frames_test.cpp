@@ -104,6 +104,25 @@ TEST_CASE_FIXTURE(Gpu, "a head that stands still sees the full render within 30 
     }
 }
 
+TEST_CASE_FIXTURE(
+    Gpu, "with work for nearly all of both eyes these are nearly the full render, parallel or canted, whatever room lists had before") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    for (const double cant : {0.0, 0.05}) {  // parallel eyes are rendered beside each other, canted ones one after the other
+        CAPTURE(cant);
+        StereoFrame frame(context(), scene, {.first_capacity = {1, 1}, .threads_per_cell = 0}), full(context(), scene);
+        const test::KeptKernels kept(context(), frame);
+        for (int step = 0; step < 5; ++step) {
+            std::array<Eye, 2> eyes = eyesAt(view.eye, step);
+            eyes[1].world_from_camera.orientation = eyes[1].world_from_camera.orientation * glm::angleAxis(cant, glm::dvec3(0, 1, 0));
+            const FrameResult result = frame.render(eyes, makeSettings(Mode::kTemporal, 0.9));
+            if (step == 4) { CHECK(result.counters.commands == (cant > 0.0 ? 43u : 34u)); }
+            full.render(eyes, makeSettings(Mode::kShared));
+            for (const int eye : {kLeft, kRight}) { CHECK(compare(frame.readPicture(eye), full.readPicture(eye)).psnrDb() >= 55.0); }
+        }
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes and without a frame that costs more") {
     Walk walk(context(), makeSettings(Mode::kTemporal));
     walk.go(0.0);

@@ -53,8 +53,14 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     plan.lists.push_back(list);
     plan.lists.back().of_chosen = true;
     plan.steps.push_back({Step::Kind::kList, 0});
-    plan.steps.push_back({Step::Kind::kRender, order[0]});
     plan.shares_order = list.eyes.middle || relate(eyes[order[0]], eyes[order[1]]).same_depths;
+    // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
+    if (plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
+        plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
+        plan.lists.back().eyes.shares = plan.shares();
+        return;
+    }
+    plan.steps.push_back({Step::Kind::kRender, order[0]});
     if (!plan.shares_order) {
         plan.steps.push_back({Step::Kind::kList, 1});
         plan.lists.push_back({.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[order[1]].role, .culls = false});
@@ -69,8 +75,14 @@ StereoSettings stereoSettingsOf(const FrameSettings& settings) {
 }
 
 int FramePlan::firstTarget() const {
-    const auto found = std::ranges::find(steps, Step::Kind::kRender, &Step::kind);
+    const auto found = std::ranges::find_if(
+        steps, [](const Step& step) { return step.kind == Step::Kind::kRender || step.kind == Step::Kind::kRenderAll; });
     return found == steps.end() ? 0 : found->index;
+}
+
+int FramePlan::shares() const {
+    const bool at_once = std::ranges::find(steps, Step::Kind::kRenderAll, &Step::kind) != steps.end();
+    return at_once ? static_cast<int>(targets.size()) : 1;
 }
 
 std::optional<int> FramePlan::warpedTarget() const {

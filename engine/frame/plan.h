@@ -56,11 +56,12 @@ struct TargetPlan {
 
 struct Step {
     enum class Kind {
-        kList,    // makes FramePlan::lists[index]
-        kWarp,    // moves pixels into FramePlan::targets[index] and chooses its tiles
-        kPast,    // makes FramePlan::targets[index] from its past
-        kChoose,  // chooses the tiles of all targets that have one
-        kRender,  // renders these
+        kList,       // makes FramePlan::lists[index]
+        kWarp,       // moves pixels into FramePlan::targets[index] and chooses its tiles
+        kPast,       // makes FramePlan::targets[index] from its past
+        kChoose,     // chooses the tiles of all targets that have one
+        kRender,     // renders these
+        kRenderAll,  // renders the chosen tiles of all targets at the same time; their list and pairs need room for each
     };
     Kind kind;
     int index;
@@ -80,6 +81,8 @@ struct FramePlan {
 
     // The one that others are made from, or the one whose turn is first.
     [[nodiscard]] int firstTarget() const;
+    // How many pictures are rendered at the same time.
+    [[nodiscard]] int shares() const;
     // The first that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };

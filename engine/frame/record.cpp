@@ -55,6 +55,9 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
             case Step::Kind::kRender:
                 recordPicture(commands, plan, step.index);
                 break;
+            case Step::Kind::kRenderAll:
+                recordPatches(commands, plan);
+                break;
         }
     }
     commands.endPass();
@@ -122,10 +125,25 @@ void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int
     if (planned.choice == TileChoice::kAll) {
         passes.recordEye(commands, scene, room.lists(), target, planned.role);
     } else {
-        const WarpBuffers& warp = room.warp(index);
-        const TileMask chosen{warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
-        passes.recordTiles(commands, scene, room.lists(), target, chosen, planned.role);
+        const Passes::Patch patch{target, chosenTiles(index)};
+        passes.recordTiles(commands, scene, room.lists(), std::span(&patch, 1), planned.role);
     }
+}
+
+TileMask FrameRecorder::chosenTiles(int index) const {
+    const WarpBuffers& warp = room.warp(index);
+    return {warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
+}
+
+void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan) const {
+    std::vector<Passes::Patch> patches;
+    for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
+        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(t)});
+        patch.target.share = t;
+        patch.target.shares = plan.shares();
+        patch.target.pairs = room.lists().pairs.arrays(t, plan.shares());
+    }
+    passes.recordTiles(commands, scene, room.lists(), patches, Role::kBoth);
 }
 
 Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {

@@ -29,6 +29,8 @@ private:
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
+    void recordPatches(Commands& commands, const FramePlan& plan) const;
+    [[nodiscard]] TileMask chosenTiles(int index) const;
     [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
 };
 

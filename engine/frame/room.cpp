@@ -116,7 +116,7 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(context_, moments_, "inverse depth moments", moments_bytes);
-    resize(context_, lists_.tile_ranges, "tile ranges", most_tiles * sizeof(gpu::uvec2));
+    resize(context_, lists_.tile_ranges, "tile ranges", static_cast<std::uint64_t>(plan.shares()) * most_tiles * sizeof(gpu::uvec2));
     fitWarps(plan);
 }
 
@@ -172,8 +172,12 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
+    // Each picture that is rendered at the same time as others has its own part of the lists.
+    const auto shares = static_cast<std::uint32_t>(plan.shares());
+    const auto ofAll = [&](std::uint32_t needed) { return std::min(needed, UINT32_MAX / shares) * shares; };
     for (const gpu::ListState& visible : state.visible) {
-        wanted.visible = std::max(wanted.visible, std::min(enough(visible.needed, now.visible), std::max(scene_->splatCount(), 1u)));
+        wanted.visible =
+            std::max(wanted.visible, std::min(enough(ofAll(visible.needed), now.visible), std::max(ofAll(scene_->splatCount()), 1u)));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
@@ -181,7 +185,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         // Without the source's pairs every tile seems cheap to render: how many the target needs shows in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         if (!plan.targets[t].feeds || pairs > mostLentPairs(plan)) {
-            wanted.pairs = std::max(wanted.pairs, enough(pairs, now.pairs));
+            wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs), now.pairs));
         } else if (pairs > now.pairs) {
             wanted.lent_pairs = enough(pairs, now.lent_pairs);
         }

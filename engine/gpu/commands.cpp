@@ -39,7 +39,7 @@ Commands::~Commands() {
 
 void Commands::begin() {
     assert(!under_way_);
-    in_pass_ = false;  // of what was dropped
+    in_pass_ = beside_ = false;  // of what was dropped
     passes_.clear();
     timestamp_count_ = 0;
     count_ = 0;
@@ -71,6 +71,7 @@ void Commands::endPass() {
 
 void Commands::waitForAll() {
     ++count_;
+    if (std::exchange(beside_, false)) { return; }
     using Stage = vk::PipelineStageFlagBits;
     using Access = vk::AccessFlagBits;
     const vk::MemoryBarrier barrier(Access::eShaderWrite | Access::eTransferWrite, Access::eShaderRead | Access::eShaderWrite |

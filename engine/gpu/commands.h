@@ -48,7 +48,9 @@ public:
     void beginPass(const PassLabel& label);
     void endPass();
 
-    // Each waits for all that was recorded before it.
+    // Each waits for all that was recorded before it, unless it is said of it that it runs beside the one before: then neither may write
+    // what the other touches.
+    void beside() { beside_ = true; }
     template <typename Pass>
     void dispatch(const Kernel& kernel, const Pass& pass, std::uint32_t groups_x, std::uint32_t groups_y = 1) {
         recordKernel(kernel, &pass, sizeof(Pass));
@@ -121,7 +123,7 @@ private:
     std::vector<PassLabel> passes_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;
-    bool in_pass_ = false, under_way_ = false;
+    bool in_pass_ = false, under_way_ = false, beside_ = false;
     PassTimes times_;
     double total_ms_ = 0.0;
 };

@@ -19,9 +19,11 @@ PairBuffers::PairBuffers(const Context& context, const FrameCapacity& capacity)
     assert(lent_words_ <= kMostLentWords);
 }
 
-PairArrays PairBuffers::arrays() const {
-    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>(i * sizeof(gpu::uint) * capacity_); };
-    return {{array(0), array(1)}, {array(2), array(3)}, capacity_};
+PairArrays PairBuffers::arrays(int share, int shares) const {
+    const std::uint32_t capacity = capacity_ / static_cast<std::uint32_t>(shares);
+    const std::uint64_t first = static_cast<std::uint64_t>(share) * capacity;
+    const auto array = [&](std::uint64_t i) { return buffer_.address<gpu::uint>((i * capacity_ + first) * sizeof(gpu::uint)); };
+    return {{array(0), array(1)}, {array(2), array(3)}, capacity};
 }
 
 PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const {
@@ -59,8 +61,9 @@ void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapaci
         buffers.pairs = {};
         buffers.pairs = PairBuffers(context, capacity);
     }
-    const std::uint64_t scratch_bytes = std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
-                                                  Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});
+    const std::uint64_t scratch_bytes =
+        kMostAtOnce * std::max({VisibleBuffers::groupSumBytes(capacity.visible), Sort::histogramBytes(capacity.visible),
+                                Sort::histogramBytes(std::max(capacity.pairs, capacity.lent_pairs))});
     if (buffers.scratch.bytes() != scratch_bytes) {
         buffers.scratch = {};
         buffers.scratch = Buffer(context, "sums and sort scratch", scratch_bytes);

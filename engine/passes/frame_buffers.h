@@ -15,6 +15,9 @@ namespace binosplat {
 // Pictures of a frame at most, and lists of visible splats: two eyes, and room for a second picture of each.
 inline constexpr std::size_t kMostTargets = 4;
 
+// Pictures whose splats are projected, binned and blended at the same time, each with its share of the lists' room.
+inline constexpr int kMostAtOnce = 2;
+
 // A picture on its way.
 struct TargetState {
     gpu::ListState pairs;
@@ -103,7 +106,8 @@ public:
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
     [[nodiscard]] std::uint32_t lentCapacity() const { return lent_capacity_; }
     [[nodiscard]] std::uint32_t lentWords() const { return lent_words_; }
-    [[nodiscard]] PairArrays arrays() const;
+    // The `share`th of `shares` equal parts.
+    [[nodiscard]] PairArrays arrays(int share = 0, int shares = 1) const;
     // With lentWords() words of each pair in `idle`; the one word that remains after a sort by `key_bits` is none of these.
     [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }

@@ -105,7 +105,7 @@ void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBu
                                         .chunk_bits = scene.chunkBits(),
                                         .first_eye = static_cast<gpu::uint>(eyes.first),
                                         .eye_count = static_cast<gpu::uint>(eyes.count),
-                                        .capacity = buffers.visible.capacity(),
+                                        .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
                                         .first_tile_mask = eyes.first_mask,
                                         .last_tile_mask = eyes.last_mask},
                           scene.splatCount(), gpu::kCullBlock);
@@ -161,36 +161,75 @@ struct Passes::EyePart {
     [[nodiscard]] auto pairs() const { return buffers.state.address<gpu::ListState>(pairList()); }
     [[nodiscard]] std::uint64_t counterBytes() const { return FrameBuffers::targetField(target.index, offsetof(TargetState, counters)); }
     [[nodiscard]] auto counters() const { return buffers.state.address<gpu::EyeCounters>(counterBytes()); }
-    [[nodiscard]] auto ranges() const { return buffers.tile_ranges.address<gpu::uvec2>(); }
-    [[nodiscard]] auto scratch() const { return buffers.scratch.address<gpu::uint>(); }
+    [[nodiscard]] gpu::BinPass binPass() const;
+    // Its share of what is in `buffers`.
+    [[nodiscard]] std::uint64_t firstSplat() const {
+        return std::uint64_t{buffers.visible.capacity()} / static_cast<std::uint64_t>(target.shares) *
+               static_cast<std::uint64_t>(target.share);
+    }
+    [[nodiscard]] auto splats() const { return buffers.visible.splats().at(firstSplat()); }
+    [[nodiscard]] auto tileSets() const { return buffers.visible.tileSets().at(firstSplat()); }
+    [[nodiscard]] auto tileCounts() const { return buffers.visible.tileCounts().at(firstSplat()); }
+    [[nodiscard]] auto ranges() const {
+        const std::uint64_t ranges_of_one = std::uint64_t{target.size_tiles.x} * target.size_tiles.y;
+        return buffers.tile_ranges.address<gpu::uvec2>().at(ranges_of_one * static_cast<std::uint64_t>(target.share));
+    }
+    [[nodiscard]] auto scratch() const {
+        const std::uint64_t words = buffers.scratch.bytes() / sizeof(gpu::uint) / kMostAtOnce;
+        return buffers.scratch.address<gpu::uint>().at(words * static_cast<std::uint64_t>(target.share));
+    }
 };
 
 void Passes::recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role) {
-    record({.commands = commands,
-            .scene = scene,
-            .buffers = buffers,
-            .target = target,
-            .tiles = {.mask = target.shown, .list = {}, .full = {}},
-            .lists_tiles = false,
-            .role = role});
+    const EyePart part{.commands = commands,
+                       .scene = scene,
+                       .buffers = buffers,
+                       .target = target,
+                       .tiles = {.mask = target.shown, .list = {}, .full = {}},
+                       .lists_tiles = false,
+                       .role = role};
+    record(std::span(&part, 1));
 }
 
-void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, const TileMask& mask,
+void Passes::recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, std::span<const Patch> patches,
                          Role role) {
-    record({.commands = commands, .scene = scene, .buffers = buffers, .target = target, .tiles = mask, .lists_tiles = true, .role = role});
+    std::vector<EyePart> parts;
+    for (const Patch& patch : patches) {
+        parts.push_back({.commands = commands,
+                         .scene = scene,
+                         .buffers = buffers,
+                         .target = patch.target,
+                         .tiles = patch.mask,
+                         .lists_tiles = true,
+                         .role = role});
+    }
+    record(parts);
 }
 
-void Passes::record(const EyePart& part) {
-    part.commands.beginPass({part.role, FrameStage::kSplat, "project"});
-    recordProjected(part);
-    part.commands.beginPass({part.role, FrameStage::kSplat, "bin"});
-    recordBinned(part);
-    part.commands.beginPass({part.role, FrameStage::kSplat, "sort_tiles"});
-    const KeyValues sorted = sort().record(part.commands, part.target.pairs.pairs, part.target.pairs.spare, part.scratch(),
-                                           part.buffers.state, part.pairList(), tileBits(part.target.size_tiles));
-    recordTileRanges(part, sorted);
-    part.commands.beginPass({part.role, FrameStage::kSplat, "rasterize"});
-    recordRasterized(part, sorted);
+void Passes::record(std::span<const EyePart> parts) {
+    Commands& commands = parts.front().commands;
+    const Role role = parts.front().role;
+    // A command for each part, all of them beside each other.
+    const auto forEach = [&](auto&& recordPart) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (i > 0) { commands.beside(); }
+            recordPart(i);
+        }
+    };
+    commands.beginPass({role, FrameStage::kSplat, "project"});
+    forEach([&](std::size_t i) { recordProjected(parts[i]); });
+    commands.beginPass({role, FrameStage::kSplat, "bin"});
+    forEach([&](std::size_t i) { recordBinned(parts[i]); });
+    forEach([&](std::size_t i) { recordLargeBinned(parts[i]); });
+    commands.beginPass({role, FrameStage::kSplat, "sort_tiles"});
+    std::vector<Sort::Job> jobs;
+    for (const EyePart& part : parts) {
+        jobs.push_back({part.target.pairs.pairs, part.target.pairs.spare, part.scratch(), part.pairList()});
+    }
+    sort().record(commands, jobs, parts.front().buffers.state, tileBits(parts.front().target.size_tiles));
+    forEach([&](std::size_t i) { recordTileRanges(parts[i], jobs[i].in); });
+    commands.beginPass({role, FrameStage::kSplat, "rasterize"});
+    forEach([&](std::size_t i) { recordRasterized(parts[i], jobs[i].in); });
 }
 
 void Passes::recordProjected(const EyePart& part) {
@@ -198,9 +237,9 @@ void Passes::recordProjected(const EyePart& part) {
                                    .eyes = part.buffers.eyes(),
                                    .order = part.buffers.visible.order().values,
                                    .visible = part.visible(),
-                                   .splats = part.buffers.visible.splats(),
-                                   .tile_sets = part.buffers.visible.tileSets(),
-                                   .tile_counts = part.buffers.visible.tileCounts(),
+                                   .splats = part.splats(),
+                                   .tile_sets = part.tileSets(),
+                                   .tile_counts = part.tileCounts(),
                                    .group_sums = part.scratch(),
                                    .pairs = part.pairs(),
                                    .counters = part.counters(),
@@ -215,23 +254,30 @@ void Passes::recordProjected(const EyePart& part) {
                                    project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
 }
 
+// Of bin and bin_large.
+gpu::BinPass Passes::EyePart::binPass() const {
+    return {.splats = splats(),
+            .tile_sets = tileSets(),
+            .tile_counts = tileCounts(),
+            .group_sums = scratch(),
+            .visible = visible(),
+            .pairs = pairs(),
+            .tiles = target.pairs.pairs.keys,
+            .ranks = target.pairs.pairs.values,
+            .large_splats = target.pairs.spare.keys,
+            .large_begins = target.pairs.spare.values,
+            .counters = counters(),
+            .tile_mask = tiles.mask,
+            .size_tiles = target.size_tiles};
+}
+
 void Passes::recordBinned(const EyePart& part) {
-    const gpu::BinPass bin{.splats = part.buffers.visible.splats(),
-                           .tile_sets = part.buffers.visible.tileSets(),
-                           .tile_counts = part.buffers.visible.tileCounts(),
-                           .group_sums = part.scratch(),
-                           .visible = part.visible(),
-                           .pairs = part.pairs(),
-                           .tiles = part.target.pairs.pairs.keys,
-                           .ranks = part.target.pairs.pairs.values,
-                           .large_splats = part.target.pairs.spare.keys,
-                           .large_begins = part.target.pairs.spare.values,
-                           .counters = part.counters(),
-                           .tile_mask = part.tiles.mask,
-                           .size_tiles = part.target.size_tiles};
-    part.commands.dispatchIndirect(kernels_.get(BinKernel{}), bin, part.buffers.state,
+    part.commands.dispatchIndirect(kernels_.get(BinKernel{}), part.binPass(), part.buffers.state,
                                    part.visibleList() + offsetof(gpu::ListState, per_block));
-    part.commands.dispatch(kernels_.get(BinLargeKernel{.masked = part.masked(), .splat_kind = part.scene.splatShape()}), bin,
+}
+
+void Passes::recordLargeBinned(const EyePart& part) {
+    part.commands.dispatch(kernels_.get(BinLargeKernel{.masked = part.masked(), .splat_kind = part.scene.splatShape()}), part.binPass(),
                            gpu::kBinLargeGroups);
 }
 
@@ -265,7 +311,7 @@ void Passes::recordRasterized(const EyePart& part, const KeyValues& sorted) {
     const Target& target = part.target;
     const bool is_light = part.scene.isLight();
     const gpu::RasterizePass rasterize{.eyes = part.buffers.eyes(),
-                                       .splats = part.buffers.visible.splats(),
+                                       .splats = part.splats(),
                                        .ranks = sorted.values,
                                        .ranges = part.ranges(),
                                        .colours = target.picture->colours.address<gpu::vec4>(),

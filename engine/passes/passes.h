@@ -49,6 +49,7 @@ struct Target {
     gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
     gpu::uint row_words = 0;                                   // of these two
+    int share = 0, shares = 1;                                 // of the lists' room: `pairs` is of this share
     bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and has no one of its own for these
     gpu::DeviceAddress<gpu::uint> shown = {};  // what the lens shows, as a mask, if it hides anything; the other tiles become background
 };
@@ -64,6 +65,7 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
+    int shares = 1;                                                 // as many pictures are rendered from it at the same time
     gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // where only the chosen tiles of each eye count
 };
 
@@ -90,15 +92,20 @@ public:
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
     // The picture of an eye: project to rasterize.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role);
-    // The same for some tiles alone: the others stay as they are.
-    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, const TileMask& mask,
-                     Role role);
+    // The same for some tiles alone: the others stay as they are. Of several pictures with equal tiles beside each other, each with its
+    // share of the lists.
+    struct Patch {
+        Target target;
+        TileMask mask;
+    };
+    void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, std::span<const Patch> patches, Role role);
 
 private:
     struct EyePart;
-    void record(const EyePart& part);
+    void record(std::span<const EyePart> parts);
     void recordProjected(const EyePart& part);
     void recordBinned(const EyePart& part);
+    void recordLargeBinned(const EyePart& part);
     void recordTileRanges(const EyePart& part, const KeyValues& sorted);
     void recordRasterized(const EyePart& part, const KeyValues& sorted);
     const Sort& sort();

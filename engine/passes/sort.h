@@ -5,6 +5,8 @@
 #include "engine/gpu/commands.h"
 #include "shaders/shared/passes.h"
 
+#include <span>
+
 namespace binosplat {
 
 // Keys and their values, as two arrays.
@@ -32,6 +34,14 @@ public:
     // Whether the result of `record` lies in `spare`.
     static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
+    // A list to be sorted: its pairs, as much room again, room for histograms, and where in the buffer of lists it stands.
+    struct Job {
+        KeyValues in, spare;
+        gpu::DeviceAddress<gpu::uint> histograms;
+        std::uint64_t list_bytes = 0;
+    };
+    // The same for several lists, round by round beside each other.
+    void record(Commands& commands, std::span<Job> jobs, const Buffer& lists, unsigned key_bits) const;
     // Sorts `in` by the lowest `key_bits` bits of its keys; `spare` is as large and is overwritten. Returns whichever of the two
     // holds the result. The length is that of the list at `list_bytes` of `lists`, whose count of workgroups is used.
     KeyValues record(Commands& commands, KeyValues in, KeyValues spare, gpu::DeviceAddress<gpu::uint> histograms, const Buffer& lists,
