@@ -5,6 +5,7 @@
 #include "app/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
+#include "engine/picture/roi_picture.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +81,13 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& path_
             writePicture(files.staging() / pictureName(frames.size(), name), PictureKind::kDisplay, frame.readPicture(eye++));
         }
         frames.push_back({time_s, cameras, std::move(result)});
+    }
+    // What made the tiles of the last frame, where both eyes have some that were not rendered.
+    if (!mono && !frame.readTileKinds(kLeft).empty() && !frame.readTileKinds(kRight).empty()) {
+        for (const int eye : {kLeft, kRight}) {
+            writePicture(files.staging() / (eye == kLeft ? "roi_left" : "roi_right"), PictureKind::kDisplay,
+                         makeRoiPicture(frame.readPicture(eye), frame.readTileKinds(eye), {}));
+        }
     }
     return frames;
 }

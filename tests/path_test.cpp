@@ -82,6 +82,25 @@ TEST_CASE("every pose becomes a frame of both eyes, the same as one that is rend
     }
 }
 
+TEST_CASE(
+    "without a mode both eyes are made from their pasts, of which no frame is taken for blind, and roi_left and roi_right show the last "
+    "one's tiles") {
+    const Way way("time_s,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.1,0.01,0,0,0,0,0,1\n0.2,0.02,0,0,0,0,0,1\n");
+    const Outcome outcome = way.walk("");
+    INFO(outcome.errors);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.output.find("temporal") != std::string::npos);
+    CHECK(outcome.errors.empty());
+    for (const std::string eye : {"left", "right"}) {
+        CAPTURE(eye);
+        const Image shown = readPicture(way.path / "frames" / ("frame_000002_" + eye + kExtension)),
+                    tinted = readPicture(way.path / "frames" / ("roi_" + eye + kExtension));
+        const double db = compare(shown, tinted).psnrDb();
+        CHECK(db > 5.0);
+        CHECK(db < 40.0);  // some tiles were rendered again
+    }
+}
+
 TEST_CASE("a headset's frusta go along the path") {
     const Way way;
     const std::string headset = "render builtin:one-splat --headset '" BINOSPLAT_SOURCE_DIR

@@ -142,9 +142,8 @@ void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScen
     for (const int e : {kLeft, kRight}) {
         const bool dominant = e == frame.dominant;
         if (frame.mode == Mode::kMono && !dominant) { continue; }
-        const bool tinted = tint && reprojects(frame.mode) && !dominant;
         const Picture& image = scene.frame.picture(frame.mode == Mode::kMono ? 0 : e);
-        stay.images->present(commands, e, image, tinted ? &scene.frame.warpBuffers() : nullptr, frame.near);
+        stay.images->present(commands, e, image, tint ? scene.frame.chosenTiles(e) : nullptr, frame.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = frame.mode == Mode::kMono || dominant != tint;
         if (window != nullptr && window->drawn() && shown) {

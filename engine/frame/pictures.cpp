@@ -39,9 +39,21 @@ Image StereoFrame::readDepth(int eye) { return {picture(eye).size_px, 1, readBuf
 
 Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
 
+const WarpBuffers* StereoFrame::chosenTiles(int eye) const {
+    if (static_cast<std::size_t>(eye) >= plan_.targets.size()) { return nullptr; }
+    const TargetPlan& target = plan_.targets[static_cast<std::size_t>(eye)];
+    return target.warp || target.past ? &room_.warp(eye) : nullptr;
+}
+
+std::vector<std::uint32_t> StereoFrame::readTileKinds(int eye) {
+    const WarpBuffers* choice = chosenTiles(eye);
+    if (choice == nullptr) { return {}; }
+    return readBuffer<std::uint32_t>(choice->tiles(), choice->tileCount() * sizeof(gpu::uint));
+}
+
 std::vector<std::uint32_t> StereoFrame::readTileKinds() {
-    if (!plan_.warpedTarget()) { return {}; }
-    return readBuffer<std::uint32_t>(warpBuffers().tiles(), warpBuffers().tileCount() * sizeof(gpu::uint));
+    const std::optional<int> warped = plan_.warpedTarget();
+    return warped ? readTileKinds(*warped) : std::vector<std::uint32_t>{};
 }
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {

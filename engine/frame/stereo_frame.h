@@ -63,12 +63,16 @@ public:
     [[nodiscard]] Image readInverseDepthMoments();
     // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
+    // The same of any eye's picture, also of one that is made from its own past.
+    [[nodiscard]] std::vector<std::uint32_t> readTileKinds(int eye);
     // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; where they
     // were kept.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
     // The same in device memory, for whoever shows them.
     [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture); }
+    // Where the last frame keeps what made the tiles of an eye's picture; null where it was rendered in full.
+    [[nodiscard]] const WarpBuffers* chosenTiles(int eye) const;
     // Of the target that is made from another; without memory where there is none.
     [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
 

@@ -24,7 +24,8 @@ vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), gre
 vec3 tint(vec3 colour, uvec2 at, uint row_tiles) {
     const uint kind = pass.tile_kinds.at[(at.y / kTileSize) * row_tiles + at.x / kTileSize];
     if (kind == kTileHidden) { return colour; }  // nothing says what made its pixels
-    const uint pixel_class = (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u;
+    const bool has_classes = any(notEqual(uvec2(pass.pixel_classes), uvec2(0)));
+    const uint pixel_class = has_classes ? (pass.pixel_classes.at[at.y * row_tiles + at.x / kTileSize] >> (2 * (at.x % kTileSize))) & 3u : kCovered;
     vec3 shade;
     if (kind == kTileEdge) {
         shade = vec3(0, 0.35, 1);
