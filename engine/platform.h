@@ -49,6 +49,9 @@ bool runsAsAdministrator();
 // closed, a user who logs off. The system then waits for the program, for some seconds.
 void watchForEnd(void (*end)(int signal));
 
+// What to do where Vulkan finds no device.
+extern const char* const kVulkanHint;
+
 // Whether there may be a window.
 bool hasDisplay();
 // Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first. They need not exist.

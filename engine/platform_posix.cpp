@@ -72,6 +72,8 @@ void tellUser(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
 bool askUser(const std::string&) { return false; }
 
+const char* const kVulkanHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
+
 bool runsAsAdministrator() { return ::geteuid() == 0; }
 
 void watchForEnd(void (*)(int)) {}

@@ -119,6 +119,8 @@ bool askUser(const std::string& question) {
            ::MessageBoxW(nullptr, wide(question).c_str(), L"binosplat", MB_YESNO | MB_ICONQUESTION | MB_SETFOREGROUND) == IDYES;
 }
 
+const char* const kVulkanHint = "install the newest driver of the graphics card from its maker (NVIDIA, AMD, Intel): Vulkan comes with it";
+
 bool runsAsAdministrator() { return ::IsUserAnAdmin() != 0; }
 
 static void (*g_end)(int) = nullptr;  // the system calls back without anything of ours

@@ -254,7 +254,7 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
     roomy.render(eyesAt(view.eye, 0), seeing);
     const std::uint64_t most = context().memoryUse().current_bytes - before;
 
-    const Context tight({.device = {}, .validation = true, .memory_limit_bytes = (least + most) / 2});
+    const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = (least + most) / 2});
     const GpuScene scene(tight, view.scene);
     StereoFrame frame(tight, scene, small);
     for (int step = 0; step < 3; ++step) { frame.renderAhead(eyesAt(view.eye, 0), blind); }
@@ -275,7 +275,7 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
 
 TEST_CASE_FIXTURE(Gpu, "pictures that the device has no memory for are refused before a frame is begun, and smaller ones go on") {
     const ViewedScene view = viewAtelier();
-    const Context tight({.device = {}, .validation = true, .memory_limit_bytes = 64u << 20});
+    const Context tight({.device = {}, .validation = test::kValidation, .memory_limit_bytes = 64u << 20});
     const GpuScene scene(tight, view.scene);
     StereoFrame frame(tight, scene);
     const FrameSettings settings = makeSettings(Mode::kPredicted);

@@ -19,14 +19,14 @@ gpu::DispatchSize dispatchOver(std::uint64_t count, std::uint64_t group_items) {
 }  // namespace
 
 const Context& Gpu::shared() {
-    static const Context context({.device = {}, .validation = true, .max_allocation_bytes = 0});
+    static const Context context({.device = {}, .validation = kValidation, .max_allocation_bytes = 0});
     return context;
 }
 
 Gpu::Gpu() : context_(shared()), commands_(context_), messages_before_(context_.validationMessages().size()) {}
 
 Gpu::~Gpu() {
-    CHECK(context_.validates());
+    CHECK(context_.validates() == kValidation);
     const std::vector<std::string> messages = context_.validationMessages();
     for (std::size_t i = messages_before_; i < messages.size(); ++i) { FAIL_CHECK("validation: " << messages[i]); }
 }

@@ -10,6 +10,8 @@
 
 namespace binosplat::test {
 
+inline constexpr bool kValidation = BINOSPLAT_TEST_VALIDATION;  // whether programs can have the validation layers at all
+
 // A test case's fixture. All of a program share one device; that there is none fails every test, and so does any message of the
 // validation layers during the test.
 class Gpu {

@@ -5,7 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#ifndef _WIN32
 #include <sys/resource.h>
+#endif
 
 #include <array>
 #include <cctype>
@@ -45,12 +47,16 @@ inline constexpr bool kSanitized = false;
 // A sanitizer makes the libraries' start of each file many times slower: of the inputs one in eight is tried then.
 inline constexpr std::size_t kStep = kSanitized ? 8 : 1;
 
-// The most memory this process ever held, in MiB; 0 where a sanitizer holds most of it.
+// The most memory this process ever held, in MiB; 0 where a sanitizer holds most of it, and on Windows.
 inline long peakMebibytes() {
+#ifdef _WIN32
+    return 0;
+#else
     if (kSanitized) { return 0; }
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return usage.ru_maxrss / 1024;
+#endif
 }
 
 using Attempt = std::function<void(const std::string& what, const std::string& bytes)>;

@@ -1,8 +1,12 @@
 // Runs the program in a folder of its own.
 #pragma once
 
+#include "engine/platform.h"
+
+#ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -23,7 +27,8 @@ struct Outcome {
 inline int (*run_in_fork)(const std::string& arguments, const std::string& environment, const std::filesystem::path& folder,
                           const std::filesystem::path& outputs) = nullptr;
 
-// An empty folder to run in, removed with the test. Standard output and error are kept outside of it.
+// An empty folder to run in, removed with the test. Standard output and error are kept outside of it. On Windows, where there is no POSIX
+// shell, it is a folder and no more.
 struct Workplace {
     std::filesystem::path base = makeBase();
     std::filesystem::path path = base / "work";
@@ -36,6 +41,7 @@ struct Workplace {
         std::filesystem::remove_all(base, ignored);
     }
 
+#ifndef _WIN32
     // As the shell does: `arguments` may redirect, `environment` is NAME=VALUE ... in front of the program.
     [[nodiscard]] Outcome run(const std::string& arguments, const std::string& environment = "") const {
         if (run_in_fork != nullptr) {
@@ -49,17 +55,17 @@ struct Workplace {
         const std::string out = (base / "output").string(), errors = (base / "errors").string();
         return outcomeOf(std::system(("cd '" + path.string() + "' && { " + command + "; } >'" + out + "' 2>'" + errors + "'").c_str()));
     }
+#endif
 
     [[nodiscard]] bool isEmpty() const { return std::filesystem::is_empty(path); }
 
 private:
+#ifndef _WIN32
     [[nodiscard]] Outcome outcomeOf(int status) const {
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(base / "output"), textOf(base / "errors")};
     }
-    static std::filesystem::path makeBase() {
-        std::string name = (std::filesystem::temp_directory_path() / "binosplat-test-XXXXXX").string();
-        return mkdtemp(name.data());
-    }
+#endif
+    static std::filesystem::path makeBase() { return createFolder(std::filesystem::temp_directory_path(), "binosplat-test-"); }
     static std::string textOf(const std::filesystem::path& file) {
         std::ifstream stream(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};

@@ -185,8 +185,8 @@ TEST_CASE_FIXTURE(Gpu, "capacities that are too small grow, and the picture is t
 TEST_CASE("a scene split over several allocations gives the same picture") {
     // 100,000 splats of 140 bytes; an upload takes 65,536 at a time.
     const ViewedScene view = test::viewBuiltin("builtin:atelier", {160, 160}, 100000);
-    const Context whole({.device = {}, .validation = true, .max_allocation_bytes = 0});
-    const Context split({.device = {}, .validation = true, .max_allocation_bytes = 10'000'000});
+    const Context whole({.device = {}, .validation = test::kValidation, .max_allocation_bytes = 0});
+    const Context split({.device = {}, .validation = test::kValidation, .max_allocation_bytes = 10'000'000});
     CHECK(GpuScene(whole, view.scene).chunkCount() == 1);
     CHECK(GpuScene(split, view.scene).chunkCount() > 1);
     const auto one = renderMono(whole, view.scene, view.eye, makeSettings(Mode::kMono));

@@ -122,6 +122,7 @@ Options parseOptions(int argument_count, const char* const* arguments) {
     const std::vector<std::string> words =
         withCommand(argument_count > 1 ? std::vector<std::string>(arguments + 1, arguments + argument_count) : std::vector<std::string>());
     CLI::App app{"binosplat: Gaussian splatting scenes in stereo and in a VR headset", "binosplat"};
+    app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.require_subcommand(1);
     app.set_version_flag("--version", fmt::format("binosplat {}", kVersion));
     std::deque<CommandLine> lines;  // CLI11 keeps addresses within

@@ -27,7 +27,7 @@ fs::path findManifest() {
     const auto* found = std::ranges::find_if(candidates, [](const fs::path& path) { return fs::exists(path); });
     if (found == candidates.end()) {
         throw Error(ExitCode::kNoDevice, fmt::format("the simulated runtime is not installed: neither {} nor {} exists; install "
-                                                     "binosplat-simulated-runtime or run ./run build",
+                                                     "binosplat-simulated-runtime, run ./run build or, on Windows, unpack the whole .zip",
                                                      candidates[0].string(), candidates[1].string()));
     }
     return *found;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_2;
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-constexpr const char* kHint = "install a Vulkan driver, e.g. mesa-vulkan-drivers, and look at `vulkaninfo --summary`";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
@@ -101,7 +100,7 @@ Context::Context(const ContextOptions& options) : memory_limit_bytes_(options.me
         }
         createDevice(options);
     } catch (const vk::SystemError& error) {
-        throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kHint));
+        throw Error(ExitCode::kNoDevice, fmt::format("no usable Vulkan device: {}; {}", error.what(), kVulkanHint));
     }
     if (options.max_allocation_bytes != 0) { max_allocation_bytes_ = std::min(max_allocation_bytes_, options.max_allocation_bytes); }
 }
@@ -159,7 +158,7 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
 void Context::choosePhysicalDevice(const std::string& wanted) {
     vk::raii::PhysicalDevices devices(instance_);
     const auto refuse = [](const std::string& message) { throw Error(ExitCode::kNoDevice, message); };
-    if (devices.empty()) { refuse(fmt::format("no Vulkan device found; {}", kHint)); }
+    if (devices.empty()) { refuse(fmt::format("no Vulkan device found; {}", kVulkanHint)); }
     std::string seen;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const std::string name = devices[i].getProperties().deviceName;
@@ -183,7 +182,7 @@ void Context::choosePhysicalDevice(const std::string& wanted) {
                 chosen = i;
             }
         }
-        if (!chosen) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kHint)); }
+        if (!chosen) { refuse(fmt::format("no usable Vulkan device; there is {}; {}", seen, kVulkanHint)); }
     }
     physical_device_ = std::move(devices[*chosen]);
 }

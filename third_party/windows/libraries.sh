@@ -164,14 +164,34 @@ make_openxr-sdk-source() {
     ln -sfn "$sources/libjsoncpp" "$sources/openxr-sdk-source/src/external/jsoncpp"
     with_cmake openxr-sdk-source -DBUILD_TESTS=OFF -DBUILD_WITH_SYSTEM_JSONCPP=OFF -DBUILD_API_LAYERS=OFF -DBUILD_CONFORMANCE_TESTS=OFF -DDYNAMIC_LOADER=OFF -DBUILD_LOADER=ON
 }
+# Only Vulkan: mingw-w64 lacks headers of Direct3D that it wants.
+make_hello_xr() {
+    local build=$prefix/build/hello_xr source=$sources/openxr-sdk-source/src file
+    mkdir -p "$build" "$installed/bin"
+    {
+        printf 'LIBRARY vulkan-1.dll\nEXPORTS\n'
+        grep -ohP 'VKAPI_CALL \Kvk\w+(?=\()' "$installed"/include/vulkan/vulkan_{core,win32}.h | sort -u
+    } >"$build/vulkan-1.def"
+    $host-dlltool -d "$build/vulkan-1.def" -l "$build/libvulkan-1.dll.a"
+    local files=()
+    for file in main openxr_program logger platformplugin_{factory,win32} graphicsplugin_{factory,vulkan}; do files+=("$source/tests/hello_xr/$file.cpp"); done
+    $host-g++-posix -O1 -std=c++17 -static -s -DXR_OS_WINDOWS -DXR_USE_PLATFORM_WIN32 -DXR_USE_GRAPHICS_API_VULKAN -DMISSING_DIRECTX_COLORS \
+        -I"$source" -I"$source/common" -I"$source/tests/hello_xr/vulkan_shaders" -I"$installed/include" "${files[@]}" -L"$installed/lib" -lopenxr_loader \
+        "$build/libvulkan-1.dll.a" -lole32 -lshlwapi -o "$installed/bin/hello_xr.exe" >>"$log" 2>&1
+}
 
 recipe=$(sha256sum "${BASH_SOURCE[0]}" "$here/toolchain.cmake" | cut -d' ' -f1 | tr '\n' ' '; $host-g++-posix -dumpfullversion)
-for library in headers libzstd libpng1.6 libwebp libzip imath openexr fribidi imgui glfw3 openxr-sdk-source; do
+libraries=(headers libzstd libpng1.6 libwebp libzip imath openexr fribidi imgui glfw3 openxr-sdk-source)
+[ "${1:-}" != hello ] || libraries+=(hello_xr)
+for library in "${libraries[@]}"; do
     stamp=$installed/stamps/$library
     if [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$recipe" ]; then continue; fi
     echo "third_party/windows/libraries.sh: $library"
     if [ "$library" = headers ]; then
         add_headers
+    elif [ "$library" = hello_xr ]; then
+        [ -d "$sources/openxr-sdk-source" ] || fetch openxr-sdk-source
+        make_hello_xr
     else
         fetch "$library"
         rm -rf "${prefix:?}/build/$library"
