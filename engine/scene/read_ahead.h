@@ -5,13 +5,36 @@
 
 #include <array>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <functional>
-#include <semaphore>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace binosplat {
+
+// std::counting_semaphore of GCC 12 for Windows may sleep on though it was released: it looks at the count before it takes the lock under
+// which it sleeps.
+class BatchCount {
+public:
+    explicit BatchCount(std::ptrdiff_t count) : count_(count) {}
+    void release() {
+        const std::lock_guard lock(mutex_);
+        ++count_;
+        changed_.notify_one();
+    }
+    void acquire() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return count_ > 0; });
+        --count_;
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::ptrdiff_t count_;
+};
 
 // Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of whoever takes them. A scene of few rows is filled
 // where it is taken: a thread would take longer to start.
@@ -47,7 +70,7 @@ private:
     std::vector<Batch> batches_;
     std::size_t batch_ = 0, taken_ = 0;  // the batch being taken, and how many of its blocks were
     bool holds_batch_ = false;
-    std::counting_semaphore<kBatches + 1> free_{kBatches}, filled_{0};  // one more where it ends early
+    BatchCount free_{kBatches}, filled_{0};
     std::atomic<bool> stops_ = false;
     std::thread thread_;
 };
