@@ -61,7 +61,7 @@ GltfBuffer openGltfUri(const InputFile& file, const std::string& uri, const std:
     namespace fs = std::filesystem;
     const std::optional<std::string> name = decodePercents(uri);
     const fs::path path = name ? fs::path(*name) : fs::path();
-    const bool within = name && !name->empty() && path.is_relative() &&
+    const bool within = name && !name->empty() && !path.has_root_path() &&
                         name->find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: uri is '{}', expected a path within the folder of the file", place, uri.substr(0, 200));

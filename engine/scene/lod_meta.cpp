@@ -20,16 +20,17 @@ constexpr int kMaxTreeDepth = 64;
 // So large that no scene has as many; so small that those of all leaves that a file can hold add up within 64 bits.
 constexpr std::uint64_t kMaxSplats = std::uint64_t{1} << 40;
 
-// A path that leads to a file within the folder: no root, no "..", nothing another system would take for either.
+// A path that leads to a file within the folder: no root (Windows takes "/a" for relative), no "..", nothing another system would take for
+// either.
 std::string readChunkPath(const JsonNode& node) {
     const std::string text = node.text();
     const std::filesystem::path path(text);
-    const bool within = path.is_relative() && text.find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
+    const bool within = !path.has_root_path() && text.find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: names \"{}\", expected a path within the folder of this file", node.place(), text);
     check(path.filename() == "meta.json" || path.extension() == ".sog", "{}: names \"{}\", expected the meta.json or the .sog of a chunk",
           node.place(), text);
-    return path.lexically_normal().string();
+    return path.lexically_normal().generic_string();
 }
 
 void readFiles(const JsonNode& root, LodMeta& meta) {
