@@ -69,6 +69,7 @@ TEST_CASE("a file that is cut off, grows or is written to while it is read is re
     }
 }
 
+#ifndef _WIN32  // where a file that is open stays where it is
 TEST_CASE("a file that is removed or replaced while it is read is read as it was") {
     const Folder folder;
     for (const char* change : {"remove", "replace"}) {
@@ -84,13 +85,14 @@ TEST_CASE("a file that is removed or replaced while it is read is read as it was
         }
     }
 }
+#endif
 
 #ifdef BINOSPLAT_SOG
 TEST_CASE("a SOG folder that loses a picture while it is read is refused in one line") {
     const Folder folder;
     const std::string path = writeSogFolder(folder, "sog", makeSog());
-    CHECK(load(path, [&] { fs::remove(path + "/q.webp"); }) == path + "/q.webp: no such file");
+    CHECK(withSlashes(load(path, [&] { fs::remove(path + "/q.webp"); })) == withSlashes(path + "/q.webp: no such file"));
     (void)writeSogFolder(folder, "sog", makeSog());
-    CHECK(load(path, [&] { fs::resize_file(path + "/s.webp", 20); }).starts_with(path + "/s.webp: "));
+    CHECK(contains(load(path, [&] { fs::resize_file(path + "/s.webp", 20); }), path + "/s.webp: "));
 }
 #endif

@@ -154,7 +154,14 @@ inline std::string loadError(const std::string& source, std::uint64_t splats = 0
 }
 inline std::string loadError(const Folder& folder, const std::string& bytes) { return loadError(folder.write("broken.ply", bytes)); }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+// A message, with the slashes in its paths that Windows writes the other way.
+inline std::string withSlashes(std::string text) {
+    if constexpr (std::filesystem::path::preferred_separator != '/') { std::replace(text.begin(), text.end(), '\\', '/'); }
+    return text;
+}
+inline bool contains(const std::string& text, const std::string& part) {
+    return withSlashes(text).find(withSlashes(part)) != std::string::npos;
+}
 
 inline void checkSameScene(const Scene& a, const Scene& b) {
     REQUIRE(a.size() == b.size());

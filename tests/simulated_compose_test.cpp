@@ -398,6 +398,7 @@ TEST_CASE("pictures in files come back and the files are the same every time") {
     std::filesystem::remove_all(folder);
 }
 
+#ifndef _WIN32  // where links take a privilege
 TEST_CASE("a picture is not written through a link or over an unfinished one") {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("binosplat_planted_" + std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
@@ -415,6 +416,7 @@ TEST_CASE("a picture is not written through a link or over an unfinished one") {
     CHECK(std::filesystem::file_size(unfinishedPicture(folder / "c.png")) == 7);
     std::filesystem::remove_all(folder);
 }
+#endif
 
 TEST_CASE("a cylinder's picture lies on its arc about the middle") {
     // A quarter turn wide and as high as wide: longitudes within 45 degrees, heights within pi/4 of the radius.

@@ -191,6 +191,7 @@ TEST_CASE("writing and reading back keeps every attribute within its quantum, al
         writeSog(scene, folder.file("b.sog"));
         std::ifstream a(folder.file("a.sog"), std::ios::binary), b(folder.file("b.sog"), std::ios::binary);
         CHECK(std::equal(std::istreambuf_iterator<char>(a), {}, std::istreambuf_iterator<char>(b), {}));
+        b.close();
         std::filesystem::remove(folder.file("b.sog"));
     }
 }

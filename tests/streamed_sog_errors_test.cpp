@@ -83,6 +83,7 @@ TEST_CASE("a chunk that is named twice is refused") {
     CHECK(contains(broken.with("env/meta.json", "a/meta.json"), "environment: names a/meta.json once more"));
 }
 
+#ifndef _WIN32  // where links take a privilege
 TEST_CASE("links that lead out of the folder or to the same chunk are refused") {
     const Broken broken;
     const std::string source = writeStreamed(broken.folder, "scene", makeLodMeta());
@@ -102,6 +103,7 @@ TEST_CASE("links that lead out of the folder or to the same chunk are refused") 
     std::filesystem::create_directory_symlink("scene", broken.folder.file("linked"));
     CHECK(loadScene(broken.folder.file("linked")).size() == 24);
 }
+#endif
 
 TEST_CASE("chunks that are missing or broken are named before any is decoded") {
     const Broken broken;

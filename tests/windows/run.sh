@@ -78,10 +78,11 @@ forgetRuntime() { wine reg delete 'HKLM\Software\Khronos\OpenXR\1' /v ActiveRunt
 
 makeScenes() {
     linux scene atelier --splats 20000 --out Zimmer.ply >/dev/null
-    linux convert Zimmer.ply "Zimmer nebenan.sog" >/dev/null
+    linux convert Zimmer.ply "Küche nebenan.sog" >/dev/null
     linux convert Zimmer.ply 房間.spz >/dev/null
     head -c 40000 Zimmer.ply >halb.ply
-    scenes=(Zimmer.ply "Zimmer nebenan.sog" 房間.spz)
+    printf '%s\n' time_s,x,y,z,qx,qy,qz,qw 0,0,0,0,0,0,0,1 0.011,0.004,0,0,0,0.002,0,1 0.022,0.008,0.001,0,0,0.004,0,1 0.033,0.012,0.002,0.001,0,0.006,0,1 >Weg.csv
+    scenes=(Zimmer.ply "Küche nebenan.sog" 房間.spz)
 }
 
 tryInfo() {
@@ -111,7 +112,6 @@ tryRender() {
 }
 
 tryPath() {
-    printf '%s\n' time_s,x,y,z,qx,qy,qz,qw 0,0,0,0,0,0,0,1 0.011,0.004,0,0,0,0.002,0,1 0.022,0.008,0.001,0,0,0.004,0,1 0.033,0.012,0.002,0.001,0,0.006,0,1 >Weg.csv
     local mode
     for mode in predicted alternate temporal; do
         bothSucceed render Zimmer.ply --size 320x240 --mode "$mode" --path Weg.csv --out "%OUT/Weg $mode" || continue
@@ -215,6 +215,17 @@ tryTrouble() {
     unset VK_ICD_FILENAMES
     forgetRuntime
     systems='SteamVR.*--simulate' XR_RUNTIME_JSON=/nowhere.json refused 3 view "$fence"
+    # Ctrl-C in the middle.
+    local code=0
+    wine "$program/binosplat.exe" render Zimmer.ply --size 1024x1024 --path Weg.csv --out Windows/nichts 2>Windows/complained &
+    sleep 3
+    kill -INT $!
+    wait $! || code=$?
+    if [[ $code = 130 ]] && grep -q 'stopped by SIGINT, nothing was written' Windows/complained; then
+        right "Ctrl-C: 130, $(cat Windows/complained)"
+    else
+        wrong "Ctrl-C: exit code $code: $(cat Windows/complained)"
+    fi
     if [[ -e Linux/nichts || -e Windows/nichts ]]; then wrong "something was left of what was refused"; else right "nothing was left of what was refused"; fi
 }
 
