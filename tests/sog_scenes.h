@@ -94,7 +94,7 @@ inline std::string makeZip(const std::vector<std::pair<std::string, std::string>
         const std::string name = prefix + plain_name;
         std::string packed = bytes;
         if (deflated) {
-            uLongf size = compressBound(bytes.size()) + 16;
+            uLongf size = compressBound(static_cast<uLong>(bytes.size())) + 16;
             packed.resize(size);
             z_stream stream{};
             REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);

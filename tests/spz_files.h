@@ -9,7 +9,7 @@
 namespace binosplat::test {
 
 inline std::string gzip(const std::string& bytes) {
-    std::string packed(compressBound(bytes.size()) + 64, '\0');
+    std::string packed(compressBound(static_cast<uLong>(bytes.size())) + 64, '\0');
     z_stream stream{};
     REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, MAX_WBITS + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK);
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
