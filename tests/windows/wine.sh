@@ -12,7 +12,7 @@ mkdir -p "$WINEPREFIX"
 # Wine has Vulkan only with a screen.
 exec {wine_screen}< <(exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp 2>/dev/null)
 wine_screen_process=$!
-trap 'wineserver -k; kill "$wine_screen_process"' EXIT
+trap 'wineserver -k || true; kill "$wine_screen_process"' EXIT
 read -r -u "$wine_screen" wine_display
 export DISPLAY=:$wine_display
 [[ -e $WINEPREFIX/system.reg ]] || wineboot --init >/dev/null 2>&1
