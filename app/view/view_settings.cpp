@@ -59,7 +59,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
     static const std::vector<OptionRow<S>> rows{
         {{"resolution-scale", "view", kView, "FACTOR", "pixels each way, of what the headset recommends"},
          field::number<&S::resolution_scale>(0.1, 2.0)},
-        {{"tint", "view", kView, "", "show what made the tiles that were not rendered with the rest of a picture"}, field::flag<&S::tint>()},
+        {{"tint", "view", kView, "", "show what made the tiles that were not rendered with the rest of a picture"},
+         field::flag<&S::tint>()},
         {{"panel", "view", kView, "", "show the panel at the start"}, field::flag<&S::panel>()},
         {{"visibility-mask", "view", kView, "", "ask the runtime what the lenses hide"}, field::flag<&S::visibility_mask>()},
         {{"eye-tracking", "view", kView, "", "with foveation: follow the eyes, where the headset sees where they look"},

@@ -184,13 +184,13 @@ struct WarpPastPass {
     PastTiles source_tiles;
     FloatColours target;  // out
     Uints target_words;   // out
-    Floats depths;       // out where asked for: D
-    PastTiles tiles;     // out
-    Uints tile_kinds;    // out: 0, except where it is kTileHidden
-    Uints tile_mask;     // out: zeros
-    Uints price_bins;    // out: zeros
-    Uints shown_mask;    // where parts are hidden: the others; otherwise null
-    PastBlocks blocks;   // from warp_past to warp_pixels: the blocks whose pixels are made one by one
+    Floats depths;        // out where asked for: D
+    PastTiles tiles;      // out
+    Uints tile_kinds;     // out: 0, except where it is kTileHidden
+    Uints tile_mask;      // out: zeros
+    Uints price_bins;     // out: zeros
+    Uints shown_mask;     // where parts are hidden: the others; otherwise null
+    PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
     vec3 background;
 };

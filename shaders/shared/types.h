@@ -148,8 +148,8 @@ BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 
 // A block of a picture whose pixels are made from the past one by one.
 struct PastBlock {
-    uint place;              // row << 16 | column, in blocks
-    vec2 inverse_depths;     // the least and the greatest in and around it
+    uint place;           // row << 16 | column, in blocks
+    vec2 inverse_depths;  // the least and the greatest in and around it
 };
 BINOSPLAT_ARRAY_OF(PastBlock, PastBlocks);
 struct PastBlockList {
