@@ -1,8 +1,6 @@
 // The nearest splat, by its centre.
 #include "app/blind_camera.h"
 
-#include "shaders/shared/constants.h"
-
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 
@@ -11,16 +9,6 @@
 #include <limits>
 
 namespace binosplat {
-
-bool seesNothing(const FrameResult& frame) {
-    if (std::ranges::any_of(frame.counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
-    // Pictures that are made from their pasts may need no splat: then their tiles know what they were made of. An empty one counts for
-    // kTilePairs.
-    std::uint64_t tiles = 0;
-    for (const TargetCounters& target : frame.counters.targets) { tiles += target.tiles; }
-    const auto& warped = frame.counters.warped;
-    return !warped || !warped->work || warped->work->full <= gpu::kTilePairs * tiles;
-}
 
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions) {
     if (positions.empty()) { return "no splat is seen: the scene has none"; }

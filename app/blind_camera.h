@@ -1,7 +1,6 @@
 // What to say of a camera that sees no splat.
 #pragma once
 
-#include "engine/frame/stereo_frame.h"
 #include "engine/geometry.h"
 
 #include <glm/glm.hpp>
@@ -10,9 +9,6 @@
 #include <string>
 
 namespace binosplat {
-
-// Whether no splat reached a tile of any eye.
-bool seesNothing(const FrameResult& frame);
 
 // How far the nearest of the scene's splats are from the camera, and where: "no splat is seen; the nearest is ...".
 std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions);

@@ -65,7 +65,7 @@ RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes&
 void warn(const std::string& line) { fmt::print(stderr, "binosplat: {}\n", line); }
 
 void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> positions) {
-    const auto is_blind = [](const PathFrame& frame) { return seesNothing(frame.frame); };
+    const auto is_blind = [](const PathFrame& frame) { return frame.frame.sees_nothing; };
     const auto first = std::ranges::find_if(report.frames, is_blind);
     if (first == report.frames.end()) { return; }
     warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
@@ -118,7 +118,7 @@ void runRender(const RenderOptions& options) {
         writePictures(files, frame, settings);
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
-        if (seesNothing(result)) {
+        if (result.sees_nothing) {
             warn(fmt::format("{}: {}", options.scene, describeNearest(cameras.middle.world_from_camera, positions)));
         }
     }

@@ -73,6 +73,15 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     }
 }
 
+bool seesNothing(const FrameCounters& counters) {
+    if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
+    // Pictures that are made from their pasts may need no splat: then their tiles know what they were made of. An empty one counts for
+    // kTilePairs.
+    std::uint64_t tiles = 0;
+    for (const TargetCounters& target : counters.targets) { tiles += target.tiles; }
+    return !counters.warped || !counters.warped->work || counters.warped->work->full <= gpu::kTilePairs * tiles;
+}
+
 void explainWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) {
     const auto leaveOut = [&](bool condition, std::string_view sentence) {
         if (condition) { result.left_out.emplace_back(sentence); }
@@ -147,12 +156,13 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.tiles = std::uint64_t{tiles.x} * tiles.y;
         its.tiles_hidden = frame.room.shown(static_cast<int>(t)).hiddenCount();
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
-        its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes();
+        its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }
     }
     if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
         countPast(frame, result);
     }
+    result.sees_nothing = seesNothing(counters);
     explainLeftOut(frame, result);
     return result;
 }

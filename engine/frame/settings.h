@@ -57,6 +57,7 @@ struct FrameResult {
     std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need
     std::uint64_t mark = 0;                            // of the settings it was asked with
+    bool sees_nothing = false;                         // no splat touches any of its pictures, nor did any their pasts
 };
 
 // What a frame starts with; the defaults suit every device.
