@@ -138,11 +138,11 @@ BINOSPLAT_ARRAY_OF(PastView, PastViews);
 
 // What is known of a tile of a picture that later ones are made from.
 struct PastTile {
-    uint cost;      // in pairs, when it was last rendered
-    uint age;       // frames since then
-    float growth;   // of the amplitude of its error in a frame, as it had turned out then
-    vec4 errors;    // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
-    uint grown[4];  // until the choice: sums of what the quarters are expected to take on in this frame, squared, in kErrorSteps
+    uint cost;     // in pairs, when it was last rendered
+    uint age;      // frames since then
+    float growth;  // of the amplitude of its error in a frame, as it had turned out then
+    vec4 errors;   // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
+    uvec4 grown;   // until the choice: sums of what the quarters are expected to take on in this frame, squared, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 

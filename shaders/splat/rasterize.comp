@@ -195,7 +195,7 @@ void leaveTile(uint tile, uint cost, float error) {
     if (gl_LocalInvocationIndex != 0) { return; }
     const float amplitude = kMasked ? sqrt(float(squares) / (kErrorSteps * 3 * kTileSize * kTileSize)) : 0;
     const float growth = kMasked ? amplitude / float(max(pass.past_tiles.at[tile].age, 1)) : 0;
-    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uint[4](0, 0, 0, 0));
+    pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0));
 }
 
 void main() {

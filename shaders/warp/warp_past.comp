@@ -259,7 +259,7 @@ void main() {
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = uvec2(clamp(movePixelAnywhere(view.past_from_now, middle_px, guess).xy, vec2(0), vec2(view.past_size_px) - 1)) / kTileSize;
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
-    PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uint[4](0, 0, 0, 0));
+    PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uvec4(0));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
         const uvec2 at = its_tile * (kTileSize / kCellSize) + uvec2(q & 1, q >> 1);
         const uint its_cell = at.y * kRegionCells.x + at.x;
