@@ -27,7 +27,7 @@ constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std
 
 // Whether the affiliated eye is made from the dominant one.
 constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
-// Whether frames are made from the ones before. The first of them is as in kPredicted, or of kAlternate as in kShared.
+// Whether frames are made from the ones before. Where none is to follow they are as in kPredicted, or of kAlternate as in kShared.
 constexpr bool hasPast(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }
 // Whether each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }

@@ -67,7 +67,7 @@ std::vector<Layout> hostLayouts() {
                FIELD(rows_apart), FIELD(gap_px), FIELD(margin_px), FIELD(edge_samples), FIELD(tight_edges), FIELD(move_cost), FIELD(budget),
                FIELD(hole_error), FIELD(newcomer_error)),
         LAYOUT(PastView, FIELD(past_from_now), FIELD(now_from_past), FIELD(size_px), FIELD(size_tiles), FIELD(past_size_px),
-               FIELD(past_size_tiles)),
+               FIELD(past_size_tiles), FIELD(nearest)),
         LAYOUT(PastTile, FIELD(cost), FIELD(age), FIELD(growth), FIELD(errors), FIELD(grown)),
         LAYOUT(PastBlock, FIELD(place), FIELD(inverse_depths)),
         LAYOUT(PastBlockList, FIELD(per_group), FIELD(count)),

@@ -1,6 +1,7 @@
 // How frames differ.
 #include "engine/frame/history.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace binosplat {
@@ -12,6 +13,13 @@ namespace {
 constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
+// Beyond this a past is too coarse, or much finer than what is wanted.
+constexpr double kMostZoom = 2.0;
+
+bool moves(const Pose& from, const Pose& to, double units_per_metre) {
+    const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
+    return turns || glm::distance(from.position, to.position) > kJumpMetres * units_per_metre;
+}
 
 }  // namespace
 
@@ -32,14 +40,17 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre) {
     if (eyes.size() != before.size()) { return true; }
     for (std::size_t e = 0; e < eyes.size(); ++e) {
-        const Pose &from = before[e].world_from_camera, &to = eyes[e].world_from_camera;
         const Intrinsics &lens = before[e].intrinsics, &other_lens = eyes[e].intrinsics;
-        const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
-        const bool is_far = glm::distance(from.position, to.position) > kJumpMetres * units_per_metre;
         const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
-        if (turns || is_far || zooms) { return true; }
+        if (zooms || moves(before[e].world_from_camera, eyes[e].world_from_camera, units_per_metre)) { return true; }
     }
     return false;
+}
+
+bool canComeFrom(const Eye& past, const Eye& eye, double units_per_metre) {
+    const double zoom_x = eye.intrinsics.fx / past.intrinsics.fx, zoom_y = eye.intrinsics.fy / past.intrinsics.fy;
+    const bool zooms = std::min(zoom_x, zoom_y) < 1.0 / kMostZoom || std::max(zoom_x, zoom_y) > kMostZoom;
+    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, units_per_metre);
 }
 
 MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {

@@ -23,16 +23,28 @@ void keepForWarp(Kept& source, const Warp& warp) {
 
 }  // namespace
 
-// The frame goes on from the ones before.
-constexpr int kPastPictures = 3;
+// Pictures that two eyes with a past take turns in: the pasts, one that is made meanwhile, and one more where sizes change.
+constexpr int kPastPictures = 4;
 
-// A picture that is nobody's past.
-int freePicture(const Pasts& pasts) {
+// Without a past one eye is rendered in full. Of the other less than the budget is rendered then, so that such a frame costs no more than
+// one of kPredicted, which moves pixels for less and so has more left.
+constexpr double kStandInShare = 0.5;
+
+// A picture that is nobody's past, nor `taken`.
+int freePicture(const Pasts& pasts, std::optional<int> taken = {}) {
     for (int picture = 0; picture < kPastPictures; ++picture) {
-        if (std::ranges::none_of(pasts.of_eyes, [&](const auto& past) { return past && past->picture == picture; })) { return picture; }
+        const bool is_past = std::ranges::any_of(pasts.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
+        if (!is_past && picture != taken) { return picture; }
     }
     assert(false);
     return 0;
+}
+
+// `target` is made from `past`, and some of its tiles are chosen to be rendered.
+void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& settings, std::size_t eye) {
+    target.past = past;
+    target.choice = TileChoice::kPast;
+    target.gaze = settings.gazes[eye];
 }
 
 // Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
@@ -40,12 +52,13 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     const int order[2] = {plan.dominant, 1 - plan.dominant};
     int picture = freePicture(pasts);
     for (const int e : order) {
-        TargetPlan& target = plan.targets[static_cast<std::size_t>(e)];
-        target.past = pasts.of_eyes[static_cast<std::size_t>(e)];
-        target.choice = TileChoice::kPast;
-        target.gaze = settings.gazes[static_cast<std::size_t>(e)];
+        const auto eye = static_cast<std::size_t>(e);
+        TargetPlan& target = plan.targets[eye];
+        makeFromPast(target, *pasts.of_eyes[eye], settings, eye);
         target.picture = picture;
-        picture = target.past->picture;  // free once this target is made
+        // Free once this target is made; another size needs memory of its own, since that is still read.
+        const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
+        picture = fits ? target.past->picture : freePicture(pasts, picture);
         plan.steps.push_back({Step::Kind::kPast, e});
     }
     plan.budget = settings.stereo.budget;
@@ -53,7 +66,6 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     plan.lists.push_back(list);
     plan.lists.back().of_chosen = true;
     plan.steps.push_back({Step::Kind::kList, 0});
-    plan.shares_order = list.eyes.middle || relate(eyes[order[0]], eyes[order[1]]).same_depths;
     // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
     if (plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
         plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
@@ -66,6 +78,21 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         plan.lists.push_back({.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[order[1]].role, .culls = false});
     }
     plan.steps.push_back({Step::Kind::kRender, order[1]});
+}
+
+// One eye in full, in turn, and the other from its past.
+void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
+    const int full = pasts.turn, other = 1 - full;
+    TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
+    rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
+    warped.past = pasts.of_eyes[static_cast<std::size_t>(other)];
+    warped.picture = freePicture(pasts);
+    warped.choice = TileChoice::kNone;
+    warped.kept.past = false;
+    plan.steps.push_back({Step::Kind::kList, 0});
+    plan.lists.push_back(list);
+    plan.steps.push_back({Step::Kind::kRender, full});
+    plan.steps.push_back({Step::Kind::kPast, other});
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
@@ -104,9 +131,9 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
     const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
     // Without a past, and where none is kept, they are as these.
-    const Mode mode = has_past || !hasPast(settings.mode)               ? settings.mode
-                      : settings.mode == Mode::kTemporal && !keeps_past ? Mode::kPredicted
-                                                                        : Mode::kShared;
+    const Mode mode = settings.mode == Mode::kTemporal && !keeps_past  ? Mode::kPredicted
+                      : settings.mode == Mode::kAlternate && !has_past ? Mode::kShared
+                                                                       : settings.mode;
     const bool one_eye = mode == Mode::kMono;
     assert(eyes.size() == (one_eye ? 1u : 2u));
     check(!reprojects(mode) || eyes[0].size_px == eyes[1].size_px,
@@ -131,7 +158,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                          .past = keeps_past},
                                 .picture = e});
     }
-    if (keeps_past) { plan.spare_picture = kPastPictures - 1; }
+    plan.keeps_past = keeps_past;
+    if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
     std::optional<gpu::Place> middle;
     if (settings.order == Order::kDistance) { middle = placeOf(middleOf(eyes)); }
     const auto makeList = [&](const ListPlan& list) {
@@ -144,21 +172,18 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     const auto render = [&](int e) { plan.steps.push_back({Step::Kind::kRender, e}); };
     const ListPlan both{.eyes = {.first = 0, .count = 2, .order_eye = first, .list = 0, .middle = middle}, .role = Role::kBoth};
 
-    if (mode == Mode::kTemporal) {
-        planTemporal(plan, settings, eyes, pasts, both);
+    if (mode == Mode::kAlternate) {
+        const int full = pasts.turn;
+        planAlternate(
+            plan, pasts,
+            {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle}, .role = plan.targets[full].role});
         return plan;
     }
-    if (mode == Mode::kAlternate) {
-        const int full = pasts.turn, other = 1 - full;
-        TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
-        rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
-        warped.past = pasts.of_eyes[static_cast<std::size_t>(other)];
-        warped.picture = freePicture(pasts);
-        warped.choice = TileChoice::kNone;
-        warped.kept.past = false;
-        listOf(full);
-        render(full);
-        plan.steps.push_back({Step::Kind::kPast, other});
+    const EyeRelation relation = relate(eyes[first], eyes[one_eye ? first : second]);
+    plan.shares_order = !one_eye && (middle || relation.same_depths);
+    if (keeps_past && plan.shares_order && eyes[0].size_px == eyes[1].size_px) { plan.shares_ahead = mode == Mode::kTemporal ? 2 : 1; }
+    if (mode == Mode::kTemporal && has_past) {
+        planTemporal(plan, settings, eyes, pasts, both);
         return plan;
     }
 
@@ -170,11 +195,14 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     render(first);
     if (one_eye) { return plan; }
 
-    const EyeRelation relation = relate(eyes[first], eyes[second]);
-    plan.shares_order = middle || relation.same_depths;
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }
-    if (reprojects(mode)) {
+    if (mode == Mode::kTemporal) {  // nothing is there from before, but the other eye is
+        makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
+        plan.budget = kStandInShare * settings.stereo.budget;
+        plan.steps.push_back({Step::Kind::kPast, second});
+        plan.steps.push_back({Step::Kind::kChoose, 0});
+    } else if (reprojects(mode)) {
         target.warp = Warp{.source = first,
                            .relation = relation,
                            .settings = stereoSettingsOf(settings),

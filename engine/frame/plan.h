@@ -47,7 +47,7 @@ struct TargetPlan {
     Kept kept;
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};
-    std::optional<Past> past = {};  // what it is made from instead
+    std::optional<Past> past = {};  // what it is made from instead: its eye's last picture, or the other eye's of this frame
     std::optional<Gaze> gaze = {};  // of the choice among what the past has left
     int picture = 0;                // of the room's, that it becomes
     std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
@@ -75,9 +75,11 @@ struct FramePlan {
     double near = 0.2;
     glm::dvec3 background{0.0};
     bool square_boxes = true;
-    double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of all targets
+    double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of the targets that have one
     int dominant = 0;                       // of the targets
-    std::optional<int> spare_picture = {};  // of the room's: like the first target's, for the frame after this one
+    bool keeps_past = false;                // later frames are made from this one
+    std::optional<int> spare_picture = {};  // of the room's, for the frame after this one
+    int shares_ahead = 1;                   // how many pictures that one renders at the same time
 
     // The one that others are made from, or the one whose turn is first.
     [[nodiscard]] int firstTarget() const;
@@ -88,7 +90,7 @@ struct FramePlan {
 };
 
 // Nobody else asks a mode what it does. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
-// pixels paid in the frame before, or nobody knows. `pasts`: what is left of the frames before.
+// pixels paid in the frame before, or nobody knows. `pasts`: what is left of the frames before; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});
 // What such a frame leaves to the next one.
 Pasts pastsAfter(const FramePlan& plan, const Pasts& before);

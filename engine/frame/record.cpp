@@ -11,7 +11,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
         if (target.past) {
-            state.targets[t].past = pastViewOf(target.eye, target.past->eye);
+            state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near);
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
             state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget});
         }
@@ -163,7 +163,7 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     if (planned.kept.past) {
         target.moving = target.picture->words.address<gpu::uint>();
         target.row_words = planned.eye.size_px.x;
-        target.lists_chosen = planned.choice == TileChoice::kPast;
+        target.lists_chosen = plan.lists[static_cast<std::size_t>(planned.list)].of_chosen;
     }
     if (!planned.feeds) { return target; }
     const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);

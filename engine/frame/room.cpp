@@ -108,15 +108,16 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     // A past of both eyes has room for what either keeps, since they change places.
     for (const TargetPlan& target : plan.targets) {
         Kept kept = target.kept;
-        if (plan.spare_picture) {
+        if (plan.keeps_past) {
             kept.past = true;
             for (const TargetPlan& other : plan.targets) { kept.depth = kept.depth || other.kept.depth; }
-            fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept);
         }
+        if (plan.spare_picture) { fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept); }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(context_, moments_, "inverse depth moments", moments_bytes);
-    resize(context_, lists_.tile_ranges, "tile ranges", static_cast<std::uint64_t>(plan.shares()) * most_tiles * sizeof(gpu::uvec2));
+    resize(context_, lists_.tile_ranges, "tile ranges",
+           static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead)) * most_tiles * sizeof(gpu::uvec2));
     fitWarps(plan);
 }
 
@@ -172,12 +173,15 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
-    // Each picture that is rendered at the same time as others has its own part of the lists.
-    const auto shares = static_cast<std::uint32_t>(plan.shares());
-    const auto ofAll = [&](std::uint32_t needed) { return std::min(needed, UINT32_MAX / shares) * shares; };
+    // Each picture that is rendered at the same time as others has its own part of the lists, also in the next frame, whose pictures meet
+    // no more splats than these.
+    const auto ofAll = [](std::uint32_t needed, int shares) {
+        return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) * static_cast<std::uint32_t>(shares);
+    };
+    const int lists = std::max(plan.shares(), plan.shares_ahead);
     for (const gpu::ListState& visible : state.visible) {
-        wanted.visible =
-            std::max(wanted.visible, std::min(enough(ofAll(visible.needed), now.visible), std::max(ofAll(scene_->splatCount()), 1u)));
+        const std::uint32_t most = std::max(ofAll(scene_->splatCount(), lists), 1u);
+        wanted.visible = std::max(wanted.visible, std::min(enough(ofAll(visible.needed, lists), now.visible), most));
     }
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
@@ -185,7 +189,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
         // Without the source's pairs every tile seems cheap to render: how many the target needs shows in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         if (!plan.targets[t].feeds || pairs > mostLentPairs(plan)) {
-            wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs), now.pairs));
+            wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs));
         } else if (pairs > now.pairs) {
             wanted.lent_pairs = enough(pairs, now.lent_pairs);
         }

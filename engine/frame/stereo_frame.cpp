@@ -3,7 +3,16 @@
 
 #include "engine/frame/report.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace binosplat {
+namespace {
+
+// What a past must have in common with a frame.
+FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
+
+}  // namespace
 
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
@@ -70,12 +79,14 @@ FrameResult StereoFrame::render(std::span<const Eye> eyes, const FrameSettings& 
 
 void StereoFrame::makeRoom(std::span<const Eye> eyes, const FrameSettings& settings) {
     if (shapeOf(eyes, settings) == shape_) { return; }
-    pasts_ = {};
-    FramePlan plan = planFrame(settings, eyes, true);
+    pasts_ = pastsFor(eyes, settings);
+    FramePlan plan = planFrame(settings, eyes, true, pasts_);
     finish();
     shape_ = {};  // some pictures are new, and some may fail
     plan_ = std::move(plan);
+    const Pasts pasts = std::exchange(pasts_, {});
     room_.fitPictures(plan_, settings.hidden_tiles);
+    pasts_ = pasts;
 }
 
 std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, const FrameSettings& settings, const Append& append,
@@ -125,7 +136,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
         // Where tiles have no room, what the past made stays; a picture in full has nothing else.
-        if (flight.settings.mode == Mode::kAlternate) { pasts_ = {}; }
+        if (std::ranges::find(flight.plan.targets, TileChoice::kAll, &TargetPlan::choice) != flight.plan.targets.end()) { pasts_ = {}; }
     }
     FrameResult result = take(flight);
     result.counters.ahead = {cut_short_, done_again_};
@@ -181,8 +192,19 @@ void StereoFrame::makeRoomForVisible() {
 }
 
 Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
-    const bool goes_on = settings.keep_past && !isUnlikeLast(eyes, settings);
-    return goes_on ? pasts_ : Pasts{};
+    if (!settings.keep_past || eyes.size() != 2 || !pasts_.of_eyes[0] || !pasts_.of_eyes[1] ||
+        askedApartFromSizes(settings) != past_shape_) {
+        return {};
+    }
+    for (std::size_t e = 0; e < eyes.size(); ++e) {
+        const Past& past = *pasts_.of_eyes[e];
+        if (!canComeFrom(past.eye, eyes[e], settings.units_per_metre)) { return {}; }
+        // What a lens hides is hidden at any size.
+        const auto& hidden = settings.hidden_tiles[e];
+        const bool same_size = past.eye.size_px == eyes[e].size_px;
+        if (same_size ? !std::ranges::equal(hidden, past_hidden_[e]) : hidden.empty() != past_hidden_[e].empty()) { return {}; }
+    }
+    return pasts_;
 }
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
@@ -218,6 +240,10 @@ void StereoFrame::record(const FrameSettings& settings, const Append& append) {
     recorder().record(flight().commands, plan_);
     recorder().recordReport(flight().commands, flight().readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
+    past_shape_ = askedApartFromSizes(settings);
+    for (std::size_t e = 0; e < past_hidden_.size(); ++e) {
+        past_hidden_[e].assign(settings.hidden_tiles[e].begin(), settings.hidden_tiles[e].end());
+    }
     if (append) { append(flight().commands); }
 }
 

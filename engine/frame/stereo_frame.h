@@ -124,9 +124,11 @@ private:
     WarpPasses warp_passes_;
     PastPasses past_passes_;
     FrameRoom room_;
-    FramePlan plan_;      // of the last frame
-    Pasts pasts_;         // that it leaves
-    FrameState state_{};  // what the last one known reported
+    FramePlan plan_;                                        // of the last frame
+    Pasts pasts_;                                           // that it leaves
+    FrameShape past_shape_;                                 // of these, apart from sizes
+    std::array<std::vector<std::uint8_t>, 2> past_hidden_;  // FrameSettings::hidden_tiles of these
+    FrameState state_{};                                    // what the last one known reported
     MovingPays moving_pays_;
     FrameShape shape_;
     std::vector<Eye> eyes_;

@@ -20,14 +20,15 @@ auto viewOf(const PastInputs& in) {
 
 }  // namespace
 
-gpu::PastView pastViewOf(const Eye& now, const Eye& past) {
+gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near) {
     const EyeRelation relation = relate(past, now);
     return {.past_from_now = relation.source_from_target,
             .now_from_past = relation.target_from_source,
             .size_px = now.size_px,
             .size_tiles = tilesOf(now.size_px),
             .past_size_px = past.size_px,
-            .past_size_tiles = tilesOf(past.size_px)};
+            .past_size_tiles = tilesOf(past.size_px),
+            .nearest = static_cast<float>(1.0 / near)};
 }
 
 KernelTable pastKernels() {
@@ -41,7 +42,6 @@ KernelTable pastKernels() {
 void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     in.shown.recordKinds(commands, in.warp.tiles(), WarpBuffers::tileKindsOffset());
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
-    const bool is_first = in.index == 0;
     const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
     const gpu::WarpPastPass pass{
         .view = in.buffers.state.address<gpu::PastView>(FrameBuffers::targetField(in.index, offsetof(TargetState, past))),
@@ -54,7 +54,7 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tiles = in.target.tiles.address<gpu::PastTile>(),
         .tile_kinds = in.warp.tileKinds(),
         .tile_mask = in.warp.tileMask(),
-        .price_bins = is_first ? in.warp.bins() : gpu::DeviceAddress<gpu::uint>{},
+        .price_bins = in.warp.bins(),
         .shown_mask = in.shown.mask(),
         .blocks = in.warp.pastBlocks(),
         .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks),

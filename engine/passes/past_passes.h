@@ -27,8 +27,8 @@ struct PastInputs {
     std::optional<Gaze> gaze;  // empty: all tiles are seen alike
 };
 
-// How the eye `now` and the one whose picture is its past look to the device.
-gpu::PastView pastViewOf(const Eye& now, const Eye& past);
+// How the eye `now` and the one whose picture is its past look to the device. `near`: nothing is seen before this, in scene units.
+gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near);
 
 KernelTable pastKernels();
 

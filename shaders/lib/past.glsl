@@ -12,10 +12,15 @@ struct Seen {
     vec2 off_px;          // where that pixel's middle comes to lie, less where `wanted_px` is
 };
 
+// The lens hides the same parts of a picture at any size.
+bool isHiddenInPast(PastView view, uvec2 at) {
+    if (!kHiddenTiles) { return false; }
+    return !isInMask(pass.shown_mask, view.size_tiles, uvec2(vec2(at) * (vec2(view.size_px) / vec2(view.past_size_px))) / kTileSize);
+}
+
 uint wordAt(PastView view, vec2 place_px) {
     const uvec2 at = uvec2(clamp(place_px, vec2(0), vec2(view.past_size_px) - 1));
-    const bool hidden = kHiddenTiles && !isInMask(pass.shown_mask, view.past_size_tiles, at / kTileSize);
-    return hidden ? 0 : pass.source_words.at[at.y * view.past_size_px.x + at.x];
+    return isHiddenInPast(view, at) ? 0 : pass.source_words.at[at.y * view.past_size_px.x + at.x];
 }
 
 Seen look(PastView view, vec2 place_px, vec2 wanted_px) {

@@ -151,6 +151,9 @@ BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;
 // So far around a block depths are looked at: in a frame a head moves what is near by less than that beside what is far.
 BINOSPLAT_CONSTANT uint kPastBorder = 2;
+// Farther away it is looked for what stands in front, where the near plane moves that far: along the way that it would come, in such steps.
+BINOSPLAT_CONSTANT float kPastSearchStep = 8.0f;
+BINOSPLAT_CONSTANT uint kPastMostSearched = 48;
 // The places of a block's pixels may differ by this from a common shift, in pixels, and for what depths differ by.
 BINOSPLAT_CONSTANT float kPastSmooth = 0.0625f;
 BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;

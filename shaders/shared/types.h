@@ -125,7 +125,7 @@ struct WarpView {
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
-// How places of a picture and of the one that the same eye showed before lie in each other.
+// How places of a picture and of the one that it is made from lie in each other: what the same eye showed before, or the other eye.
 struct PastView {
     PixelMap past_from_now;
     PixelMap now_from_past;
@@ -133,6 +133,7 @@ struct PastView {
     uvec2 size_tiles;
     uvec2 past_size_px;
     uvec2 past_size_tiles;
+    float nearest;  // inverse depth of the near plane
 };
 BINOSPLAT_ARRAY_OF(PastView, PastViews);
 

@@ -125,8 +125,21 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
     } while (row < kRows);
 }
 
-bool isHiddenInPast(PastView view, ivec2 at) {
-    return kHiddenTiles && !isInMask(pass.shown_mask, view.past_size_tiles, uvec2(at) / kTileSize);
+// The inverse depth of what comes to lie at a place from so far away in the past that it is not among its neighbours; 0: nothing that stands
+// in front of `known`.
+float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known) {
+    const float px_by_depth = max(abs(by_depth.x), abs(by_depth.y));
+    const uint steps = min(uint(px_by_depth * view.nearest / kPastSearchStep), kPastMostSearched);
+    float nearest = 0;
+    for (uint i = 1; i <= steps; ++i) {
+        const float inverse_depth = float(i) * kPastSearchStep / px_by_depth;
+        const vec3 place = movePixelAnywhere(view.past_from_now, wanted_px, inverse_depth);
+        if (place.z <= 0 || !isInPast(view, place.xy)) { continue; }
+        const Seen seen = look(view, place.xy, wanted_px);
+        const bool comes = seen.word != 0 && max(abs(seen.off_px.x), abs(seen.off_px.y)) <= kPastSearchStep;
+        if (comes && px_by_depth * (seen.inverse_depth - known) > 1) { nearest = max(nearest, seen.inverse_depth); }
+    }
+    return nearest;
 }
 
 // Looks where the block's pixels come from: near its middle's place, since in a frame the head moves little. Whether they lie in the past as
@@ -142,7 +155,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     const ivec2 corner = ivec2(floor(clamp(source_px, vec2(-1e6), vec2(1e6)) + 0.5)) - ivec2(kBlock) / 2, end = corner + ivec2(kBlock) - 1;
     const float depth_there = 1 + dot(view.now_from_past.excess_z, vec3(source_px, 1));
     bool valid = move.z > 0 && all(greaterThanEqual(corner, ivec2(0))) && all(lessThanEqual(end, last));
-    valid = valid && !isHiddenInPast(view, clamp(corner, ivec2(0), last)) && !isHiddenInPast(view, clamp(end, ivec2(0), last));
+    valid = valid && !isHiddenInPast(view, uvec2(clamp(corner, ivec2(0), last))) && !isHiddenInPast(view, uvec2(clamp(end, ivec2(0), last)));
     depths = vec2(3e38, 0);
     float in_columns[kColumns], sum = 0, lower = 0;
     uint spread_bits = 0;
@@ -174,7 +187,11 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         const float there = word == 0 ? 0 : inverseDepthOf(word), here = there / (depth_there + view.now_from_past.shift.z * there);
         depths = vec2(min(depths.x, here), max(depths.y, here));
     }
-    const float pixels = float(kColumns * kRows), right = in_columns[2] + in_columns[3] - in_columns[0] - in_columns[1];
+    depths.y = max(depths.y, nearestOnTheWay(view, middle_px, by_depth, depths.y));
+    // What is found there belongs there: it comes to lie where it was looked for.
+    const float pixels = float(kColumns * kRows), off_px = max(abs(by_depth.x), abs(by_depth.y)) * abs(sum / pixels - guess);
+    valid = valid && off_px <= kPastAgrees;
+    const float right = in_columns[2] + in_columns[3] - in_columns[0] - in_columns[1];
     moves.mean = move.xy + by_depth * (sum / pixels - guess);
     const vec2 across = moves.across, down = moves.down;
     moves.across += by_depth * (4 * right / (pixels * float(kColumns)));
@@ -205,9 +222,7 @@ void main() {
     const uint all_threads = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kPastGroup;
     const uint own = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastGroup + thread;
     for (uint i = own; i < maskWords(view.size_tiles) * view.size_tiles.y; i += all_threads) { pass.tile_mask.at[i] = 0; }
-    if (any(notEqual(uvec2(pass.price_bins), uvec2(0)))) {
-        for (uint i = own; i < kPriceBins; i += all_threads) { pass.price_bins.at[i] = 0; }
-    }
+    for (uint i = own; i < kPriceBins; i += all_threads) { pass.price_bins.at[i] = 0; }
 
     bool is_listed = false;
     uint in_list = 0;
