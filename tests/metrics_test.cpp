@@ -1,6 +1,7 @@
 // Facts about the picture comparer, among them that it fails what must fail.
 #include "engine/picture/metrics.h"
 #include "engine/error.h"
+#include "engine/picture/pair_metrics.h"
 
 #include <doctest/doctest.h>
 
@@ -131,4 +132,36 @@ TEST_CASE("an empty picture has no difference") {
     CHECK(difference.values == 0);
     CHECK(difference.shareOff() == 0.0);
     CHECK(difference.psnrDb() == kInfinity);
+}
+
+TEST_CASE("errors that end where tiles do are steps, and others are not") {
+    Image error = makeGrey({64, 48}, 3, 0.0f);
+    CHECK(tileSteps(error) == 0.0);
+    for (std::size_t y = 16; y < 32; ++y) {
+        for (std::size_t x = 32; x < 48; ++x) { error.values[3 * (y * 64 + x)] = 0.3f; }
+    }
+    // Four borders of 16 pixels, in one channel of three, of 3 x 48 + 2 x 64 pairs across borders.
+    CHECK(tileSteps(error) == doctest::Approx(0.3 * 64 / (3 * (3 * 48 + 2 * 64))));
+    Image wave = makeGrey({64, 48}, 3, 0.0f);
+    for (std::size_t i = 0; i < wave.values.size(); ++i) { wave.values[i] = 0.1f * static_cast<float>(i / 3 % 2); }
+    CHECK(std::abs(tileSteps(wave)) < 0.005);
+}
+
+TEST_CASE("a blur in one eye alone is a gap in sharpness, and one in both eyes is none") {
+    const auto makeTexture = [](std::size_t shift_px, float contrast) {
+        Image image{{128, 32}, 3, {}};
+        for (std::size_t y = 0; y < 32; ++y) {
+            for (std::size_t x = 0; x < 128; ++x) {
+                const std::size_t at = (x + shift_px) * 7919 + y * 104729;
+                const float value = 0.5f + contrast * (static_cast<float>(at % 97) / 97.0f - 0.5f);
+                for (int channel = 0; channel < 3; ++channel) { image.values.push_back(value); }
+            }
+        }
+        return image;
+    };
+    // The right eye sees it 5 pixels farther left.
+    const std::array full{makeTexture(0, 0.8f), makeTexture(5, 0.8f)};
+    CHECK(sharpnessGap(full, full) == 0.0);
+    CHECK(sharpnessGap({makeTexture(0, 0.4f), makeTexture(5, 0.4f)}, full) == doctest::Approx(0.0).epsilon(1e-4));
+    CHECK(sharpnessGap({makeTexture(0, 0.8f), makeTexture(5, 0.6f)}, full) == doctest::Approx(0.25).epsilon(1e-3));
 }

@@ -8,6 +8,7 @@
 #include "app/options/modes.h"
 #include "app/progress.h"
 #include "engine/picture/metrics.h"
+#include "engine/picture/pair_metrics.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/output_files.h"
 
@@ -131,17 +132,22 @@ public:
             row.time_s = time_s;
             setTimes(row, rendered);
             row.work_rendered = pairsOf(rendered) / full.pairs;
+            std::array<Image, 2> pictures;
             for (const int eye : {kLeft, kRight}) {
                 const auto e = static_cast<std::size_t>(eye);
                 row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
                 if (rendersBothInFull(mode)) { continue; }
-                const Image picture = frame->readPicture(eye);
-                Image error = subtract(picture, full.eyes[e]);
-                row.mean_square[e] = compare(picture, full.eyes[e]).mean_square;
+                pictures[e] = frame->readPicture(eye);
+                Image error = subtract(pictures[e], full.eyes[e]);
+                row.mean_square[e] = compare(pictures[e], full.eyes[e]).mean_square;
                 row.flicker[e] = meanChange(error, sequence.error[e]);
+                row.tile_steps = std::max(row.tile_steps, tileSteps(error));
                 sequence.error[e] = std::move(error);
             }
-            if (!rendersBothInFull(mode)) { row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant); }
+            if (!rendersBothInFull(mode)) {
+                row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant);
+                row.sharpness_gap = sharpnessGap(pictures, full.eyes);
+            }
             result.push_back(std::move(row));
         }
         full_before_ = std::move(full_by_order);

@@ -98,15 +98,16 @@ std::string motionCsv(const MotionRun& run) {
     std::string csv = "device,motion,point,method,mode,time_s,gpu_total_ms";
     for (const char* stage : kStages) { csv += fmt::format(",{} ms", stage); }
     csv +=
-        ",mean_square,psnr_db,flicker,full_change,psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,flicker_right,work_rendered,"
+        ",mean_square,psnr_db,flicker,full_change,tile_steps,sharpness_gap,psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,"
+        "flicker_right,work_rendered,"
         "pixels_"
         "warped\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
         for (const char* stage : kStages) { csv += fmt::format(",{:.6g}", stageMs(frame, stage)); }
-        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()), frame.worseFlicker(),
-                           frame.full_change);
+        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()),
+                           frame.worseFlicker(), frame.full_change, frame.tile_steps, frame.sharpness_gap);
         const auto& [left, right] = frame.mean_square;
         csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", psnrOf(left), psnrOf(right), left, right,
                            frame.flicker[0], frame.flicker[1], frame.work_rendered, frame.pixels_warped);
@@ -137,6 +138,8 @@ std::string motionJson(const MotionRun& run) {
                                {"worst", psnrJson(std::ranges::max(errors))},
                                {"run", psnrJson(runSquare(sequence))}};
             json["flicker"] = statisticsJson(flickerOf(sequence));
+            json["tile_steps"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.tile_steps; }));
+            json["sharpness_gap"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.sharpness_gap; }));
         }
         json["work_rendered"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.work_rendered; }));
         json["full_change"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.full_change; }));

@@ -27,6 +27,8 @@ struct MotionFrame {
     // does. 0 for the first frame.
     std::array<double, 2> flicker{};
     double full_change = 0.0;  // of the full renders, mean of both eyes
+    // engine/picture/pair_metrics.h; the greater of both eyes' steps.
+    double tile_steps = 0.0, sharpness_gap = 0.0;
 
     [[nodiscard]] double worseSquare() const { return std::max(mean_square[0], mean_square[1]); }
     [[nodiscard]] double worseFlicker() const { return std::max(flicker[0], flicker[1]); }
