@@ -1,8 +1,7 @@
-// Facts about frames that are made from the ones before: what they equal where nothing moves, what they cost, and that the device's warp is
-// the twin's.
+// Facts about frames that are made from the ones before: what they equal where nothing moves, and what they cost. Pass by pass:
+// past_passes_test.cpp.
 #include "engine/frame/stereo_frame.h"
 #include "engine/picture/metrics.h"
-#include "engine/reference/past.h"
 #include "tests/frame_runs.h"
 
 #include <doctest/doctest.h>
@@ -59,9 +58,7 @@ public:
         return std::min(compare(pictures[0], wanted[0]).psnrDb(), compare(pictures[1], wanted[1]).psnrDb());
     }
     StereoFrame& frame() { return frame_; }
-    FrameSettings& settings() { return settings_; }
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
-    [[nodiscard]] const Scene& scene() const { return view_.scene; }
 
 private:
     ViewedScene view_ = viewAtelier();
@@ -234,30 +231,6 @@ TEST_CASE_FIXTURE(Gpu, "frames that are not waited for are the same ones") {
         ahead.finish();
         const auto shown = waited.shown();
         for (const int eye : {kLeft, kRight}) { CHECK(ahead.readPicture(eye).values == shown[static_cast<std::size_t>(eye)].values); }
-    }
-}
-
-// The twin samples all pixels with six taps each way and looks for each by itself, in float64: pixels at edges, for which the device takes
-// four, are all that differs.
-TEST_CASE_FIXTURE(Gpu, "a picture that is only warped is the float64 twin's") {
-    Walk walk(context(), makeSettings(Mode::kTemporal, 2.0));
-    walk.go(0.0);  // both eyes are rendered in full
-    walk.settings().stereo.budget = 0.0;
-    const std::array<Eye, 2> before = walk.eyes();
-    walk.go(1.0);
-    const std::array<Image, 2> shown = walk.shown();
-    for (const int e : {kLeft, kRight}) {
-        const auto eye = static_cast<std::size_t>(e);
-        const reference::Settings settings{.inverse_depth_moments = true};
-        const reference::Past past = reference::pastOf(before[eye], reference::render(walk.scene(), before[eye], settings));
-        const reference::WarpedPast warped = reference::warpPast(past, walk.eyes()[eye]);
-        Image twin{walk.eyes()[eye].size_px, 4, {}};
-        for (const glm::dvec4& value : warped.picture.rgba) {
-            for (int channel = 0; channel < 4; ++channel) { twin.values.push_back(static_cast<float>(value[channel])); }
-        }
-        const double psnr_db = compare(shown[eye], twin).psnrDb();
-        MESSAGE("to the twin: " << psnr_db << " dB");
-        CHECK(psnr_db > 45.0);
     }
 }
 

@@ -1,8 +1,9 @@
-// The float64 twins of reuse over time: an eye's picture from its own last one, and the tiles that are rendered again. Places are pixels of
-// a picture, (0.5, 0.5) the centre of the first; pixels and tiles are listed by rows. No kernel exists for these yet.
+// The float64 twins of reuse over time: an eye's picture from its own last one, what that is expected to have lost, and the tiles that are
+// rendered again for it. Places are pixels of a picture, (0.5, 0.5) the centre of the first; pixels, blocks and tiles are listed by rows.
+// Squared errors are sums over three channels, amplitudes of errors the root of a mean over pixels and channels.
 #pragma once
 
-#include "engine/reference/reference.h"
+#include "engine/reference/stereo.h"
 
 #include <array>
 #include <cstdint>
@@ -12,46 +13,67 @@
 
 namespace binosplat::reference {
 
-// What an eye showed in the frame before, and what is known of it.
+// What is known of a tile of a picture that later ones are made from.
+struct PastTile {
+    std::uint64_t cost = 0;             // in pairs, when it was last rendered
+    std::uint32_t age = 0;              // frames since then
+    double growth = 0.0;                // of its error's amplitude in a frame, as it had turned out then; 0: nothing is known
+    std::array<double, 4> errors = {};  // by quarters, row by row: amplitudes of the expected error
+    std::array<double, 4> grown = {};   // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
+};
+
+// A picture of an eye, and what later ones need to know of it.
 struct Past {
     Eye eye;
     std::vector<glm::dvec4> rgba;
-    std::vector<double>
-        inverse_depths;               // I/A of each pixel, or what it was when the pixel was last rendered, moved along; 0: infinitely far
-    std::vector<double> cell_errors;  // by cells of half a tile: the amplitude of the expected error, root of the mean square
-    std::vector<std::uint32_t> ages;  // by tile: frames since it was rendered
+    std::vector<std::optional<MovingPixel>> pixels;  // nothing: it goes nowhere
+    std::vector<PastTile> tiles;
 };
+
+// rasterize: a picture that was rendered whole, from its moments of inverse depth. `costs`: pairs of each tile.
+Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs);
 
 // Weights of the samples at -2 ... 3 for a place `t` (0 to 1) after sample 0: Lagrange's polynomial through all six. They sum to 1, and no
 // frequency comes out stronger than it went in, at any t, so that a picture may be resampled again and again.
 std::array<double, 6> lagrangeWeights(double t);
 
-// Where the past shows what a pixel of `eye` sees.
-struct FoundInPast {
-    glm::dvec2 place_px;
-    double inverse_depth;  // as the pixel sees it
-};
-// Backwards, by a fixed point from the nearest and from the farthest depth around (Bowles et al. 2012, Iterative Image Warping). A place
-// counts only if the past's pixel there, moved forwards, comes within half a pixel of where it is wanted, which a place that is hidden in
-// the past does not; of two that count the nearer is it. Empty: the past did not see it.
-std::vector<std::optional<FoundInPast>> findInPast(const Past& past, const Eye& eye, int threads = 2);
-
-// The past as `eye` sees it: colours, depths, and errors grown by what this step is expected to lose. Pixels that the past did not see are
-// those of the nearest place that was looked at, and count with the greatest error.
+// warp_past and warp_pixels: the past as `eye` sees it; of its tiles what they will have lost.
+//
+// A block of 4x8 pixels comes from a block of the past whole, if its pixels lie there as in a picture that is shifted and a little turned:
+// then each has the depth of the pixel as far from that block's corner, and is sampled with six taps each way. The pixels of other blocks
+// are looked for one by one, backwards, by a fixed point from the nearest and from the farthest depth around (Bowles et al. 2012,
+// Iterative Image Warping), and sampled with four. Such a search always finds something, so a place counts only if the past's pixel there,
+// moved forwards, meets the pixel that it is wanted for; of two that count the nearer is it.
 struct WarpedPast {
-    Past picture;  // ages are one more
-    std::size_t unseen_pixels = 0;
+    Past picture;
+    std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made so
+    std::vector<std::uint8_t> unseen;      // by pixels: 1 if the past did not see it
 };
-WarpedPast warpPast(const Past& past, const Eye& eye, int threads = 2);
+// `hidden`: a byte a tile of either picture, 1 where no lens shows it; empty: all are seen.
+WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
+                    const glm::dvec3& background = glm::dvec3(0.0));
 
-// The tiles that are rendered again: by expected squared error times age for each pair, until they have cost `budget_pairs`. A tile that is
-// dearer than the budget has its turn when it is worth most. `costs`: pairs of each tile.
-std::vector<std::uint8_t> chooseTiles(const Past& warped, std::span<const std::uint64_t> costs, std::uint64_t budget_pairs);
+// price: adds what this frame's warp is expected to lose to the errors of tiles. Blur of what is blurred already is blurred more, so that
+// it adds up as an amplitude. Half of it is the growth that was measured, where there is one and most of the quarter was seen.
+void growErrors(std::span<PastTile> tiles);
+// Likewise price: what rendering a tile is worth: the squared error of all its pixels, times the frames since it was rendered. With an
+// error that grows by the frame that is the area under its growth, which rendering it saves (Whittle's index).
+double worthOf(const PastTile& tile);
+// Likewise price: what it costs, beside its pairs a workgroup and the writing of its pixels.
+std::uint64_t costOf(const PastTile& tile);
 
-// Puts the chosen tiles of `full`, a picture of the same eye with its moments of inverse depth, over what was warped.
-void renderChosen(Past& warped, const Picture& full, std::span<const std::uint8_t> chosen);
+// select, where the tiles of several pictures have one budget, in their order: from the greatest price down, the first of equals first. The
+// tile that the budget ends in is rendered as well, so that one dearer than all of it has its turn.
+struct PricedTiles {
+    std::vector<TileKind>& kinds;
+    std::span<const std::optional<std::uint32_t>> prices;
+    std::span<const std::uint64_t> costs;
+    std::span<const std::optional<std::uint32_t>> whole_prices = {};  // as of select()
+};
+void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost);
 
-// A picture that was rendered whole.
-Past pastOf(const Eye& eye, const Picture& full);
+// rasterize and tile_ranges: puts the tiles of `full` that are rendered over what was warped. What they turn out to have been off by, for
+// each frame since they were last rendered, is measured; of a tile without pairs it is not. `costs`: pairs of each tile.
+void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
 
 }  // namespace binosplat::reference

@@ -1,10 +1,28 @@
 // select: the tiles whose errors are mended at the least cost.
-#include "engine/reference/stereo.h"
+#include "engine/reference/past.h"
 
 #include <functional>
 #include <map>
 
 namespace binosplat::reference {
+
+namespace {
+
+// The price at which the budget ends, and what is left for it; none: the budget is enough for all.
+struct BudgetEnd {
+    std::optional<std::uint32_t> last;
+    std::uint64_t left;
+};
+BudgetEnd findEnd(const std::map<std::uint32_t, std::uint64_t, std::greater<>>& cost_of_price, std::uint64_t budget_cost) {
+    std::uint64_t left = budget_cost;
+    for (const auto& [price, cost] : cost_of_price) {
+        if (cost > left) { return {price, left}; }
+        left -= cost;
+    }
+    return {std::nullopt, left};
+}
+
+}  // namespace
 
 void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uint32_t>> prices, std::span<const std::uint64_t> costs,
             std::uint64_t budget_cost, std::span<const std::optional<std::uint32_t>> whole_prices) {
@@ -13,16 +31,7 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
     for (std::size_t tile = 0; tile < whole.size(); ++tile) {
         if (whole[tile]) { cost_of_price[*whole[tile]] += costs[tile]; }
     }
-    // The price at which the budget ends, and what is left for it.
-    std::optional<std::uint32_t> last;
-    std::uint64_t left = budget_cost;
-    for (const auto& [price, cost] : cost_of_price) {
-        if (cost > left) {
-            last = price;
-            break;
-        }
-        left -= cost;
-    }
+    auto [last, left] = findEnd(cost_of_price, budget_cost);
     bool goes_on = true;
     for (std::size_t tile = 0; tile < prices.size(); ++tile) {
         if (!prices[tile] || (last && *prices[tile] < *last)) { continue; }
@@ -33,6 +42,30 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
             left -= costs[tile];
         }
         kinds[tile] = TileKind::kPredicted;
+    }
+}
+
+void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost) {
+    const auto wholeOf = [](const PricedTiles& tiles) { return tiles.whole_prices.empty() ? tiles.prices : tiles.whole_prices; };
+    std::map<std::uint32_t, std::uint64_t, std::greater<>> cost_of_price;
+    for (const PricedTiles& picture : pictures) {
+        for (std::size_t t = 0; t < picture.prices.size(); ++t) {
+            if (const auto& whole = wholeOf(picture)[t]) { cost_of_price[*whole] += picture.costs[t]; }
+        }
+    }
+    const auto [last, left] = findEnd(cost_of_price, budget_cost);
+    std::uint64_t spent = 0;
+    for (const PricedTiles& picture : pictures) {
+        for (std::size_t t = 0; t < picture.prices.size(); ++t) {
+            const auto& price = picture.prices[t];
+            if (!price || (last && *price < *last)) { continue; }
+            if (last && *price == *last) {
+                if (*wholeOf(picture)[t] != *last) { continue; }  // as in select()
+                if (spent >= left) { continue; }
+                spent += picture.costs[t];
+            }
+            picture.kinds[t] = TileKind::kPredicted;
+        }
     }
 }
 

@@ -1,0 +1,60 @@
+// price and rasterize, where there is a past: what is expected of its tiles, and what they turn out to have been.
+#include "engine/reference/past_view.h"
+
+namespace binosplat::reference {
+namespace {
+
+constexpr double kChannels = 3.0, kCellPixels = kCell * kCell, kTilePixels = kTileSize * kTileSize;
+constexpr double kMeasuredShare = 0.5, kUnseenGrowth = 0.05;
+constexpr double kMostWorth = 2000.0, kStep = 0x1p-20;
+constexpr std::uint64_t kPairsOfTile = 16, kMostCost = 0x1fffff;
+
+std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
+    return movingPixel(full, i, {.choice = TileChoice::kPredicted, .depth_choice = DepthChoice::kInverse});
+}
+
+}  // namespace
+
+void growErrors(std::span<PastTile> tiles) {
+    for (PastTile& tile : tiles) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            const double expected = std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
+            const double measured = tile.growth > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
+            tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth;
+        }
+    }
+}
+
+double worthOf(const PastTile& tile) {
+    double squares = 0.0;
+    for (const double error : tile.errors) { squares += kChannels * kCellPixels * error * error; }
+    return squares > 0.0 ? std::max(std::min(squares * std::max(tile.age, 1u), kMostWorth), kStep) : 0.0;
+}
+
+std::uint64_t costOf(const PastTile& tile) { return std::min(tile.cost + kPairsOfTile, kMostCost); }
+
+void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds) {
+    const std::size_t width = warped.eye.size_px.x, columns = tileGrid(warped.eye.size_px).x;
+    std::vector<double> squares(kinds.size(), 0.0);
+    for (std::size_t i = 0; i < warped.rgba.size(); ++i) {
+        const std::size_t tile = i / width / kTileSize * columns + i % width / kTileSize;
+        if (kinds[tile] == TileKind::kNone || kinds[tile] == TileKind::kHidden) { continue; }
+        squares[tile] += squareOf(glm::length(glm::dvec3(full.rgba[i] - warped.rgba[i])));
+        warped.rgba[i] = full.rgba[i];
+        warped.pixels[i] = pixelOf(full, i);
+    }
+    for (std::size_t t = 0; t < kinds.size(); ++t) {
+        if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
+        const double amplitude = costs[t] > 0 ? std::sqrt(squares[t] / (kChannels * kTilePixels)) : 0.0;
+        warped.tiles[t] = {costs[t], 0, amplitude / std::max(warped.tiles[t].age, 1u), {}, {}};
+    }
+}
+
+Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> costs) {
+    Past past{eye, full.rgba, {}, {}};
+    for (std::size_t i = 0; i < full.rgba.size(); ++i) { past.pixels.push_back(pixelOf(full, i)); }
+    for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, 0.0, {}, {}}); }
+    return past;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,83 @@
+// warp_pixels: pixels of an eye's picture that are looked for in the past one by one.
+#include "engine/reference/past_view.h"
+
+namespace binosplat::reference {
+namespace {
+
+constexpr int kSteps = 3;
+constexpr double kAgreesPx = 0.51;
+constexpr double kUnseenError = 1.0;
+
+struct Found {
+    PastView::Seen seen;
+    glm::dvec2 place_px;
+    bool agrees = false;
+};
+
+Found search(const PastView& view, const glm::dvec2& wanted_px, double guess) {
+    Found found{{std::nullopt, guess}, wanted_px};
+    for (int step = 0; step < kSteps && !found.agrees; ++step) {
+        const EyeChange::Moved place = view.place(wanted_px, found.seen.inverse_depth);
+        found.place_px = place.place_px;
+        if (!place.in_front || !view.isInside(place.place_px)) { return found; }
+        found.seen = view.look(place.place_px);
+        const glm::dvec2 off_px = glm::abs(found.seen.lands_px - wanted_px);
+        found.agrees = found.seen.pixel && std::max(off_px.x, off_px.y) <= kAgreesPx;
+    }
+    if (found.agrees) { found.place_px = view.place(wanted_px, found.seen.inverse_depth).place_px; }
+    return found;
+}
+
+// Catmull and Rom's weights (1974) of the samples at -1, 0, 1, 2 for a place `t` after sample 0.
+std::array<double, 4> cubicWeights(double t) {
+    return {0.5 * (-t + 2 * t * t - t * t * t), 0.5 * (2 - 5 * t * t + 3 * t * t * t), 0.5 * (t + 4 * t * t - 3 * t * t * t),
+            0.5 * (-t * t + t * t * t)};
+}
+
+struct Sample {
+    glm::dvec4 colour{0.0};
+    glm::dvec3 across{0.0}, down{0.0};  // how the picture changes from pixel to pixel
+    double lost;                        // squared
+};
+
+// What alternates from pixel to pixel with an amplitude d has third differences of 8 d, and halfway between two pixels all of it is lost.
+Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
+    const glm::dvec2 at = glm::clamp(place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5;
+    const glm::ivec2 base(glm::floor(at)), nearest(glm::floor(at + 0.5));
+    const glm::dvec2 t = at - glm::dvec2(base);
+    const auto weights_x = cubicWeights(t.x), weights_y = cubicWeights(t.y);
+    constexpr std::array<double, 4> kThirdDifference{-1, 3, -3, 1};
+    Sample sample;
+    glm::dvec3 lost_across(0.0), lost_down(0.0);
+    for (int i = 0; i < 4; ++i) {
+        const auto tap = static_cast<std::size_t>(i);
+        lost_across += kThirdDifference[tap] * glm::dvec3(view.colour(base.x + i - 1, nearest.y));
+        lost_down += kThirdDifference[tap] * glm::dvec3(view.colour(nearest.x, base.y + i - 1));
+        for (int j = 0; j < 4; ++j) {
+            sample.colour += weights_x[tap] * weights_y[static_cast<std::size_t>(j)] * view.colour(base.x + i - 1, base.y + j - 1);
+        }
+    }
+    lost_across *= 4.0 * t.x * (1.0 - t.x) / 8.0;
+    lost_down *= 4.0 * t.y * (1.0 - t.y) / 8.0;
+    sample.colour = glm::max(sample.colour, glm::dvec4(0.0));
+    sample.across = 0.5 * glm::dvec3(view.colour(nearest.x + 1, nearest.y) - view.colour(nearest.x - 1, nearest.y));
+    sample.down = 0.5 * glm::dvec3(view.colour(nearest.x, nearest.y + 1) - view.colour(nearest.x, nearest.y - 1));
+    sample.lost = glm::dot(lost_across, lost_across) + glm::dot(lost_down, lost_down);
+    return sample;
+}
+
+}  // namespace
+
+PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far) {
+    const Found from_near = search(view, wanted_px, near), from_far = search(view, wanted_px, far);
+    const bool takes_near = from_near.agrees && (!from_far.agrees || from_near.seen.inverse_depth >= from_far.seen.inverse_depth);
+    const Found& found = takes_near ? from_near : from_far;
+    const std::uint32_t code = found.seen.pixel ? found.seen.pixel->spread : 0;
+    const double spread = kOwnSpread * spreadOf(code) * found.seen.inverse_depth + 0.5 * (near - far);
+    const glm::dvec2 off_px = view.uncertainMove(wanted_px, spread);
+    const Sample sample = sampleAround(view, found.place_px);
+    const double amplitude = std::sqrt(sample.lost) + glm::length(off_px.x * sample.across + off_px.y * sample.down);
+    return {sample.colour, {found.seen.inverse_depth, code}, found.agrees, found.agrees ? squareOf(amplitude) : kUnseenError};
+}
+
+}  // namespace binosplat::reference

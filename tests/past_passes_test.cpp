@@ -1,0 +1,167 @@
+// Facts about the passes that make an eye from its past, each held to its twin, which goes on from what the device had one pass before:
+// warp_past and warp_pixels, and what rasterize measures (price and select: past_choice_test.cpp). Where a depth or a place lies on a
+// threshold, float32 may come to the other side: such flips have a budget.
+#include "tests/past_stages.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+TEST_SUITE_BEGIN("past_passes");
+
+using namespace binosplat;
+using reference::TileKind;
+using test::EyeOnDevice;
+using test::Gpu;
+using test::ViewedScene;
+using Walk = test::PastWalk;
+
+namespace {
+
+constexpr double kSteps = test::kErrorSteps;
+
+ViewedScene viewAtelier() { return test::viewBuiltin("builtin:atelier", {150, 110}, 20000); }
+ViewedScene viewFence() { return test::viewBuiltin("builtin:fence", {150, 110}); }
+
+struct Differences {
+    std::size_t pixels = 0, other_depths = 0, other_spreads = 0, quarters = 0, other_grown = 0, tiles = 0, other_tiles = 0,
+                other_errors = 0;
+    double grown = 0.0, twin_grown = 0.0, squares = 0.0;
+};
+
+// Of what the device made of `before`, nothing of which was rendered again, and what the twin makes of it.
+void compareWarped(Differences& differences, const EyeOnDevice& made, reference::Past twin) {
+    for (std::size_t i = 0; i < twin.rgba.size(); ++i) {
+        const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
+        differences.squares += glm::dot(off, off) / 4.0;
+        const auto &a = made.past.pixels[i], &b = twin.pixels[i];
+        const bool same = a.has_value() == b.has_value() && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 2e-4, 1e-6));
+        differences.other_depths += same ? 0 : 1;
+        differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
+    }
+    differences.pixels += twin.rgba.size();
+    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
+        const reference::PastTile &a = made.past.tiles[t], &b = twin.tiles[t];
+        for (std::size_t q = 0; q < 4; ++q) {
+            // A pixel's error is cut off to steps.
+            differences.other_grown += test::isNear(a.grown[q], b.grown[q], 0.02, 66.0 / kSteps) ? 0 : 1;
+            differences.grown += a.grown[q];
+            differences.twin_grown += b.grown[q];
+        }
+        differences.other_tiles += a.cost == b.cost && a.age == b.age && test::isNear(a.growth, b.growth, 1e-6, 0.0) ? 0 : 1;
+    }
+    reference::growErrors(twin.tiles);
+    for (std::size_t t = 0; t < twin.tiles.size(); ++t) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            differences.other_errors += test::isNear(made.past.tiles[t].errors[q], twin.tiles[t].errors[q], 0.02, 6e-4) ? 0 : 1;
+        }
+    }
+    differences.tiles += twin.tiles.size();
+    differences.quarters += 4 * twin.tiles.size();
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and expect the twin's errors") {
+    for (const ViewedScene& view : {viewAtelier(), viewFence()}) {
+        for (const bool hides : {false, true}) {
+            std::array<std::vector<std::uint8_t>, 2> hidden;
+            if (hides) {
+                hidden.fill(std::vector<std::uint8_t>(70, 0));
+                for (auto& tiles : hidden) { tiles[0] = tiles[9] = tiles[33] = tiles[34] = 1; }
+            }
+            CAPTURE(view.name);
+            CAPTURE(hides);
+            Walk walk(*this, view, hidden);
+            walk.go(0.0, 0.0);
+            std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
+            Differences all;
+            std::size_t one_by_one = 0, blocks = 0;
+            for (int step = 1; step <= 3; ++step) {
+                walk.go(step, 0.0);
+                for (const int eye : {kLeft, kRight}) {
+                    EyeOnDevice made = walk.read(eye);
+                    const auto e = static_cast<std::size_t>(eye);
+                    reference::WarpedPast warped = reference::warpPast(before[e].past, walk.eyes()[e], hidden[e], {0.1, 0.2, 0.3});
+                    one_by_one += static_cast<std::size_t>(std::ranges::count(warped.one_by_one, 1));
+                    blocks += warped.one_by_one.size();
+                    compareWarped(all, made, std::move(warped.picture));
+                    before[e] = std::move(made);
+                }
+            }
+            const double psnr_db = -10.0 * std::log10(all.squares / static_cast<double>(all.pixels));
+            MESSAGE(view.name << ": " << psnr_db << " dB to the twin; one by one " << test::share(one_by_one, blocks)
+                              << " of the blocks; other: depths " << test::share(all.other_depths, all.pixels) << ", spreads "
+                              << test::share(all.other_spreads, all.pixels) << ", tiles " << test::share(all.other_tiles, all.tiles)
+                              << ", growth of errors " << test::share(all.other_grown, all.quarters) << ", errors "
+                              << test::share(all.other_errors, all.quarters) << "; sum of growth " << all.grown << " and "
+                              << all.twin_grown);
+            CHECK(one_by_one > blocks / 20);
+            CHECK(one_by_one < blocks - blocks / 20);
+            CHECK(psnr_db >= 55.0);
+            CHECK(test::share(all.other_depths, all.pixels) <= 0.001);
+            CHECK(test::share(all.other_spreads, all.pixels) <= 0.001);
+            CHECK(test::share(all.other_tiles, all.tiles) <= 0.005);
+            CHECK(test::share(all.other_grown, all.quarters) <= 0.005);
+            CHECK(test::share(all.other_errors, all.quarters) <= 0.005);
+            CHECK(test::isNear(all.grown, all.twin_grown, 0.001, 0.0));
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rendered again say what they had been off by") {
+    for (const ViewedScene& view : {viewAtelier(), viewFence()}) {
+        CAPTURE(view.name);
+        // Of two walks that are alike so far one renders tiles again in the last frame.
+        Walk walk(*this, view), only_warps(*this, view);
+        constexpr int kFrames = 3;
+        for (int step = 0; step <= kFrames; ++step) {
+            walk.go(step, step == kFrames ? 0.3 : 0.0);
+            only_warps.go(step, 0.0);
+        }
+        std::vector<std::vector<TileKind>> kinds;
+        std::vector<std::vector<std::optional<std::uint32_t>>> prices;
+        std::vector<std::vector<std::uint64_t>> costs;
+        std::uint64_t picture_cost = 0;
+        std::array<EyeOnDevice, 2> made{walk.read(kLeft), walk.read(kRight)}, warped{only_warps.read(kLeft), only_warps.read(kRight)};
+        for (std::size_t e = 0; e < 2; ++e) {
+            std::vector<double> errors;
+            costs.emplace_back(made[e].costs.begin(), made[e].costs.end());
+            for (std::size_t t = 0; t < costs[e].size(); ++t) {
+                errors.push_back(made[e].errors[t] / kSteps);
+                picture_cost += costs[e][t];
+                CHECK(costs[e][t] == reference::costOf(warped[e].past.tiles[t]));
+                CHECK(test::isNear(errors[t], reference::worthOf(warped[e].past.tiles[t]), 1e-5, 1.0 / kSteps));
+            }
+            kinds.emplace_back(costs[e].size(), TileKind::kNone);
+            prices.push_back(reference::price(kinds[e], errors, costs[e]));
+        }
+        reference::selectTogether(
+            std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]}, reference::PricedTiles{kinds[1], prices[1], costs[1]}},
+            static_cast<std::uint64_t>(0.3f * static_cast<float>(picture_cost)));
+        std::size_t rendered = 0;
+        for (std::size_t e = 0; e < 2; ++e) {
+            CHECK(made[e].kinds == test::kindsOf(kinds[e]));
+            // What is rendered is the device's own, so that what the twin measures is exact.
+            reference::Picture full{walk.eyes()[e].size_px, made[e].past.rgba, {}, {}, {}};
+            full.inverse_depth = full.inverse_depth_squared = std::vector<double>(full.rgba.size(), 0.0);
+            std::vector<std::uint64_t> pairs;
+            for (const reference::PastTile& tile : made[e].past.tiles) { pairs.push_back(tile.cost); }
+            reference::Past twin = warped[e].past;
+            reference::renderTiles(twin, full, pairs, kinds[e]);
+            for (std::size_t t = 0; t < kinds[e].size(); ++t) {
+                const reference::PastTile &a = made[e].past.tiles[t], &b = twin.tiles[t];
+                CHECK(a.age == b.age);
+                // Up to a step for each thread's sum.
+                CHECK(std::abs(a.growth - b.growth) <= 1e-3 * b.growth + 2e-4);
+                for (std::size_t q = 0; q < 4; ++q) { CHECK(test::isNear(a.errors[q], b.errors[q], 1e-6, 0.0)); }
+                rendered += kinds[e][t] == TileKind::kPredicted && a.growth > 1e-3 ? 1 : 0;
+            }
+            for (std::size_t i = 0; i < twin.rgba.size(); ++i) { REQUIRE(twin.rgba[i] == made[e].past.rgba[i]); }
+        }
+        CHECK(rendered > 10);
+    }
+}
+
+TEST_SUITE_END();

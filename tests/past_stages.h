@@ -1,0 +1,94 @@
+// Frames that are made from the ones before, and what the device knows of them, as the twin goes on from it.
+#pragma once
+
+#include "engine/passes/past_passes.h"
+#include "engine/reference/past.h"
+#include "tests/frame_runs.h"
+#include "tests/stereo_cases.h"
+
+#include <array>
+#include <vector>
+
+namespace binosplat::test {
+
+inline constexpr double kErrorSteps = 0x1p20;
+
+inline reference::PastTile tileOf(const gpu::PastTile& tile) {
+    reference::PastTile twin{tile.cost, tile.age, static_cast<double>(tile.growth), {}, {}};
+    for (int q = 0; q < 4; ++q) {
+        twin.errors[static_cast<std::size_t>(q)] = static_cast<double>(tile.errors[q]);
+        twin.grown[static_cast<std::size_t>(q)] = tile.grown[q] / kErrorSteps;
+    }
+    return twin;
+}
+
+// An eye's picture, and what the choice among its tiles left.
+struct EyeOnDevice {
+    reference::Past past;
+    std::vector<gpu::uint> kinds, errors, costs;
+};
+
+inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& eye) {
+    const Picture& picture = frame.picture(index);
+    EyeOnDevice read{{eye, {}, {}, {}}, {}, {}, {}};
+    const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
+    for (const gpu::vec4& colour : gpu.readBack<gpu::vec4>(picture.colours, pixels)) { read.past.rgba.emplace_back(colour); }
+    for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
+        const reference::Arrival held = unpackArrival(word);
+        read.past.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
+    }
+    const glm::uvec2 tiles = tilesOf(eye.size_px);
+    const std::size_t count = std::size_t{tiles.x} * tiles.y;
+    for (const gpu::PastTile& tile : gpu.readBack<gpu::PastTile>(picture.tiles, count)) { read.past.tiles.push_back(tileOf(tile)); }
+    if (const WarpBuffers* chosen = frame.chosenTiles(index)) {
+        const auto array = [&](gpu::DeviceAddress<gpu::uint> at) {
+            return gpu.readBack<gpu::uint>(chosen->tiles(), count, at.value - chosen->tileKinds().value + WarpBuffers::tileKindsOffset());
+        };
+        read.kinds = array(chosen->tileKinds());
+        read.errors = array(chosen->tileErrors());
+        read.costs = array(chosen->tileCosts());
+    }
+    return read;
+}
+
+// Frames of a head that walks and turns a little, as `temporal` makes them.
+class PastWalk {
+public:
+    PastWalk(Gpu& gpu, const ViewedScene& view, const std::array<std::vector<std::uint8_t>, 2>& hidden = {})
+        : gpu_(gpu),
+          view_(view),
+          hidden_(hidden),
+          scene_(gpu.context(), view.scene),
+          frame_(gpu.context(), scene_),
+          kept_(gpu.context(), frame_) {}
+
+    void go(double step, double budget) {
+        Eye eye = view_.eye;
+        eye.world_from_camera.position += step * glm::dvec3(0.003, 0.001, 0.001);
+        eye.world_from_camera.orientation =
+            eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
+        eyes_ = stereoPair(eye, 0.063);
+        FrameSettings settings;
+        settings.mode = Mode::kTemporal;
+        settings.keep_past = true;
+        settings.stereo.budget = budget;
+        settings.hidden_tiles = {hidden_[0], hidden_[1]};
+        settings.background = {0.1, 0.2, 0.3};
+        result_ = frame_.render(eyes_, settings);
+    }
+    EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
+    [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
+    [[nodiscard]] const FrameResult& result() const { return result_; }
+
+private:
+    Gpu& gpu_;
+    const ViewedScene& view_;
+    std::array<std::vector<std::uint8_t>, 2> hidden_;
+    GpuScene scene_;
+    StereoFrame frame_;
+    KeptKernels kept_;
+    std::array<Eye, 2> eyes_;
+    FrameResult result_;
+};
+
+}  // namespace binosplat::test
