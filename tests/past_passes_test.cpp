@@ -164,4 +164,19 @@ TEST_CASE_FIXTURE(Gpu, "a frame's choice is the twin's, and tiles that were rend
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also where nothing is expected to go wrong") {
+    // Bars across the view, near and far in turn and of the background's colour: no block is of one depth, and none looks wrong.
+    std::vector<test::Splat> splats;
+    for (int bar = -7; bar <= 7; ++bar) {
+        const float z = bar % 2 == 0 ? 1.0f : 1.5f;
+        splats.push_back(
+            {{0.0f, 0.06f * z * static_cast<float>(bar), z}, {1, 0, 0, 0}, z * glm::vec2(3.0f, 0.02f), 0.99f, glm::vec3(0.5f)});
+    }
+    const ViewedScene view{"bars", test::makeScene(splats), test::makeEye({96, 64})};
+    Walk walk(*this, view, {}, glm::dvec3(0.5));
+    walk.go(0.0, 0.0);
+    walk.go(5.0, 0.0);
+    for (const int eye : {kLeft, kRight}) { CHECK(std::ranges::count(walk.read(eye).errors, 0u) == 0); }
+}
+
 TEST_SUITE_END();

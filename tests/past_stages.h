@@ -54,10 +54,12 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
 // Frames of a head that walks and turns a little, as `temporal` makes them.
 class PastWalk {
 public:
-    PastWalk(Gpu& gpu, const ViewedScene& view, const std::array<std::vector<std::uint8_t>, 2>& hidden = {})
+    PastWalk(Gpu& gpu, const ViewedScene& view, const std::array<std::vector<std::uint8_t>, 2>& hidden = {},
+             const glm::dvec3& background = {0.1, 0.2, 0.3})
         : gpu_(gpu),
           view_(view),
           hidden_(hidden),
+          background_(background),
           scene_(gpu.context(), view.scene),
           frame_(gpu.context(), scene_),
           kept_(gpu.context(), frame_) {}
@@ -73,7 +75,7 @@ public:
         settings.keep_past = true;
         settings.stereo.budget = budget;
         settings.hidden_tiles = {hidden_[0], hidden_[1]};
-        settings.background = {0.1, 0.2, 0.3};
+        settings.background = background_;
         result_ = frame_.render(eyes_, settings);
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
@@ -84,6 +86,7 @@ private:
     Gpu& gpu_;
     const ViewedScene& view_;
     std::array<std::vector<std::uint8_t>, 2> hidden_;
+    glm::dvec3 background_;
     GpuScene scene_;
     StereoFrame frame_;
     KeptKernels kept_;

@@ -103,14 +103,18 @@ double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& 
                     glm::length(off_px.x * slope_across + off_px.y * slope_down));
 }
 
-// Of a block that comes whole: of all its pixels, from two of them, but where anything moves not less than something, since what lies
-// between these may be worse and every tile is to have its turn.
+// Where anything moves a block does not lose less than this, so that every tile has its turn.
+double leastLossOf(const BlockFromPast& block) {
+    return kPastBlock.x * kPastBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
+}
+
+// Of a block that comes whole: of all its pixels, from two of them. What lies between these may be worse.
 double lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
     const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
     const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
     const glm::ivec2 corner = glm::ivec2(glm::floor(block.source_px)) - kPastBlock / 2;
     const double mean = 0.5 * (lossAt(view, corner + glm::ivec2(1, 2), t, off_px) + lossAt(view, corner + glm::ivec2(2, 5), t, off_px));
-    return kPastBlock.x * kPastBlock.y * std::max(mean, block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
+    return std::max(kPastBlock.x * kPastBlock.y * mean, leastLossOf(block));
 }
 
 class Warper {
@@ -159,7 +163,7 @@ private:
             tile.errors[quarter] = std::max(tile.errors[quarter], carried);
         }
         warped_.one_by_one.push_back(block.whole ? 0 : 1);
-        if (block.whole) { tile.grown[quarter] += lossOf(view_, block, first); }
+        tile.grown[quarter] += block.whole ? lossOf(view_, block, first) : leastLossOf(block);  // and that of its pixels
         const glm::ivec2 size(warped_.picture.eye.size_px);
         for (int i = 0; i < kPastBlock.x * kPastBlock.y; ++i) {
             const glm::ivec2 pixel = first + glm::ivec2(i % kPastBlock.x, i / kPastBlock.x);

@@ -240,6 +240,7 @@ void main() {
             const float carried = pass.source_tiles.at[tile.y * view.past_size_tiles.x + tile.x].errors[2 * quarter.y + quarter.x];
             atomicMax(cell_carried[cell], floatBitsToUint(carried));
         }
+        const float least = any(notEqual(moves.mean, vec2(0))) ? kLeastGrowth : 0;
         if (as_one) {
             const vec2 uncertain_px = uncertainMove(disparity(view, vec2(first)), spread);
             const vec2 shares = vec2(lostShare(fract(moves.mean.x)), lostShare(fract(moves.mean.y)));
@@ -249,10 +250,10 @@ void main() {
                 grown += lossAt(clamp(corner + ivec2(1 + i, 2 + 3 * i), ivec2(0), last), last, shares, uncertain_px);
             }
             // What lies between the two may be worse, unless nothing moves.
-            const float least = any(notEqual(moves.mean, vec2(0))) ? kLeastGrowth : 0;
             atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * max(0.5 * grown, least) * kErrorSteps));
             resampleBlock(view, first, moves, last);
         } else {
+            atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * least * kErrorSteps));
             is_listed = true;
             in_list = atomicAdd(listed_count, 1);
         }
