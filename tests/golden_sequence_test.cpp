@@ -1,0 +1,153 @@
+// Pictures that must not change: the last pair of a walk whose frames are made from the ones before, the twin's.
+#include "engine/reference/past.h"
+#include "tests/frame_runs.h"
+#include "tests/golden_files.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+TEST_SUITE_BEGIN("golden");
+
+#ifdef BINOSPLAT_HAS_PNG
+
+using namespace binosplat;
+using test::Gpu;
+using test::ViewedScene;
+
+namespace {
+
+constexpr int kFrames = 20;
+constexpr double kBudget = 0.2;
+// A tile that float32 prices just otherwise is rendered a frame earlier or later.
+constexpr double kLeastDb = 45.0;
+
+ViewedScene viewWalk() { return test::viewBuiltin("builtin:atelier", {112, 80}, 20000); }
+
+// A head that walks by 3 mm a frame, sways and looks around.
+std::array<Eye, 2> eyesAt(const Eye& start, int frame) {
+    Eye eye = start;
+    const glm::dvec3 step(0.003 * frame, 0.004 * std::sin(0.5 * frame), 0.001 * frame);
+    eye.world_from_camera.position += eye.world_from_camera.orientation * step;
+    eye.world_from_camera.orientation = eye.world_from_camera.orientation * glm::angleAxis(0.003 * frame, glm::dvec3(0, 1, 0)) *
+                                        glm::angleAxis(0.01 * std::sin(0.3 * frame), glm::dvec3(1, 0, 0));
+    return stereoPair(eye, 0.063);
+}
+
+struct FullEye {
+    reference::Picture picture;
+    std::vector<std::uint64_t> costs;  // pairs of each tile
+};
+FullEye renderFull(const Scene& scene, const Eye& eye) {
+    const reference::Settings settings{.inverse_depth_moments = true};
+    const auto visible = reference::cull(scene, {&eye, 1}, settings);
+    const auto order = reference::sortDepth(reference::compact(scene, visible, eye, settings), settings);
+    const auto splats = reference::project(scene, order, eye, settings);
+    auto pairs = reference::bin(splats, eye.size_px, settings);
+    reference::sortTiles(pairs, settings);
+    const auto ranges = reference::tileRanges(pairs, eye.size_px);
+    FullEye full{reference::rasterize(splats, pairs, ranges, eye, settings), {}};
+    for (const reference::TileRange& range : ranges) { full.costs.push_back(range.end - range.begin); }
+    return full;
+}
+
+using Pasts = std::array<reference::Past, 2>;
+
+// A frame of `temporal`: both eyes warped, and the tiles of both that are worth most rendered again.
+void goOn(const Scene& scene, Pasts& pasts, const std::array<Eye, 2>& eyes) {
+    std::array<std::vector<reference::TileKind>, 2> kinds;
+    std::array<std::vector<std::optional<std::uint32_t>>, 2> prices;
+    std::array<std::vector<std::uint64_t>, 2> costs;
+    std::uint64_t picture_cost = 0;
+    for (std::size_t e = 0; e < 2; ++e) {
+        pasts[e] = reference::warpPast(pasts[e], eyes[e]).picture;
+        reference::growErrors(pasts[e].tiles);
+        std::vector<double> errors;
+        for (const reference::PastTile& tile : pasts[e].tiles) {
+            errors.push_back(reference::worthOf(tile));
+            costs[e].push_back(reference::costOf(tile));
+            picture_cost += costs[e].back();
+        }
+        kinds[e].assign(errors.size(), reference::TileKind::kNone);
+        prices[e] = reference::price(kinds[e], errors, costs[e]);
+    }
+    reference::selectTogether(
+        std::array{reference::PricedTiles{kinds[0], prices[0], costs[0]}, reference::PricedTiles{kinds[1], prices[1], costs[1]}},
+        static_cast<std::uint64_t>(kBudget * static_cast<double>(picture_cost)));
+    for (std::size_t e = 0; e < 2; ++e) {
+        const FullEye full = renderFull(scene, eyes[e]);
+        reference::renderTiles(pasts[e], full.picture, full.costs, kinds[e]);
+    }
+}
+
+reference::Past pastOf(const Scene& scene, const Eye& eye) {
+    const FullEye full = renderFull(scene, eye);
+    return reference::pastOf(eye, full.picture, full.costs);
+}
+
+std::array<Image, 2> walkOfTwin(Mode mode, const ViewedScene& view) {
+    const auto eyes = eyesAt(view.eye, kFrames);
+    std::array<Image, 2> pair;
+    if (mode == Mode::kAlternate) {
+        // The right eye was rendered in the first frame after the one that rendered both, so that in the last it is the left one's turn.
+        static_assert(kFrames % 2 == 0);
+        const reference::Past right = pastOf(view.scene, eyesAt(view.eye, kFrames - 1)[kRight]);
+        return {test::toImage(renderFull(view.scene, eyes[kLeft]).picture),
+                test::toImage(view.eye.size_px, reference::warpPast(right, eyes[kRight]).picture.rgba)};
+    }
+    const auto first = eyesAt(view.eye, 0);
+    Pasts pasts{pastOf(view.scene, first[kLeft]), pastOf(view.scene, first[kRight])};
+    for (int frame = 1; frame <= kFrames; ++frame) { goOn(view.scene, pasts, eyesAt(view.eye, frame)); }
+    for (std::size_t e = 0; e < 2; ++e) { pair[e] = test::toImage(view.eye.size_px, pasts[e].rgba); }
+    return pair;
+}
+
+std::array<Image, 2> walkOfDevice(const Context& context, Mode mode, const ViewedScene& view) {
+    const GpuScene scene(context, view.scene);
+    StereoFrame frame(context, scene);
+    const test::KeptKernels kept(context, frame);
+    FrameSettings settings;
+    settings.mode = mode;
+    settings.keep_past = true;
+    settings.stereo.budget = kBudget;
+    for (int i = 0; i <= kFrames; ++i) { frame.render(eyesAt(view.eye, i), settings); }
+    return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+}
+
+// Left and right beside each other.
+Image besideEachOther(const std::array<Image, 2>& pair) {
+    const glm::uvec2 size_px = pair[0].size_px;
+    Image both{{2 * size_px.x, size_px.y}, pair[0].channels, {}};
+    const auto row_values = static_cast<std::ptrdiff_t>(size_px.x) * pair[0].channels;
+    for (std::ptrdiff_t y = 0; y < static_cast<std::ptrdiff_t>(size_px.y); ++y) {
+        for (const Image& image : pair) {
+            const auto row = image.values.begin() + y * row_values;
+            both.values.insert(both.values.end(), row, row + row_values);
+        }
+    }
+    return both;
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "the last pair of a walk is what twin and device come to") {
+    const ViewedScene view = viewWalk();
+    for (const auto& [mode, name] :
+         {std::pair(Mode::kTemporal, std::string("walk-temporal")), std::pair(Mode::kAlternate, std::string("walk-alternate"))}) {
+        const Image twin = besideEachOther(walkOfTwin(mode, view)), device = besideEachOther(walkOfDevice(context(), mode, view));
+        const Image expected = test::readGolden(name, twin);
+        MESSAGE(name << ": " << compare(expected, twin).psnrDb() << " and " << compare(expected, device).psnrDb() << " dB");
+        test::checkGolden(name, expected, twin, "twin", kLeastDb);
+        test::checkGolden(name, expected, device, "device", kLeastDb);
+        // It is not merely the full render.
+        const auto eyes = eyesAt(view.eye, kFrames);
+        const Image full = besideEachOther(
+            {test::toImage(renderFull(view.scene, eyes[kLeft]).picture), test::toImage(renderFull(view.scene, eyes[kRight]).picture)});
+        CHECK(compare(full, device).psnrDb() > 30.0);
+        CHECK(compare(full, device).psnrDb() < kLeastDb);
+    }
+}
+
+#endif
+
+TEST_SUITE_END();
