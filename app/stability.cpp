@@ -10,11 +10,11 @@ namespace binosplat {
 void runStability(const StabilityOptions& options) {
     OutputFiles files(options.out);
     const Context context({.device = options.device});
-    StabilityRun run{context.deviceName(), stability::makeCatalogue(), {}, stability::makePaths(), {}};
+    StabilityRun run{context.deviceName(), stability::makeCatalogue(), {}, stability::makePaths(), {}, stability::makeSequences(), {}};
     {
         ProgressLine line("stability");
         stability::CaseRunner runner(context);
-        const auto all = static_cast<double>(run.cases.size() + run.paths.size());
+        const auto all = static_cast<double>(run.cases.size() + run.paths.size() + run.sequences.size());
         for (const stability::Case& one : run.cases) {
             run.scores.push_back(runner.run(one));
             line.show(static_cast<double>(run.scores.size()) / all);
@@ -22,6 +22,10 @@ void runStability(const StabilityOptions& options) {
         for (const stability::Path& path : run.paths) {
             run.path_scores.push_back(runner.run(path));
             line.show(static_cast<double>(run.scores.size() + run.path_scores.size()) / all);
+        }
+        for (const stability::Sequence& sequence : run.sequences) {
+            run.sequence_scores.push_back(runner.run(sequence));
+            line.show(static_cast<double>(run.scores.size() + run.path_scores.size() + run.sequence_scores.size()) / all);
         }
     }
     const std::string table = stabilityTable(run);
@@ -33,7 +37,7 @@ void runStability(const StabilityOptions& options) {
     fmt::print("{}", table);
     const std::vector<std::string> failures = run.failures();
     check(failures.empty(), "stability: {} of {} cases miss their bounds, the first is: {}", failures.size(),
-          run.cases.size() + run.paths.size(), failures.empty() ? "" : failures.front());
+          run.cases.size() + run.paths.size() + run.sequences.size(), failures.empty() ? "" : failures.front());
 }
 
 }  // namespace binosplat

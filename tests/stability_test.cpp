@@ -1,4 +1,5 @@
-// Facts about stiff and extreme cases: the catalogue of `binosplat stability` but for its largest picture, on the device.
+// Facts about stiff and extreme cases: the catalogue of `binosplat stability` but for its largest picture, on the device, and its
+// sequences.
 #include "engine/stability/extreme_scenes.h"
 #include "engine/stability/run_case.h"
 #include "tests/gpu_fixture.h"
@@ -86,6 +87,19 @@ TEST_CASE_FIXTURE(Gpu, "an eye that goes through discs and along their planes se
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to their bounds beside full renders, however long") {
+    CaseRunner runner(context());
+    for (const Sequence& sequence : makeSequences()) {
+        const SequenceScore score = runner.run(sequence);
+        INFO(sequence.title() << ": worst " << score.psnr_db << " dB, drift " << score.drift_db << " dB, beyond " << score.beyond
+                              << ", equal from " << score.equal_from);
+        CHECK(score.not_finite == 0);
+        CHECK(score.repeats);
+        CHECK(score.frames.size() >= 20);
+        CHECK(score.passes);
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "splats with a broken attribute change no byte, whichever attribute it is, of discs and of 3D Gaussians") {
     Pairs pairs(context());
     for (const double broken : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
@@ -133,4 +147,17 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
     }
     one.rendered = {0.0, 1.0};
     CHECK(runner.run(one).passes());
+    Sequence walk = makeSequences().front();
+    walk.frames = 4;
+    walk.equal_from = {};
+    CHECK(runner.run(walk).passes);
+    const auto misses = [&](const std::function<void(Sequence&)>& tighten) {
+        Sequence tight = walk;
+        tighten(tight);
+        return !runner.run(tight).passes;
+    };
+    CHECK(misses([](Sequence& s) { s.psnr_db = 100.0; }));
+    CHECK(misses([](Sequence& s) { s.drift_db = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.beyond = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
 }

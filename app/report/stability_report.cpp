@@ -15,6 +15,8 @@ using stability::CaseScore;
 using stability::kModes;
 using stability::PathScore;
 using stability::PictureScore;
+using stability::Sequence;
+using stability::SequenceScore;
 
 namespace {
 
@@ -71,6 +73,24 @@ std::string pathsTable(const StabilityRun& run) {
     return columns.text();
 }
 
+std::string sequencesTable(const StabilityRun& run) {
+    TextColumns columns;
+    columns.addRow({"frames made from the ones before", "frames", "worst", "bound", "drift", "bound", "beyond", "bound", "equal from",
+                    "bound", "not finite", "repeats", ""});
+    const auto bound = [](double value) { return std::isinf(value) ? std::string() : fmt::format("{:.2g}", value); };
+    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
+        const Sequence& sequence = run.sequences[i];
+        const SequenceScore& score = run.sequence_scores[i];
+        columns.addRow({sequence.title(), fmt::format("{}", sequence.frames), decibels(score.psnr_db),
+                        fmt::format("{:.0f}", sequence.psnr_db), fmt::format("{:.1f}", score.drift_db), bound(sequence.drift_db),
+                        fmt::format("{:.3f}", score.beyond), bound(sequence.beyond),
+                        score.equal_from < sequence.frames ? fmt::format("{}", score.equal_from) : "",
+                        sequence.equal_from ? fmt::format("{}", *sequence.equal_from) : "", fmt::format("{}", score.not_finite),
+                        score.repeats ? "yes" : "NO", score.passes ? "" : "FAILS"});
+    }
+    return columns.text();
+}
+
 std::string reasons(const StabilityRun& run) {
     std::string text, family;
     for (const Case& one : run.cases) {
@@ -79,11 +99,38 @@ std::string reasons(const StabilityRun& run) {
         text += fmt::format("  {}: {}\n", family, one.reason);
     }
     for (const stability::Path& path : run.paths) { text += fmt::format("  {}: {}\n", path.name, path.reason); }
+    for (const Sequence& sequence : run.sequences) {
+        if (sequence.name == family) { continue; }
+        family = sequence.name;
+        text += fmt::format("  {}: {}\n", family, sequence.reason);
+    }
     return text;
 }
 
 std::string boundCells(const Bound& bound) {
     return fmt::format("{},{},{},{}", bound.psnr_db, bound.share_off, bound.largest, bound.other_tiles);
+}
+
+std::string csvRow(const std::string& family, const std::string& parameter, double value, const PictureScore& p, const Bound& bound) {
+    return fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{:d}\n", family, parameter, value,
+                       nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles, p.not_finite, p.repeats,
+                       boundCells(bound), p.passes);
+}
+
+void addPanels(std::vector<PlotPanel>& panels, const StabilityRun& run) {
+    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
+        const Sequence& sequence = run.sequences[i];
+        if (panels.empty() || panels.back().title != sequence.name) {
+            panels.push_back({.title = sequence.name, .x_label = "frame", .y_label = "PSNR against the full render, dB"});
+            panels.back().x_scale = panels.back().y_scale = Scale::kLinear;
+        }
+        PlotLine& line = lineOf(panels.back(), std::string(nameOf(sequence.mode)));
+        const auto& frames = run.sequence_scores[i].frames;
+        for (std::size_t f = 0; f + 1 < frames.size(); f += 2) {  // both eyes of each
+            const double worse = std::min(frames[f].picture.psnr_db, frames[f + 1].picture.psnr_db);
+            line.points.emplace_back(frames[f].frame, std::min(worse, kEqualDb));
+        }
+    }
 }
 
 }  // namespace
@@ -96,6 +143,9 @@ std::vector<std::string> StabilityRun::failures() const {
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (!path_scores[i].passes) { names.push_back(paths[i].name); }
     }
+    for (std::size_t i = 0; i < sequences.size(); ++i) {
+        if (!sequence_scores[i].passes) { names.push_back(sequences[i].title()); }
+    }
     return names;
 }
 
@@ -104,8 +154,13 @@ std::string stabilityTable(const StabilityRun& run) {
         "device: {}\nPSNR in dB against the float64 twin, of the worse eye; off: share of the values that differ by more than 2/255; "
         "full:\n"
         "eyes that are rendered; moved: the eye that is made from the other, over tiles that both or neither render again\n\n{}\n{}\n"
+        "PSNR in dB of the worse eye against the full render of the same frame; drift: how much worse the last frames are than the first, "
+        "in "
+        "dB; beyond:\nthe farthest that a value lies beyond the full render's within 3 pixels; equal from: frame from which on all are the "
+        "full "
+        "render\n\n{}\n"
         "what bounds them\n{}",
-        run.device, casesTable(run), pathsTable(run), reasons(run));
+        run.device, casesTable(run), pathsTable(run), sequencesTable(run), reasons(run));
 }
 
 std::string stabilityCsv(const StabilityRun& run) {
@@ -115,9 +170,13 @@ std::string stabilityCsv(const StabilityRun& run) {
     for (std::size_t i = 0; i < run.cases.size(); ++i) {
         const Case& one = run.cases[i];
         for (const PictureScore& p : run.scores[i].pictures) {
-            csv += fmt::format("\"{}\",\"{}\",{:.9g},{},{},{:d},{:.2f},{:.3g},{:.3g},{:.3g},{},{:d},{},{:d}\n", one.family, one.parameter,
-                               one.value, nameOf(p.mode), p.eye, p.moved, p.psnr_db, p.share_off, p.largest, p.other_tiles, p.not_finite,
-                               p.repeats, boundCells(p.moved ? one.moved : one.rendered), p.passes);
+            csv += csvRow(one.family, one.parameter, one.value, p, p.moved ? one.moved : one.rendered);
+        }
+    }
+    for (std::size_t i = 0; i < run.sequences.size(); ++i) {
+        const Sequence& sequence = run.sequences[i];
+        for (const auto& [frame, p] : run.sequence_scores[i].frames) {
+            csv += csvRow(sequence.name, "frame", frame, p, {sequence.psnr_db, 1.0});
         }
     }
     return csv;
@@ -142,7 +201,8 @@ std::string stabilityPlot(const StabilityRun& run) {
         add("bound, rendered eyes", one.rendered.psnr_db, false);
         add("bound, moved eye", one.moved.psnr_db, false);
     }
-    return drawPlot("Against the float64 twin, on " + run.device, panels);
+    addPanels(panels, run);
+    return drawPlot("Against the float64 twin and full renders, on " + run.device, panels);
 }
 
 }  // namespace binosplat

@@ -14,6 +14,8 @@ struct StabilityRun {
     std::vector<stability::CaseScore> scores;  // of the cases, in their order
     std::vector<stability::Path> paths;
     std::vector<stability::PathScore> path_scores;
+    std::vector<stability::Sequence> sequences;
+    std::vector<stability::SequenceScore> sequence_scores;
 
     // Names of what misses its bounds.
     [[nodiscard]] std::vector<std::string> failures() const;

@@ -3,6 +3,7 @@
 
 #include "engine/frame/stereo_frame.h"
 #include "engine/stability/catalogue.h"
+#include "engine/stability/sequences.h"
 
 #include <optional>
 #include <string>
@@ -42,19 +43,40 @@ struct PathScore {
     bool passes = false;
 };
 
+// Pairs of a sequence beside full renders of the same eyes.
+struct SequenceScore {
+    struct Frame {
+        int frame;
+        PictureScore picture;  // of one eye
+    };
+    std::vector<Frame> frames;
+    double psnr_db = 0.0;   // of the worst
+    double drift_db = 0.0;  // how much worse the last of them are than the first, a third each
+    double beyond = 0.0;    // how far any value lies beyond what the full render has in the 7x7 pixels around it
+    std::uint64_t not_finite = 0;
+    bool repeats = false;  // a second run came to the same bytes, after 60 frames at most
+    int equal_from = 0;    // the first frame from which on all are the full render's bytes; the number of frames if none is
+    bool passes = false;
+};
+
 // Runs cases one after the other, in frames that keep what is compiled.
 class CaseRunner {
 public:
     explicit CaseRunner(const Context& context) : context_(context) {}
     CaseScore run(const Case& one);
     PathScore run(const Path& path);
+    SequenceScore run(const Sequence& sequence);
 
 private:
     StereoFrame& show(const Stage& stage);
+    StereoFrame& showIn(std::optional<StereoFrame>& frame);
+    // So many frames; `after` each, with its number and its eyes.
+    void play(const Sequence& sequence, int frames, const std::function<void(int, const std::array<Eye, 2>&)>& after);
 
     const Context& context_;
     std::optional<GpuScene> scene_;  // of the last stage
     std::optional<StereoFrame> frame_;
+    std::optional<StereoFrame> full_;  // of the same scene, for full renders beside a sequence's frames
 };
 
 }  // namespace binosplat::stability
