@@ -7,6 +7,7 @@
 #include "tests/stereo_cases.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace binosplat::test {
@@ -32,7 +33,13 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     const Picture& picture = frame.picture(index);
     EyeOnDevice read{{eye, {}, {}, {}}, {}, {}, {}};
     const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
-    for (const gpu::vec4& colour : gpu.readBack<gpu::vec4>(picture.colours, pixels)) { read.past.rgba.emplace_back(colour); }
+    if (picture.half_floats) {
+        for (const gpu::uvec2& c : gpu.readBack<gpu::uvec2>(picture.colours, pixels)) {
+            read.past.rgba.emplace_back(glm::unpackHalf2x16(c.x), glm::unpackHalf2x16(c.y));
+        }
+    } else {
+        for (const gpu::vec4& colour : gpu.readBack<gpu::vec4>(picture.colours, pixels)) { read.past.rgba.emplace_back(colour); }
+    }
     for (const gpu::uint word : gpu.readBack<gpu::uint>(picture.words, pixels)) {
         const reference::Arrival held = unpackArrival(word);
         read.past.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{held.inverse_depth, held.spread}));
@@ -51,15 +58,20 @@ inline EyeOnDevice readEye(Gpu& gpu, StereoFrame& frame, int index, const Eye& e
     return read;
 }
 
+// How a PastWalk's pictures are kept.
+struct WalkSettings {
+    std::array<std::vector<std::uint8_t>, 2> hidden = {};  // tiles of each eye, as of FrameSettings
+    glm::dvec3 background{0.1, 0.2, 0.3};
+    bool half_floats = false;
+};
+
 // Frames of a head that walks and turns a little, as `temporal` makes them.
 class PastWalk {
 public:
-    PastWalk(Gpu& gpu, const ViewedScene& view, const std::array<std::vector<std::uint8_t>, 2>& hidden = {},
-             const glm::dvec3& background = {0.1, 0.2, 0.3})
+    PastWalk(Gpu& gpu, const ViewedScene& view, WalkSettings settings = {})
         : gpu_(gpu),
           view_(view),
-          hidden_(hidden),
-          background_(background),
+          settings_(std::move(settings)),
           scene_(gpu.context(), view.scene),
           frame_(gpu.context(), scene_),
           kept_(gpu.context(), frame_) {}
@@ -74,24 +86,24 @@ public:
         settings.mode = Mode::kTemporal;
         settings.keep_past = true;
         settings.stereo.budget = budget;
-        settings.hidden_tiles = {hidden_[0], hidden_[1]};
-        settings.background = background_;
-        result_ = frame_.render(eyes_, settings);
+        settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
+        settings.background = settings_.background;
+        settings.half_floats = settings_.half_floats;
+        frame_.render(eyes_, settings);
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
+    // Of the left eye.
+    Image readDepth() { return frame_.readDominantDepth(); }
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
-    [[nodiscard]] const FrameResult& result() const { return result_; }
 
 private:
     Gpu& gpu_;
     const ViewedScene& view_;
-    std::array<std::vector<std::uint8_t>, 2> hidden_;
-    glm::dvec3 background_;
+    WalkSettings settings_;
     GpuScene scene_;
     StereoFrame frame_;
     KeptKernels kept_;
     std::array<Eye, 2> eyes_;
-    FrameResult result_;
 };
 
 }  // namespace binosplat::test
