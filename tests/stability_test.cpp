@@ -92,7 +92,7 @@ TEST_CASE_FIXTURE(Gpu, "pictures that are made from the ones before keep to thei
     for (const Sequence& sequence : makeSequences()) {
         const SequenceScore score = runner.run(sequence);
         INFO(sequence.title() << ": worst " << score.psnr_db << " dB, drift " << score.drift_db << " dB, beyond " << score.beyond
-                              << ", equal from " << score.equal_from);
+                              << ", bias " << score.bias << ", equal from " << score.equal_from);
         CHECK(score.not_finite == 0);
         CHECK(score.repeats);
         CHECK(score.frames.size() >= 20);
@@ -159,5 +159,6 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
     CHECK(misses([](Sequence& s) { s.psnr_db = 100.0; }));
     CHECK(misses([](Sequence& s) { s.drift_db = 0.0; }));
     CHECK(misses([](Sequence& s) { s.beyond = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.bias = 0.0; }));
     CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
 }

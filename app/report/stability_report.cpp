@@ -75,16 +75,16 @@ std::string pathsTable(const StabilityRun& run) {
 
 std::string sequencesTable(const StabilityRun& run) {
     TextColumns columns;
-    columns.addRow({"frames made from the ones before", "frames", "worst", "bound", "drift", "bound", "beyond", "bound", "equal from",
-                    "bound", "not finite", "repeats", ""});
+    columns.addRow({"frames made from the ones before", "frames", "worst", "bound", "drift", "bound", "beyond", "bound", "bias", "bound",
+                    "equal from", "bound", "not finite", "repeats", ""});
     const auto bound = [](double value) { return std::isinf(value) ? std::string() : fmt::format("{:.2g}", value); };
     for (std::size_t i = 0; i < run.sequences.size(); ++i) {
         const Sequence& sequence = run.sequences[i];
         const SequenceScore& score = run.sequence_scores[i];
         columns.addRow({sequence.title(), fmt::format("{}", sequence.frames), decibels(score.psnr_db),
                         fmt::format("{:.0f}", sequence.psnr_db), fmt::format("{:.1f}", score.drift_db), bound(sequence.drift_db),
-                        fmt::format("{:.3f}", score.beyond), bound(sequence.beyond),
-                        score.equal_from < sequence.frames ? fmt::format("{}", score.equal_from) : "",
+                        fmt::format("{:.3f}", score.beyond), bound(sequence.beyond), fmt::format("{:.4f}", score.bias),
+                        bound(sequence.bias), score.equal_from < sequence.frames ? fmt::format("{}", score.equal_from) : "",
                         sequence.equal_from ? fmt::format("{}", *sequence.equal_from) : "", fmt::format("{}", score.not_finite),
                         score.repeats ? "yes" : "NO", score.passes ? "" : "FAILS"});
     }
@@ -154,11 +154,9 @@ std::string stabilityTable(const StabilityRun& run) {
         "device: {}\nPSNR in dB against the float64 twin, of the worse eye; off: share of the values that differ by more than 2/255; "
         "full:\n"
         "eyes that are rendered; moved: the eye that is made from the other, over tiles that both or neither render again\n\n{}\n{}\n"
-        "PSNR in dB of the worse eye against the full render of the same frame; drift: how much worse the last frames are than the first, "
-        "in "
-        "dB; beyond:\nthe farthest that a value lies beyond the full render's within 3 pixels; equal from: frame from which on all are the "
-        "full "
-        "render\n\n{}\n"
+        "PSNR in dB of the worse eye against the full render of the same frame; drift: how much worse the last frames are than the first;\n"
+        "beyond: the farthest that a value lies beyond the full render's within 3 pixels; bias: how far the mean of all values is off;\n"
+        "equal from: frame from which on all are the full render\n\n{}\n"
         "what bounds them\n{}",
         run.device, casesTable(run), pathsTable(run), sequencesTable(run), reasons(run));
 }

@@ -15,6 +15,7 @@ FrameSettings settingsOf(const Sequence& sequence, const Stage& stage) {
     settings.near = stage.near;
     settings.keep_past = true;
     settings.stereo.budget = sequence.budget;
+    settings.half_floats = sequence.half_floats;
     return settings;
 }
 
@@ -55,6 +56,13 @@ double beyondOf(const Image& image, const std::vector<glm::dvec4>& full) {
         beyond = std::max({beyond, off.r, off.g, off.b, off.a});
     }
     return beyond;
+}
+
+double biasOf(const Image& image, const std::vector<glm::dvec4>& full) {
+    const std::vector<glm::dvec4> shown = coloursOf(image);
+    glm::dvec4 sum(0.0);
+    for (std::size_t i = 0; i < shown.size(); ++i) { sum += shown[i] - full[i]; }
+    return std::abs(sum.r + sum.g + sum.b + sum.a) / (4.0 * static_cast<double>(shown.size()));
 }
 
 // Of the scored frames from `begin` to `end`, both eyes of each.
@@ -102,6 +110,7 @@ SequenceScore CaseRunner::run(const Sequence& sequence) {
             picture.not_finite = countNotFinite(shown);
             score.not_finite += picture.not_finite;
             score.beyond = std::max(score.beyond, beyondOf(shown, wanted));
+            score.bias = std::max(score.bias, biasOf(shown, wanted));
             if (shown.values != full.values) { score.equal_from = frame + 1; }
             score.frames.push_back({frame, std::move(picture)});
         }
@@ -118,7 +127,7 @@ SequenceScore CaseRunner::run(const Sequence& sequence) {
         frame.picture.passes = score.repeats && frame.picture.not_finite == 0 && frame.picture.psnr_db >= sequence.psnr_db;
     }
     score.passes = std::ranges::all_of(score.frames, [](const SequenceScore::Frame& frame) { return frame.picture.passes; }) &&
-                   score.drift_db <= sequence.drift_db && score.beyond <= sequence.beyond &&
+                   score.drift_db <= sequence.drift_db && score.beyond <= sequence.beyond && score.bias <= sequence.bias &&
                    score.equal_from <= sequence.equal_from.value_or(sequence.frames);
     return score;
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,6 +33,11 @@ Eyes tremble(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.
 // At 90 frames a second.
 Eyes turnFast(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0); }
 Eyes passByWall(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.005 * frame, 0.0, 0.0)); }
+Eyes changeAngles(const Stage& stage, int frame) {
+    Eyes eyes = walk(stage, frame);
+    for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.7 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
+    return eyes;
+}
 // As a runtime may that scales what it shows.
 Eyes changeSize(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
@@ -116,6 +122,7 @@ std::vector<Sequence> makeSequences() {
          .score_every = 25,
          .drift_db = 1.0,
          .beyond = 0.1,
+         .bias = 0.005,
          .reason = "what is sampled again and again blurs until it is rendered, but neither rings nor drifts"},
         30.0, {});
     add({.name = "the same, nothing rendered again",
@@ -126,7 +133,20 @@ std::vector<Sequence> makeSequences() {
          .first_scored = 50,
          .score_every = 45,
          .beyond = 0.1,
+         .bias = 0.005,
          .reason = "sampled 500 times: no frequency comes out stronger than it went in"},
+        17.0, {});
+    add({.name = "the same in half floats",
+         .make = makeSpecks,
+         .eyes = tremble,
+         .frames = 501,
+         .budget = 0.0,
+         .half_floats = true,
+         .first_scored = 50,
+         .score_every = 45,
+         .beyond = 0.1,
+         .bias = 0.005,
+         .reason = "likewise, rounded 500 times"},
         17.0, {});
     add({.name = "a turn of 180 degrees a second",
          .make = makeSurround,
@@ -150,11 +170,17 @@ std::vector<Sequence> makeSequences() {
          .make_other = makeOtherRoom,
          .reason = "nothing of the one is seen in the other"},
         41.0, 43.0);
+    add({.name = "angles that change in each frame",
+         .make = makeRoom,
+         .eyes = changeAngles,
+         .frames = 21,
+         .reason = "a past of other angles is one of a smaller or a larger picture"},
+        40.0, 41.0);
     add({.name = "size and angles that change in each frame",
          .make = makeRoom,
          .eyes = changeSize,
          .frames = 21,
-         .reason = "a past of another size or of other angles is used as it is, or not at all"},
+         .reason = "a past of another size is used as it is, or not at all"},
         28.0, 28.0);
     return sequences;
 }

@@ -15,6 +15,7 @@ struct Sequence {
     std::function<std::array<Eye, 2>(const Stage& stage, int frame)> eyes;  // of any frame
     int frames = 1;
     double budget = 0.2;
+    bool half_floats = false;               // of pictures, as viewers keep them
     int first_scored = 1, score_every = 1;  // frames that are held against full renders
     // From this frame on the scene is another one.
     std::optional<int> exchanged_at = {};
@@ -23,6 +24,7 @@ struct Sequence {
     double psnr_db = 0.0;  // of the worst scored frame, at least
     double drift_db = std::numeric_limits<double>::infinity();
     double beyond = std::numeric_limits<double>::infinity();
+    double bias = std::numeric_limits<double>::infinity();
     std::optional<int> equal_from = {};  // at the latest
     std::string reason;
 
