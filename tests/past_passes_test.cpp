@@ -36,7 +36,8 @@ void compareWarped(Differences& differences, const EyeOnDevice& made, reference:
         const glm::dvec4 off = made.past.rgba[i] - twin.rgba[i];
         differences.squares += glm::dot(off, off) / 4.0;
         const auto &a = made.past.pixels[i], &b = twin.pixels[i];
-        const bool same = a.has_value() == b.has_value() && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 2e-4, 1e-6));
+        // A block's depths change by the ratio of its middle's.
+        const bool same = a.has_value() == b.has_value() && (!a || test::isNear(a->inverse_depth, b->inverse_depth, 1e-3, 1e-6));
         differences.other_depths += same ? 0 : 1;
         differences.other_spreads += a && b && a->spread != b->spread ? 1 : 0;
     }
@@ -92,7 +93,7 @@ TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and e
             std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
             Differences all;
             std::size_t one_by_one = 0, blocks = 0;
-            for (int step = 1; step <= 3; ++step) {
+            for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
                 walk.go(step, 0.0);
                 for (const int eye : {kLeft, kRight}) {
                     EyeOnDevice made = walk.read(eye);
