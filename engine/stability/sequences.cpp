@@ -33,9 +33,10 @@ Eyes tremble(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.
 // At 90 frames a second.
 Eyes turnFast(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0); }
 Eyes passByWall(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.005 * frame, 0.0, 0.0)); }
+// By less than what drops a past.
 Eyes changeAngles(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
-    for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.7 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
+    for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.5 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
     return eyes;
 }
 // As a runtime may that scales what it shows.
@@ -175,7 +176,7 @@ std::vector<Sequence> makeSequences() {
          .eyes = changeAngles,
          .frames = 21,
          .reason = "a past of other angles is one of a smaller or a larger picture"},
-        40.0, 41.0);
+        37.0, 41.0);
     add({.name = "size and angles that change in each frame",
          .make = makeRoom,
          .eyes = changeSize,
