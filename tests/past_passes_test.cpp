@@ -91,8 +91,11 @@ TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and e
             Walk walk(*this, view, settings);
             walk.go(0.0, 0.0);
             std::array<EyeOnDevice, 2> before{walk.read(kLeft), walk.read(kRight)};
-            Differences all;
+            Differences all, other_eye;
             std::size_t one_by_one = 0, blocks = 0;
+            // The first right picture is the left one, as that eye sees it.
+            compareWarped(other_eye, before[1],
+                          reference::warpPast(before[0].past, walk.eyes()[1], hidden[1], settings.background).picture);
             for (const double step : {1.0, 2.0, 10.0}) {  // the last so far that blocks of a cell come from two
                 walk.go(step, 0.0);
                 for (const int eye : {kLeft, kRight}) {
@@ -113,6 +116,11 @@ TEST_CASE_FIXTURE(Gpu, "warp_past and warp_pixels make the twin's picture, and e
                               << ", growth of errors " << test::share(all.other_grown, all.quarters) << ", errors "
                               << test::share(all.other_errors, all.quarters) << "; sum of growth " << all.grown << " and "
                               << all.twin_grown);
+            const double other_eye_db = -10.0 * std::log10(other_eye.squares / static_cast<double>(other_eye.pixels));
+            MESSAGE("from the other eye: " << other_eye_db << " dB; other: depths " << test::share(other_eye.other_depths, other_eye.pixels)
+                                           << ", tiles " << test::share(other_eye.other_tiles, other_eye.tiles) << ", growth "
+                                           << test::share(other_eye.other_grown, other_eye.quarters) << "; sum of growth "
+                                           << other_eye.grown << " and " << other_eye.twin_grown);
             CHECK(one_by_one > blocks / 20);
             CHECK(one_by_one < blocks - blocks / 20);
             CHECK(psnr_db >= 55.0);

@@ -43,15 +43,17 @@ std::array<double, 6> lagrangeWeights(double t);
 // then each has the depth of the pixel as far from that block's corner, and is sampled with six taps each way. The pixels of other blocks
 // are looked for one by one, backwards, by a fixed point from the nearest and from the farthest depth around (Bowles et al. 2012,
 // Iterative Image Warping), and sampled with four. Such a search always finds something, so a place counts only if the past's pixel there,
-// moved forwards, meets the pixel that it is wanted for; of two that count the nearer is it.
+// moved forwards, meets the pixel that it is wanted for; of two that count the nearer is it. Where the eyes stand so far apart that what is
+// near may come from beyond a block's neighbours, as where the past is the other eye's picture, the nearest that comes along that way is
+// looked for first.
 struct WarpedPast {
     Past picture;
     std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made so
     std::vector<std::uint8_t> unseen;      // by pixels: 1 if the past did not see it
 };
-// `hidden`: a byte a tile of either picture, 1 where no lens shows it; empty: all are seen.
+// `hidden`: a byte a tile of the picture that is made, 1 where no lens shows it; empty: all are seen. `near`: nothing is seen before this.
 WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
-                    const glm::dvec3& background = glm::dvec3(0.0));
+                    const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
 
 // price: adds what this frame's warp is expected to lose to the errors of tiles. Blur of what is blurred already is blurred more, so that
 // it adds up as an amplitude. Half of it is the growth that was measured, where there is one and most of the quarter was seen.

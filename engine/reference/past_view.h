@@ -14,6 +14,7 @@ inline constexpr int kCell = kTileSize / 2;
 inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
+inline constexpr double kAgreesPx = 0.51;       // so near to where it is wanted a pixel of the past is what is seen there
 
 inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }
 
@@ -23,6 +24,8 @@ public:
         : past_from_now(past.eye, now),
           now_from_past(now, past.eye),
           last(glm::ivec2(past.eye.size_px) - 1),
+          size_ratio_(glm::dvec2(now.size_px) / glm::dvec2(past.eye.size_px)),
+          columns_(tileGrid(now.size_px).x),
           past_(past),
           hidden_(hidden) {}
 
@@ -43,9 +46,10 @@ public:
     }
     [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return past_.rgba[indexOf({x, y})]; }
     [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
-        const std::size_t i = indexOf(at), columns = tileGrid(past_.eye.size_px).x, width = past_.eye.size_px.x;
-        const bool is_hidden = !hidden_.empty() && hidden_[i / width / kTileSize * columns + i % width / kTileSize] != 0;
-        return is_hidden ? std::nullopt : past_.pixels[i];
+        // A lens hides the same parts of a picture at any size.
+        const glm::uvec2 tile = glm::uvec2(glm::dvec2(glm::clamp(at, glm::ivec2(0), last)) * size_ratio_) / unsigned{kTileSize};
+        const bool is_hidden = !hidden_.empty() && hidden_[std::size_t{tile.y} * columns_ + tile.x] != 0;
+        return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
     }
 
     // What the past shows at a place.
@@ -73,6 +77,8 @@ public:
     glm::ivec2 last;  // pixel of the past
 
 private:
+    glm::dvec2 size_ratio_;
+    std::size_t columns_;
     const Past& past_;
     std::span<const std::uint8_t> hidden_;
 };

@@ -6,6 +6,8 @@ namespace {
 
 constexpr int kBorder = 2;
 constexpr double kSmoothPx = 1.0 / 16.0, kSameDepthPx = 0.25;
+constexpr double kSearchStepPx = 8.0;
+constexpr int kMostSearched = 48;
 constexpr double kLeastGrowth = 1.9e-7;  // of a pixel that moved, squared
 
 struct BlockFromPast {
@@ -17,7 +19,23 @@ struct BlockFromPast {
     std::uint32_t spread = 0;  // the greatest code
 };
 
-BlockFromPast findBlock(const PastView& view, const glm::ivec2& first) {
+// The inverse depth of the nearest that comes to lie at a place from beyond its neighbours; 0: nothing that stands in front of `known`.
+// `moves_px`: how far it moves for a unit of inverse depth.
+double nearestOnTheWay(const PastView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
+    const int steps = static_cast<int>(std::min(moves_px / near / kSearchStepPx, double{kMostSearched}));
+    double nearest = 0.0;
+    for (int i = 1; i <= steps; ++i) {
+        const EyeChange::Moved place = view.place(wanted_px, i * kSearchStepPx / moves_px);
+        if (!place.in_front || !view.isInside(place.place_px)) { continue; }
+        const PastView::Seen seen = view.look(place.place_px);
+        const glm::dvec2 off_px = glm::abs(seen.lands_px - wanted_px);
+        const bool comes = seen.pixel && std::max(off_px.x, off_px.y) <= kSearchStepPx;
+        if (comes && moves_px * (seen.inverse_depth - known) > 1.0) { nearest = std::max(nearest, seen.inverse_depth); }
+    }
+    return nearest;
+}
+
+BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double near) {
     const glm::dvec2 middle_px = glm::dvec2(first + kPastBlock / 2);
     const double guess = view.look(view.place(middle_px, 0.0).place_px).inverse_depth;
     const EyeChange::Moved source = view.place(middle_px, guess);
@@ -57,6 +75,13 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first) {
             widen(pixel ? pixel->inverse_depth : 0.0);
         }
     }
+    const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(middle_px));
+    const double moves_px = std::max(disparity.x, disparity.y);
+    block.nearest = std::max(block.nearest, nearestOnTheWay(view, middle_px, moves_px, block.nearest, near));
+    // What is found there belongs there: it comes to lie where it was looked for.
+    double mean = 0.0;
+    for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kPastBlock.x * kPastBlock.y); }
+    block.whole = block.whole && moves_px * std::abs(mean - guess) <= kAgreesPx;
     // Stretched along neither axis, and of about one depth.
     const auto stretch = [&](int axis) {
         glm::dvec2 half(0.0);
@@ -64,8 +89,6 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first) {
         const double length = view.place(middle_px + half, guess).place_px[axis] - view.place(middle_px - half, guess).place_px[axis];
         return 0.5 * (kPastBlock[axis] - 1) * std::abs(length / kPastBlock[axis] - 1.0);
     };
-    const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(middle_px));
-    const double moves_px = std::max(disparity.x, disparity.y);
     block.whole = block.whole && std::max({stretch(0), stretch(1), moves_px * differ}) <= kSmoothPx &&
                   moves_px * (block.nearest - block.farthest) <= kSameDepthPx;
     return block;
@@ -119,8 +142,8 @@ double lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2
 
 class Warper {
 public:
-    Warper(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background)
-        : past_(past), hidden_(hidden), background_(background, 0.0), view_(past, eye, hidden), tiles_(tileGrid(eye.size_px)) {
+    Warper(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near)
+        : past_(past), hidden_(hidden), background_(background, 0.0), near_(near), view_(past, eye, hidden), tiles_(tileGrid(eye.size_px)) {
         const std::size_t pixels = std::size_t{eye.size_px.x} * eye.size_px.y;
         warped_.picture = {eye, std::vector<glm::dvec4>(pixels), std::vector<std::optional<MovingPixel>>(pixels), {}};
         warped_.unseen.resize(pixels);
@@ -154,7 +177,7 @@ private:
     }
 
     void makeBlock(const glm::ivec2& first) {
-        const BlockFromPast block = findBlock(view_, first);
+        const BlockFromPast block = findBlock(view_, first, near_);
         PastTile& tile = warped_.picture.tiles[std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize)];
         const std::size_t quarter = quarterOf(first);
         // What was wrong comes along as the worst of where its blocks come from.
@@ -193,6 +216,7 @@ private:
     const Past& past_;
     std::span<const std::uint8_t> hidden_;
     glm::dvec4 background_;
+    double near_;
     PastView view_;
     glm::uvec2 tiles_;
     WarpedPast warped_;
@@ -212,8 +236,8 @@ std::array<double, 6> lagrangeWeights(double t) {
     return weights;
 }
 
-WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background) {
-    return Warper(past, eye, hidden, background).run();
+WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden, const glm::dvec3& background, double near) {
+    return Warper(past, eye, hidden, background, near).run();
 }
 
 }  // namespace binosplat::reference

@@ -5,7 +5,6 @@ namespace binosplat::reference {
 namespace {
 
 constexpr int kSteps = 3;
-constexpr double kAgreesPx = 0.51;
 constexpr double kUnseenError = 1.0;
 
 struct Found {
