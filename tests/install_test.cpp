@@ -81,7 +81,37 @@ TEST_CASE("links between the installed documents lead somewhere") {
     CHECK(links > 50);
 }
 
-#ifdef BINOSPLAT_WITH_VIEWER
+TEST_CASE("a program of somebody else finds the installed engine by CMake and renders a scene file in stereo") {
+    const Workplace work;
+    const fs::path prefix = work.base / "prefix";
+    REQUIRE(install(work, prefix, "engine").exit_code == 0);
+    const std::string cmake = "'" BINOSPLAT_CMAKE "' ";
+    const Outcome built = work.runCommand(cmake + "-S '" BINOSPLAT_SOURCE_DIR "/tests/packages/engine' -B build -DCMAKE_PREFIX_PATH='" +
+                                          prefix.string() + "' && " + cmake + "--build build");
+    INFO(built.errors);
+    REQUIRE(built.exit_code == 0);
+
+    REQUIRE(work.run("scene atelier --splats 1000 --out room.ply").exit_code == 0);
+    const Outcome rendered = work.runCommand("build/stereo room.ply 0 -1.5 0.5 0 -1.2 3");
+    INFO(rendered.errors);
+    REQUIRE(rendered.exit_code == 0);
+    CHECK(rendered.output.starts_with("1000 splats on "));
+    // The program makes the same pictures.
+    const std::string view = "--eye 0,-1.5,0.5 --look 0,-1.2,3 --up 0,-1,0 --fov-x 68.7549354157 --size 512x384 --ipd 0.063 ";
+    REQUIRE(work.run("render room.ply " + view + "--out same").exit_code == 0);
+    CHECK(work.run("compare left.png same/left.png").output.starts_with("psnr inf\n"));
+    CHECK(work.run("compare right.png same/right.png").output.starts_with("psnr inf\n"));
+
+    const Outcome refused = work.runCommand("build/stereo nothing.ply");
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.errors.starts_with("stereo: nothing.ply"));
+    // Nothing but what the header declares.
+    const Outcome symbols = work.runCommand("nm -D --defined-only -C \"$(find '" + prefix.string() + "' -name 'libbinosplat_engine.so')\"");
+    CHECK(symbols.output.find("binosplat::engine::Renderer::load(") != std::string::npos);
+    CHECK(symbols.output.find("binosplat::StereoFrame::") == std::string::npos);
+}
+
+#ifdef BINOSPLAT_OPENXR
 TEST_CASE("an installed viewer runs on the installed simulated runtime") {
     const Workplace work;
     const fs::path prefix = work.base / "prefix";
