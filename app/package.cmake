@@ -13,11 +13,10 @@ install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${CMAKE
 install(FILES third_party/NOTICES.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party COMPONENT viewer)  # where the pages link to it
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT viewer)             # where Debian looks for it
 
-# The man page and the completions are what the program itself says.
+# The program itself writes its man page and its completion.
 if(NOT CMAKE_CROSSCOMPILING)
     set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
-    foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions" "zsh _binosplat zsh/vendor-completions"
-                     "fish binosplat.fish fish/vendor_completions.d")
+    foreach(document "man binosplat.1 man/man1" "bash binosplat bash-completion/completions")
         string(REPLACE " " ";" document ${document})
         list(GET document 0 kind)
         list(GET document 1 name)

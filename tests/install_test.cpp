@@ -31,8 +31,7 @@ TEST_CASE("an installed program finds its headsets, from any folder") {
     REQUIRE(installed.exit_code == 0);
     for (const char* file : {"bin/binosplat", "share/binosplat/configs/headsets/quest2.toml", "share/binosplat/configs/bench/paper.toml",
                              "share/doc/binosplat/LICENSE", "share/doc/binosplat/copyright", "share/man/man1/binosplat.1",
-                             "share/bash-completion/completions/binosplat", "share/zsh/vendor-completions/_binosplat",
-                             "share/fish/vendor_completions.d/binosplat.fish"}) {
+                             "share/bash-completion/completions/binosplat"}) {
         CHECK_MESSAGE(fs::exists(prefix / file), file);
     }
     const std::string program = (prefix / "bin" / "binosplat").string();

@@ -42,9 +42,9 @@ Headset::Headset(const std::string& script) {
     written = folder / "written";
     std::ofstream(folder / "test.script") << script;
     setenv("XR_RUNTIME_JSON", BINOSPLAT_SIMULATED_RUNTIME, 1);
-    setenv("BINOSPLAT_SIMULATED_SCRIPT", (folder / "test.script").c_str(), 1);
-    setenv("BINOSPLAT_SIMULATED_OUT", written.c_str(), 1);
-    unsetenv("BINOSPLAT_SIMULATED_CLOCK");
+    setenv("SIMULATED_OPENXR_SCRIPT", (folder / "test.script").c_str(), 1);
+    setenv("SIMULATED_OPENXR_OUT", written.c_str(), 1);
+    unsetenv("SIMULATED_OPENXR_CLOCK");
 }
 
 Headset::~Headset() {

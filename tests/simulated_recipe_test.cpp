@@ -78,7 +78,7 @@ Run runHello(const std::string& name, const std::string& script) {
     fs::remove_all(kWork / name);
     const std::string keys = (kWork / "keys").string();
     return shell("rm -f " + keys + " && mkfifo " + keys +
-                 " && env -u BINOSPLAT_SIMULATED_SCRIPT -u BINOSPLAT_SIMULATED_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
+                 " && env -u SIMULATED_OPENXR_SCRIPT -u SIMULATED_OPENXR_OUT XR_RUNTIME_JSON=" + installedManifest().string() +
                  " SIMULATED_OPENXR_SCRIPT=" + (kWork / (name + ".script")).string() + " SIMULATED_OPENXR_OUT=" + (kWork / name).string() +
                  " SIMULATED_OPENXR_EXPLAIN=1 timeout 60 hello_xr -g Vulkan2 0<>" + keys);
 }
@@ -167,7 +167,7 @@ TEST_CASE("the page's recipes for CTest and pytest do as they stand there") {
                                                 "    test_the_program_renders_when_it_is_in_focus(pathlib.Path(folder))\n";
     const std::string home = (kWork / "home").string();
     const std::string environment = "export HOME=" + home + " PATH=" + (kWork / "installed/bin").string() +
-                                    ":$PATH; unset BINOSPLAT_SIMULATED_SCRIPT BINOSPLAT_SIMULATED_OUT; cd " + home + "; ";
+                                    ":$PATH; unset SIMULATED_OPENXR_SCRIPT SIMULATED_OPENXR_OUT; cd " + home + "; ";
     const Run tests = shell(environment + "cmake -S project -B build && ctest --test-dir build --output-on-failure --no-tests=error");
     CHECK_MESSAGE(tests.exit_code == 0, tests.output);
     CHECK(contains(tests, "100% tests passed, 0 tests failed out of 2"));

@@ -50,9 +50,9 @@ std::string explainedBy(Body&& body) {
     std::fflush(stderr);
     const int before = dup(STDERR_FILENO);
     dup2(fileno(said), STDERR_FILENO);
-    setenv("BINOSPLAT_SIMULATED_EXPLAIN", "1", 1);
+    setenv("SIMULATED_OPENXR_EXPLAIN", "1", 1);
     body();
-    unsetenv("BINOSPLAT_SIMULATED_EXPLAIN");
+    unsetenv("SIMULATED_OPENXR_EXPLAIN");
     std::fflush(stderr);
     dup2(before, STDERR_FILENO);
     close(before);
@@ -130,7 +130,7 @@ TEST_CASE("what the loader asks for after a refused instance is not explained, w
     CHECK(explained == "simulated runtime: xrCreateInstance: XR_ERROR_VALIDATION_FAILURE: createFlags is 1, no flags are known\n");
 }
 
-TEST_CASE("the environment's names say what the runtime is, and those of before go on") {
+TEST_CASE("the environment is read again for each instance") {
     const Headset headset("plugged off\n");
     const auto systemOf = [&](const Direct& runtime) {
         const XrInstanceCreateInfo info = instanceInfo({});
@@ -148,14 +148,13 @@ TEST_CASE("the environment's names say what the runtime is, and those of before 
     setenv("SIMULATED_OPENXR_SCRIPT", (headset.folder / "other.script").c_str(), 1);
     CHECK(systemOf(runtime) == XR_SUCCESS);
     setenv("SIMULATED_OPENXR_CLOCK", "sundial", 1);
-    setenv("BINOSPLAT_SIMULATED_CLOCK", "lockstep", 1);
     const std::string explained = explainedBy([&] {
         const XrInstanceCreateInfo info = instanceInfo({});
         XrInstance instance = XR_NULL_HANDLE;
         CHECK(runtime.function<PFN_xrCreateInstance>(XR_NULL_HANDLE, "xrCreateInstance")(&info, &instance) == XR_ERROR_RUNTIME_FAILURE);
     });
     CHECK(explained == "simulated runtime: xrCreateInstance: SIMULATED_OPENXR_CLOCK is 'sundial', must be lockstep or real\n");
-    for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK", "BINOSPLAT_SIMULATED_CLOCK"}) unsetenv(name);
+    for (const char* name : {"SIMULATED_OPENXR_SCRIPT", "SIMULATED_OPENXR_CLOCK"}) unsetenv(name);
 }
 
 TEST_CASE("a refusal that comes again is counted, not repeated") {
@@ -242,12 +241,12 @@ TEST_CASE("hello_xr runs on it from start to end, and neither validation layer h
         checkSilent({std::istreambuf_iterator<char>(validation), {}});
     }
     SUBCASE("paced by a real clock") {
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " BINOSPLAT_SIMULATED_CLOCK=real");
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " SIMULATED_OPENXR_CLOCK=real");
         CHECK(hello.exit_code == 0);
         CHECK(contains(hello.output, "XR_SESSION_STATE_IDLE->XR_SESSION_STATE_EXITING"));
     }
     SUBCASE("with other controllers") {
-        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " BINOSPLAT_SIMULATED_PROFILE=valve/index_controller");
+        const Run hello = run(headset, "hello_xr -g Vulkan2", environment + " SIMULATED_OPENXR_PROFILE=valve/index_controller");
         CHECK(hello.exit_code == 0);
         CHECK(contains(hello.output, "Left hand Index controller Squeeze"));
     }
@@ -259,7 +258,7 @@ TEST_CASE("a machine without GPU is told apart from one without headset and from
     const Run no_gpu = run(headset, "hello_xr -g Vulkan2", "VK_ICD_FILENAMES=/nowhere.json VK_DRIVER_FILES=/nowhere.json");
     CHECK(contains(no_gpu.output, "simulated runtime: xrCreateVulkanInstanceKHR: no GPU: Vulkan has no driver"));
     const Headset absent("plugged off\n");
-    const Run no_headset = run(absent, "hello_xr -g Vulkan2", "BINOSPLAT_SIMULATED_EXPLAIN=1");
+    const Run no_headset = run(absent, "hello_xr -g Vulkan2", "SIMULATED_OPENXR_EXPLAIN=1");
     CHECK(contains(no_headset.output, "simulated runtime: xrGetSystem: XR_ERROR_FORM_FACTOR_UNAVAILABLE: no headset"));
     const Headset broken("at noon exit\n");
     const Run no_script = run(broken, "hello_xr -g Vulkan2");

@@ -70,10 +70,10 @@ TEST_CASE_FIXTURE(VulkanFixture, "the graphics device is one of the instance's, 
     info.vulkanInstance = vulkan;
     CHECK(get(instance, &info, nullptr) == XR_ERROR_VALIDATION_FAILURE);
     for (const char* index : {"99", "first", "0x"}) {
-        setenv("BINOSPLAT_SIMULATED_GPU", index, 1);
+        setenv("SIMULATED_OPENXR_GPU", index, 1);
         CHECK_MESSAGE(get(instance, &info, &found) == XR_ERROR_RUNTIME_FAILURE, index);
     }
-    unsetenv("BINOSPLAT_SIMULATED_GPU");
+    unsetenv("SIMULATED_OPENXR_GPU");
 }
 
 TEST_CASE_FIXTURE(VulkanFixture, "a device is made on the graphics device alone") {

@@ -20,7 +20,7 @@ namespace {
 
 const std::string kScene = "builtin:slanted-wall --load-first --mode mono --hide-hands";
 
-std::string withProfile(const std::string& profile) { return kValidated + " BINOSPLAT_SIMULATED_PROFILE=" + profile; }
+std::string withProfile(const std::string& profile) { return kValidated + " SIMULATED_OPENXR_PROFILE=" + profile; }
 
 ViewRun runWith(const Workplace& work, const std::string& profile, const std::string& lines, const std::string& options = "",
                 const std::string& frames = "every 5") {

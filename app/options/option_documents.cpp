@@ -76,7 +76,7 @@ std::string markdown() {
     return text;
 }
 
-// What docs/render.md says of these at greater length.
+// docs/render.md has these at greater length.
 constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
     {"BINOSPLAT_DATA", "folder that holds configs/headsets"},
     {"BINOSPLAT_PIPELINE_CACHE", "folder for what the driver compiles; 0: none"},
@@ -86,7 +86,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kEnvironment{{
     {"BINOSPLAT_VALIDATION", "1: with Vulkan's validation layers, whose messages fail the command"},
 }};
 
-// What begins a line with a dot or an apostrophe would be a request, and a bare dash a hyphen that searches do not find.
+// A dot or an apostrophe at the start of a line would be a request, and a bare dash a hyphen that searches do not find.
 std::string manText(const std::string& text) {
     std::string escaped = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
     if (escaped.starts_with('.') || escaped.starts_with('\'')) { escaped = "\\&" + escaped; }
@@ -120,9 +120,7 @@ std::string documentOf(const std::string& kind) {
     if (kind == "config") { return defaultConfig(); }
     if (kind == "man") { return man(); }
     if (kind == "bash") { return completionsOfBash(); }
-    if (kind == "zsh") { return completionsOfZsh(); }
-    if (kind == "fish") { return completionsOfFish(); }
-    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man, bash, zsh or fish", kind));
+    throw Error(ExitCode::kUsage, fmt::format("document: KIND is {}, must be markdown, config, man or bash", kind));
 }
 
 }  // namespace binosplat

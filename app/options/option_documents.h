@@ -5,8 +5,8 @@
 
 namespace binosplat {
 
-// `kind`: markdown (docs/options.md), config (configs/default.toml), man (section 1), or bash, zsh or fish (completions). Throws Error
-// (usage) for another.
+// `kind`: markdown (docs/options.md), config (configs/default.toml), man (section 1) or bash (completion). Throws Error (usage) for
+// another.
 std::string documentOf(const std::string& kind);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Completions of three shells.
+// Completion for bash.
 #include "app/options/shell_completions.h"
 
 #include "app/options/document_text.h"
@@ -6,14 +6,6 @@
 #include <fmt/format.h>
 
 namespace binosplat {
-
-namespace {
-
-// Within single quotes of a shell; zsh takes brackets and colons for its own.
-std::string quoted(const std::string& text) { return replaced(text, "'", "'\\''"); }
-std::string zshText(const std::string& text) { return quoted(replaced(replaced(replaced(text, "[", "\\["), "]", "\\]"), ":", "\\:")); }
-
-}  // namespace
 
 std::string completionsOfBash() {
     std::string names, options, values;
@@ -52,47 +44,6 @@ _binosplat() {{
 complete -o filenames -F _binosplat binosplat
 )",
                        names, values, options);
-}
-
-std::string completionsOfZsh() {
-    std::string list, cases;
-    for (const Command* command : shownCommands()) {
-        list += fmt::format("        '{}:{}'\n", command->name, zshText(command->help));
-        cases += fmt::format("        {}) _arguments", command->name);
-        for (const OptionDescription& option : optionsOf(*command)) {
-            cases += fmt::format(" \\\n            '--{}[{}]", option.text.key, zshText(option.help()));
-            if (!option.choices.empty()) {
-                cases += fmt::format(":{}:({})'", option.text.value, fmt::join(option.choices, " "));
-            } else if (isFlag(option.text)) {
-                cases += "'";
-            } else {
-                cases += fmt::format(":{}:{}'", zshText(option.text.value), option.is_file ? "_files" : "");
-            }
-        }
-        cases += " \\\n            '*:file:_files' ;;\n";
-    }
-    return fmt::format(
-        "#compdef binosplat\n# Completion of binosplat for zsh.\n_binosplat() {{\n    local -a commands=(\n{}    )\n    if ((CURRENT == "
-        "2)); then\n"
-        "        _describe command commands\n        return\n    fi\n    local command=$words[2]\n    shift words\n    ((CURRENT--))\n"
-        "    case $command in\n{}    esac\n}}\n_binosplat \"$@\"\n",
-        list, cases);
-}
-
-std::string completionsOfFish() {
-    std::string text = "# Completion of binosplat for fish.\n";
-    for (const Command* command : shownCommands()) {
-        text += fmt::format("complete -c binosplat -n __fish_use_subcommand -f -a {} -d '{}'\n", command->name, quoted(command->help));
-        for (const OptionDescription& option : optionsOf(*command)) {
-            const std::string value = isFlag(option.text)       ? ""
-                                      : !option.choices.empty() ? fmt::format(" -x -a '{}'", fmt::join(option.choices, " "))
-                                      : option.is_file          ? " -r"
-                                                                : " -x";
-            text += fmt::format("complete -c binosplat -n '__fish_seen_subcommand_from {}' -l {}{} -d '{}'\n", command->name,
-                                option.text.key, value, quoted(option.help()));
-        }
-    }
-    return text;
 }
 
 }  // namespace binosplat

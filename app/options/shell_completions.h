@@ -1,4 +1,4 @@
-// What shells complete of commands, options and their values.
+// Completion of commands, options and their values.
 #pragma once
 
 #include <string>
@@ -6,7 +6,5 @@
 namespace binosplat {
 
 std::string completionsOfBash();
-std::string completionsOfZsh();
-std::string completionsOfFish();
 
 }  // namespace binosplat

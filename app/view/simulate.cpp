@@ -56,7 +56,7 @@ void simulateHeadset(ViewOptions& options) {
         fs::create_directories(options.out, error);
         check(!error, "--out: {} cannot be made ({})", options.out.string(), error.message());
         setEnvironment("SIMULATED_OPENXR_OUT", fs::absolute(options.out).string());
-    } else if (environment("BINOSPLAT_SIMULATED_CLOCK").empty() && environment("SIMULATED_OPENXR_CLOCK").empty()) {
+    } else if (environment("SIMULATED_OPENXR_CLOCK").empty()) {
         setEnvironment("SIMULATED_OPENXR_CLOCK", "real");  // somebody watches
     }
 }

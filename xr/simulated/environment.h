@@ -1,4 +1,4 @@
-// What the environment says: SIMULATED_OPENXR_SCRIPT, or as it was called before, BINOSPLAT_SIMULATED_SCRIPT.
+// The runtime's settings in the environment: SIMULATED_OPENXR_SCRIPT and others.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,19 @@
 namespace simulated {
 
 struct Setting {
-    std::string variable;  // the name that is set
+    std::string variable;  // its full name
     bool is_there = false;
     std::string value;
 
     [[nodiscard]] bool isSet() const { return !value.empty(); }
 };
 
-// `name` is "SCRIPT", "OUT", "CLOCK", "PROFILE", "GPU" or "EXPLAIN". The new name counts before the old one.
+// `name` is "SCRIPT", "OUT", "CLOCK", "PROFILE", "GPU" or "EXPLAIN".
 [[nodiscard]] inline Setting settingOf(const char* name) {
-    for (const char* const prefix : {"SIMULATED_OPENXR_", "BINOSPLAT_SIMULATED_"}) {
-        std::string variable = std::string(prefix) + name;
-        if (std::optional<std::string> value = environmentVariable(variable)) { return {std::move(variable), true, std::move(*value)}; }
-    }
-    return {std::string("SIMULATED_OPENXR_") + name, false, {}};
+    std::string variable = std::string("SIMULATED_OPENXR_") + name;
+    std::optional<std::string> value = environmentVariable(variable);
+    const bool is_there = value.has_value();
+    return {std::move(variable), is_there, std::move(value).value_or("")};
 }
 
 }  // namespace simulated
