@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// What each costs and does is told in docs/how-it-works.md.
+// docs/how-it-works.md explains each.
 enum class Mode {
     kMono,       // one eye
     kTwoPass,    // both eyes in full, nothing shared: the paper's reference
@@ -25,16 +25,16 @@ inline constexpr std::array<std::string_view, 8> kModeNames{"mono",  "two-pass",
 
 constexpr std::string_view nameOf(Mode mode) { return kModeNames[static_cast<std::size_t>(mode)]; }
 
-// Whether the affiliated eye is made from the dominant one.
+// True if the affiliated eye is made from the dominant one.
 constexpr bool reprojects(Mode mode) { return mode == Mode::kReproject || mode == Mode::kPaper || mode == Mode::kPredicted; }
-// Whether frames are made from the ones before. Where none is to follow they are as in kPredicted, or of kAlternate as in kShared.
+// True if frames are made from previous ones. Where none is to follow they are as in kPredicted, or, for kAlternate, as in kShared.
 constexpr bool hasPast(Mode mode) { return mode == Mode::kAlternate || mode == Mode::kTemporal; }
-// Whether each eye is rendered in full.
+// True if each eye is rendered in full.
 constexpr bool rendersBothInFull(Mode mode) { return mode == Mode::kTwoPass || mode == Mode::kShared; }
 
 // Which tiles of a picture are rendered where it is made from another.
 enum class TileChoice {
-    kAll,        // all of them: nothing is moved
+    kAll,        // all of them: nothing is warped
     kNone,       // none: reprojection and interpolation alone
     kPaper,      // edge ROIs, and centre ROIs if asked for
     kPredicted,  // what is cheap to render, and those of the greatest expected error for their cost
@@ -49,7 +49,7 @@ constexpr TileChoice choiceOf(Mode mode) {
                                                                  : TileChoice::kAll;
 }
 
-// What splats are blended by, front to back.
+// The order in which splats are blended, front to back.
 enum class Order {
     kDepth,     // camera z of their centres, as scenes are trained: changes as an eye turns, and differs between canted eyes
     kDistance,  // distance of their centres from the middle between the eyes: one order for both eyes, however they turn

@@ -1,4 +1,4 @@
-// What only the operating system can say or do: platform_posix.cpp asks POSIX, platform_windows.cpp asks Windows. Nothing else in engine/,
+// The operating system's services: platform_posix.cpp uses POSIX, platform_windows.cpp uses Windows. Nothing else in engine/,
 // app/ and xr/ includes a header of a system, except the simulated runtime (dlopen).
 #pragma once
 
@@ -32,10 +32,10 @@ std::filesystem::path userConfigFolder();
 
 bool isTerminal(std::FILE* stream);
 
-// What `main` was given, as UTF-8.
+// The arguments of `main`, as UTF-8.
 std::vector<std::string> programArguments(int count, const char* const* arguments);
 
-// Whether it was started by a click, in a console of its own that ends with it.
+// True if it was started by a click, in a console of its own that ends with it.
 bool isStartedByClick();
 // A line for standard error, which is also shown in a window if a click started the program.
 void tellUser(const std::string& line);
@@ -49,10 +49,10 @@ bool runsAsAdministrator();
 // closed, a user who logs off. The system then waits for the program, for some seconds.
 void watchForEnd(void (*end)(int signal));
 
-// What to do where Vulkan finds no device.
+// Advice for machines where Vulkan finds no device.
 extern const char* const kVulkanHint;
 
-// Whether there may be a window.
+// True if there may be a window.
 bool hasDisplay();
 // Where the system keeps fonts of Latin, Greek and Cyrillic letters, and fonts of all others; the best first. They need not exist.
 std::vector<std::filesystem::path> systemFonts();
@@ -80,7 +80,7 @@ File createFile(const std::filesystem::path& path);
 // in errno, if that cannot be done.
 std::filesystem::path createFolder(const std::filesystem::path& parent, const std::string& prefix);
 
-// What tells whether a file was written to.
+// A stamp that changes when a file is written to.
 struct FileStamp {
     std::uint64_t size_bytes = 0;
     std::int64_t changed_s = 0, changed_ns = 0;

@@ -1,4 +1,4 @@
-// Which buttons of which controllers do what.
+// The functions of the controllers' buttons.
 #pragma once
 
 #include <openxr/openxr.h>
@@ -15,8 +15,8 @@ struct ProfileBindings {
     const char* trigger;
     const char* squeeze;
     const char* stick;
-    const char* stick_click;          // where the stick is a pad that thumbs rest on: it counts while it is pressed
-    const char* stick_press;          // where the stick can be pressed in
+    const char* stick_click;          // for pads that thumbs rest on: the stick counts while this is pressed
+    const char* stick_press;          // for sticks that can be pressed in
     std::array<const char*, 2> menu;  // left, right
     const char* haptic;
 };

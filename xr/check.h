@@ -1,4 +1,4 @@
-// Every OpenXR call goes through here: what fails throws, with the call's text.
+// Every OpenXR call goes through here: failures throw, with the call's text.
 #pragma once
 
 #include "engine/error.h"
@@ -24,13 +24,13 @@ std::string nameOf(XrResult result);
 
 inline constexpr const char* kGoingAway = "the OpenXR runtime is going away";
 
-// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost where that is so, Error (exit code 3, of memory 1)
-// otherwise, with the name of the function in `call`.
+// Returns `result` if it is a success of any kind. Throws Lost or InstanceLost for a loss, otherwise Error (exit code 3, for memory 1)
+// with the name of the function in `call`.
 XrResult checkResult(XrResult result, const char* call);
 
 #define BINOSPLAT_XR(call) ::binosplat::xr::checkResult((call), #call)
 
-// An OpenXR struct of the type that it must state, zero otherwise.
+// An OpenXR struct with its type set, otherwise zero.
 template <typename Struct>
 [[nodiscard]] Struct structure(XrStructureType type) {
     Struct made{};

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostLostPeriods = 10.0;
 constexpr double kJitter = 0.02;  // of a period that is the same
 
-// Whether `stated` is so many times `display`, or just that.
+// True if `stated` is `display` or a multiple of it.
 bool isMultiple(XrDuration stated, XrDuration display) {
     if (display <= 0) { return false; }
     const double times = static_cast<double>(stated) / static_cast<double>(display), whole = std::round(times);

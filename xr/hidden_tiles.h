@@ -1,4 +1,4 @@
-// Which tiles of an eye's picture the lens never shows.
+// The tiles of an eye's picture that the lens never shows.
 #pragma once
 
 #include "engine/geometry.h"
@@ -9,11 +9,11 @@
 
 namespace binosplat::xr {
 
-// How near the mesh's edge a tile may come, in pixels. Compositors turn a picture by what the head turned since, and bring in what lay
-// just under the mesh: a tile's steps must not be seen there.
+// The least distance of a hidden tile from the mesh's edge, in pixels. Compositors rotate a picture by the latest head motion, which shows
+// pixels just under the mesh: the steps of tiles must not be visible there.
 std::uint32_t hiddenMarginPx(const Intrinsics& intrinsics);
 
-// A byte a tile, row-major: 1 where the centre of every pixel in it and within `margin_px` of it lies under the mesh. Pixels beside the
+// A byte a tile, row-major: 1 where the centre of every pixel in it and within `margin_px` of it lies under the mesh. Pixels outside the
 // picture count as hidden.
 std::vector<std::uint8_t> findHiddenTiles(const HiddenMesh& mesh, const Intrinsics& intrinsics, glm::uvec2 size_px,
                                           std::uint32_t margin_px = 0);

@@ -1,4 +1,4 @@
-// The two controllers, whatever they are, and where the eyes look.
+// The two controllers, of any kind, and the gaze.
 #pragma once
 
 #include "engine/geometry.h"
@@ -14,17 +14,17 @@ struct Hand {
     std::optional<Pose> aim;             // the ray goes along its z
     std::optional<Pose> grip;            // where the hand is
     std::optional<HandJoints> joints;    // where the runtime finds them
-    bool clicks = false, grabs = false;  // trigger and squeeze; they hold on to what they are until it is clear that they are not
+    bool clicks = false, grabs = false;  // trigger and squeeze, with hysteresis
     glm::dvec2 stick{0.0};               // right and up are positive; of a pad, only while it is pressed
     bool menu = false;
     bool stick_presses = false;  // it is pressed in; never of a pad
 };
 
-// Whether a trigger or a grip is pressed, which shivers about any limit: on from more than it goes off below. Who was not looked at may
-// have been pressed for something else: that counts once it has been seen released.
+// Tells if a trigger or a grip is pressed, with hysteresis, since values jitter. A button that was not read for a while may have been
+// pressed for something else: it counts once it has been seen released.
 class Hold {
 public:
-    // Empty: nobody can tell.
+    // Empty: unknown.
     bool update(std::optional<double> value) {
         if (!value) { forget(); }
         was_released_ = was_released_ || (value && *value <= kUntil);
@@ -39,24 +39,24 @@ private:
 
 class Input {
 public:
-    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them. Controllers that it does not take
+    // Suggests bindings for every controller of bindings.h that the runtime knows, and attaches them. Controllers that it rejects
     // are among the Troubles.
     explicit Input(const Session& session);
     Input(const Input&) = delete;
     Input& operator=(const Input&) = delete;
     ~Input();
 
-    // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while the input goes to somebody else.
+    // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while another program has the input.
     [[nodiscard]] std::array<Hand, 2> read();
-    // Where the eyes look, as of the last read(): a direction in the room (ours). Empty where the headset does not see it well enough to
-    // rely on, or nobody let this program see it.
+    // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track it reliably, or this
+    // program may not see it.
     [[nodiscard]] std::optional<glm::dvec3> gaze();
     // A short buzz in a hand, where its controller can.
     void pulse(int hand);
 
 private:
     void attachActions();
-    // By hand, unless there is one of it.
+    // One per hand, or one in all.
     [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;
     [[nodiscard]] XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
@@ -75,14 +75,14 @@ private:
     XrActionSet set_ = XR_NULL_HANDLE;
     XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, squeeze_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
              stick_click_ = XR_NULL_HANDLE, stick_press_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
-    XrAction gaze_ = XR_NULL_HANDLE;  // null: nobody asked for it, or there is none
+    XrAction gaze_ = XR_NULL_HANDLE;  // null: not requested, or not available
     XrSpace gaze_space_ = XR_NULL_HANDLE;
     std::array<XrPath, 2> hands_{};
     std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
     std::array<Hold, 2> clicks_, grabs_, menus_, presses_;
     bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()
-    bool is_at_rest_ = false;  // likewise
+    bool is_at_rest_ = false;  // the same
 };
 
 }  // namespace binosplat::xr

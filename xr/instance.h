@@ -14,28 +14,28 @@
 
 namespace binosplat::xr {
 
-// The runtime is there, and fails to begin (XR_ERROR_RUNTIME_FAILURE); why, it may have said itself.
+// The runtime exists but fails to start (XR_ERROR_RUNTIME_FAILURE); it may have printed the reason itself.
 class RuntimeFailed : public Error {
 public:
     using Error::Error;
 };
 
 struct InstanceOptions {
-    bool visibility_mask = true;  // some runtimes have nothing behind the function that they offer
-    bool eye_tracking = false;    // whether the wearer lets this program see where the eyes look
-    // Asked again and again, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
+    bool visibility_mask = true;  // some runtimes offer the function but crash in it
+    bool eye_tracking = false;    // the wearer allows this program to see the gaze
+    // Called repeatedly, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
     // wait.
     std::function<void(const std::string& runtime)> wait_for_headset;
 };
 
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; takes XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
-    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking, on request XR_EXT_eye_gaze_interaction, and those of controllers where they are.
-    // Throws Error (exit code 3, one line that says what was looked for) where there is no runtime or no headset, and what
-    // `wait_for_headset` throws.
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
+    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking, on request XR_EXT_eye_gaze_interaction, and those of controllers, if available.
+    // Throws Error (exit code 3, one line with what was looked for) if there is no runtime or no headset, and rethrows from
+    // `wait_for_headset`.
     explicit Instance(const InstanceOptions& options = {});
-    // After a session is lost, which may mean that the headset was unplugged: finds it anew, or another one in its place, for a session on
+    // After a session is lost, which may mean that the headset was unplugged: finds it again, or another one in its place, for a session on
     // `context`. False while there is none. Throws Lost, InstanceLost, and Error (exit code 3) where the headset is on another graphics
     // device now.
     bool findHeadset(const Context& context);
@@ -53,15 +53,15 @@ public:
     [[nodiscard]] bool hasRefreshRates() const { return has_refresh_rates_; }
     // It has XR_EXT_hand_tracking, and this headset finds hands.
     [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
-    // It has XR_EXT_eye_gaze_interaction, this headset sees where eyes look, and that was asked for.
+    // It has XR_EXT_eye_gaze_interaction, this headset tracks the gaze, and that was requested.
     [[nodiscard]] bool tracksEyes() const { return tracks_eyes_; }
     // Of those that controllers need.
     [[nodiscard]] bool hasExtension(const std::string& name) const { return controller_extensions_.contains(name); }
-    // How many pixels an eye should have, the larger of both: the methods want eyes of one size. And the most it can have.
+    // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the maximum.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
-    // How layers meet the world: opaque where the headset has it, else what it likes best; or so that the room shows behind them, where it
-    // has that.
+    // How layers are blended with the world: opaque if the headset has it, otherwise its preference; or with the room visible behind
+    // them, if it has that.
     [[nodiscard]] XrEnvironmentBlendMode blendMode(bool see_through) const {
         return see_through && see_through_ ? *see_through_ : blend_mode_;
     }
@@ -71,7 +71,7 @@ public:
     [[nodiscard]] DeviceMaker deviceMaker() const;
 
     [[nodiscard]] XrPath path(const char* text) const;
-    // What this headset is used without.
+    // The optional features that this headset is used without.
     [[nodiscard]] Troubles& troubles() const { return troubles_; }
     // A function of an extension. Throws Error if the runtime lists the extension but lacks the function.
     template <typename Function>
@@ -84,10 +84,10 @@ public:
 private:
     void create(const InstanceOptions& options);
     void findSystem(const InstanceOptions& options);
-    // What the headset of system_ has.
+    // The features of the headset of system_.
     void readSystem();
     void readViews();
-    // What the runtime wants to be asked of Vulkan, for each headset.
+    // The runtime's requirements of Vulkan, for each headset.
     [[nodiscard]] XrVersion leastVulkan() const;
     [[nodiscard]] VkPhysicalDevice graphicsDevice(VkInstance vulkan_instance) const;
 

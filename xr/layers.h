@@ -1,4 +1,4 @@
-// What a frame shows, back to front: the scene for both eyes, and flat panels in the room.
+// The layers of a frame, back to front: the scene for both eyes, and flat panels in the room.
 #pragma once
 
 #include "engine/geometry.h"
@@ -35,7 +35,7 @@ public:
     Layers(const Layers&) = delete;
     Layers& operator=(const Layers&) = delete;
 
-    // Where it is `see_through`, what is behind shows as far as the pictures' alpha lets it; their colours are multiplied by it.
+    // If `see_through`, the background shows as far as the pictures' alpha lets it; their colours are multiplied by alpha.
     void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through);
     // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
     // blended over what lies behind; its colours are multiplied by alpha already.

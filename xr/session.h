@@ -1,4 +1,4 @@
-// One stay in the headset: the state machine, the pace of frames, and where the eyes are.
+// One session in the headset: the state machine, the pace of frames, and the poses of the eyes.
 #pragma once
 
 #include "engine/geometry.h"
@@ -12,12 +12,12 @@
 
 namespace binosplat::xr {
 
-// What beginFrame() found.
+// The result of beginFrame().
 enum class FrameOutcome {
     kRender,  // a frame is open and will be seen: draw, then endFrame with its layers
     kSkip,    // a frame is open but nobody sees it: endFrame without layers
-    kWait,    // no frame is open since the session does not run (yet, or for now): come again
-    kExit,    // the runtime or the user wants the end: leave; whyEnded() says which
+    kWait,    // no frame is open since the session does not run (yet, or for now): call again
+    kExit,    // the runtime or the user wants to end: leave; whyEnded() says which
 };
 
 // An eye at the predicted display time.
@@ -40,42 +40,42 @@ public:
     Session& operator=(const Session&) = delete;
     ~Session();
 
-    // Takes the runtime's events, waits for the next frame and opens it. Throws Lost where the session is lost or about to be, InstanceLost
-    // where the runtime is.
+    // Takes the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost or about to be, InstanceLost
+    // if the runtime is.
     FrameOutcome beginFrame();
-    // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error where the runtime refuses a layer: then
+    // Closes the frame with these layers, back to front. Throws Lost and InstanceLost, and Error if the runtime refuses a layer; then
     // the frame is still open.
     void endFrame(std::span<const XrCompositionLayerBaseHeader* const> layers);
-    // Whether the room shows behind the layers, where the headset can; from the next endFrame() on.
+    // Shows the room behind the layers, if the headset can; from the next endFrame() on.
     void seeThrough(bool see_through) { blend_mode_ = instance_.blendMode(see_through); }
-    // Asks the runtime for the end; frames go on until beginFrame() returns kExit.
+    // Asks the runtime to end; frames go on until beginFrame() returns kExit.
     void requestExit();
 
     // Of the open frame.
     [[nodiscard]] XrTime displayTime() const { return frame_state_.predictedDisplayTime; }
     // Seconds from the last frame to this one, at most a tenth, whatever period the runtime states.
     [[nodiscard]] double stepSeconds() const { return step_seconds_; }
-    // Of the display, see DisplayPace, in milliseconds: what a frame may take; 90 Hz where the runtime states none.
+    // The display's period, see DisplayPace, in milliseconds, for a frame to fit in; that of 90 Hz if the runtime states none.
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
-    // Frames a second that this headset can be asked for, in its order; empty where it cannot be asked.
+    // The refresh rates that this headset offers, in its order; empty if it offers no choice.
     [[nodiscard]] std::vector<double> refreshRates() const;
-    // Asks for so many frames a second, if that is not what was asked for last; 0: what the runtime likes. A sentence for people where that
-    // cannot be had, empty otherwise. The period follows when the runtime says so.
+    // Requests a refresh rate, unless it was the last one requested; 0: the runtime's choice. Returns a sentence for people if that
+    // fails, otherwise empty. The period follows when the runtime reports it.
     std::string askForRate(double rate_hz);
-    // Where the eyes are in space(); empty where the headset does not know how it is turned. While it does not know where it is, it stays
-    // where it was last.
+    // The poses of the eyes in space(); empty if the headset's orientation is unknown. While its position is unknown, the last known one
+    // is used.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes();
 
-    // The room begins at the head, upright, and ahead is where it looks: nothing may be assumed of where the runtime's own spaces begin.
-    // Puts it there for the open frame and those after it, the first time that the head's pose is known, again when the runtime recentred
-    // its space, and where `demanded`. Whether it did.
+    // The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
+    // Places it for the open frame and those after it, the first time that the head's pose is known, again when the runtime recentred
+    // its space, and when `demanded`. Returns true if it did.
     bool settle(bool demanded);
-    // How far below the room's origin the floor lies, in metres; empty where the runtime does not know.
+    // The distance of the floor below the room's origin, in metres; empty if the runtime does not know it.
     [[nodiscard]] std::optional<double> floorBelowMetres();
 
-    // How often input has begun to come to this program.
+    // The number of times that this program has gained the input.
     [[nodiscard]] int timesFocused() const { return times_focused_; }
     [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
 
@@ -84,11 +84,11 @@ public:
     [[nodiscard]] const Context& context() const { return context_; }
     // The room: see settle(). Before that, LOCAL.
     [[nodiscard]] XrSpace space() const { return space_; }
-    // What moves with the head.
+    // The space that moves with the head.
     [[nodiscard]] XrSpace headSpace() const { return head_; }
-    // Read at the start and again whenever the runtime says so; empty without XR_KHR_visibility_mask.
+    // Read at the start and again whenever the runtime reports a change; empty without XR_KHR_visibility_mask.
     [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
-    // Another number whenever they were read.
+    // A new number whenever they were read.
     [[nodiscard]] int hiddenMeshVersion() const { return hidden_mesh_version_; }
 
 private:
@@ -99,7 +99,7 @@ private:
     };
     [[nodiscard]] Located locate(XrSpace space) const;
     [[nodiscard]] XrSpace makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const;
-    // The display's; 0 where the runtime does not say it.
+    // The display's; 0 if the runtime does not report it.
     [[nodiscard]] XrDuration askForPeriod() const;
     void findFloor();
     void pollEvents();
@@ -117,7 +117,7 @@ private:
     XrTime last_display_time_ = 0;
     double step_seconds_ = 0.0;
     DisplayPace pace_;
-    XrDuration told_period_ = 0, told_for_ = 0;  // what the runtime says of the display, and the stated period at which it was asked
+    XrDuration told_period_ = 0, told_for_ = 0;  // the display's period from the runtime, and the stated period at the time of the request
     double busy_from_seconds_ = 0.0;             // of this thread, since the frame began
     double asked_rate_hz_ = 0.0;
     bool running_ = false, ended_ = false;

@@ -9,11 +9,11 @@
 
 namespace binosplat::xr {
 
-// What images are for.
+// The use of images.
 enum class ImageUse {
     kCopy,   // pictures and depths, copied in
     kDraw,   // the overlay, drawn and copied in
-    kFar,    // like kDraw, also seen from afar: with smaller copies, which Commands::makeMips makes, where device and runtime have them
+    kFar,    // like kDraw, also seen from afar: with mips by Commands::makeMips, if device and runtime have them
     kDepth,  // like kCopy, of a depth format
 };
 
@@ -29,11 +29,11 @@ public:
     Swapchain& operator=(Swapchain&& other) noexcept;
     ~Swapchain() { destroy(); }
 
-    // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error if it does not
-    // come free for ten seconds.
+    // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error if it is not
+    // free within ten seconds.
     vk::Image acquire();
     void release();
-    // Which image acquire() gave, from 0, and how many there are.
+    // The index of the image from acquire(), and the number of images.
     [[nodiscard]] std::size_t acquiredIndex() const { return acquired_; }
     [[nodiscard]] const std::vector<vk::Image>& images() const { return images_; }
 

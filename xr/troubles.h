@@ -1,4 +1,4 @@
-// What of a headset a program goes on without: a line for each, once, in however many frames and sessions it comes to that.
+// Optional features of a headset that failed: a line for each, once, in however many frames and sessions it fails.
 #pragma once
 
 #include "xr/check.h"
@@ -15,10 +15,10 @@ public:
     void add(const std::string& line) {
         if (said_.insert(line).second) { news_.push_back(line); }
     }
-    // Those that were not taken yet.
+    // Those that were not fetched yet.
     [[nodiscard]] std::vector<std::string> take() { return std::exchange(news_, {}); }
 
-    // Does `act`, and goes on without `what` ("pulses") where that throws Error: false then. Lost and InstanceLost are thrown on.
+    // Does `act`; if that throws Error, goes on without `what` ("pulses") and returns false. Rethrows Lost and InstanceLost.
     template <typename Act>
     bool tryFor(const char* what, Act&& act) {
         try {

@@ -59,7 +59,7 @@ std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoO
     std::array<std::optional<Gaze>, 2> gazes;
     if (stereo.foveation_deg == 0.0) { return gazes; }
     for (std::size_t side = 0; side < 2; ++side) {
-        // What is looked at is far away: both eyes turn alike.
+        // The point looked at is far away: both eyes turn alike.
         const glm::dquat eye_from_middle =
             glm::conjugate(cameras.eyes[side].world_from_camera.orientation) * cameras.middle.world_from_camera.orientation;
         const glm::dvec3 direction = stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];

@@ -20,7 +20,7 @@ struct CameraFiles {
 };
 CameraFiles readCameraFiles(const CameraOptions& options);
 
-// Where one stands in a scene if nobody says: see startView.
+// The default view of a scene: see startView.
 View viewOfScene(const Scene& scene, double fov_x_deg);
 
 struct Cameras {
@@ -28,14 +28,14 @@ struct Cameras {
     std::array<Eye, 2> eyes;   // by Side
     double eye_distance;       // scene units
     std::optional<View> view;  // where --eye, --look, --up and --fov-x (0 with a headset) came out; empty with a camera file
-    // Where each eye's lens is at its best: directions in the eyes' axes.
+    // Each lens's centre: directions in the eyes' axes.
     std::array<glm::dvec3, 2> lens_centres{glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.0, 0.0, 1.0)};
 };
 
-// What the options leave open comes from the files, then from the scene. Throws Error if the points span no view.
+// Missing options come from the files, then from the scene. Throws Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
-// By Side, for FrameSettings: where the options say that the eyes look; nothing where they do not want to know.
+// By Side, for FrameSettings: the gazes of the options; nothing without foveation.
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo);
 
 // The same eyes on a head that moved.

@@ -1,11 +1,11 @@
-// The commands: their words, their options, and what is made of both.
+// The commands: their words, their options, and the calls that run them.
 #pragma once
 
 #include "app/options/option_table.h"
 
 namespace binosplat {
 
-// What stands on the command line without a name.
+// An argument of the command line without a name.
 struct Word {
     const char* name;
     const char* help;

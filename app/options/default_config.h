@@ -1,11 +1,11 @@
-// configs/default.toml: every key of a config, as the table of options has it.
+// configs/default.toml: every key of a config, from the table of options.
 #pragma once
 
 #include <string>
 
 namespace binosplat {
 
-// What has no default of its own, or one that depends on the command, stands there as a comment, with a value that it could have.
+// A key without a default of its own, or with one that depends on the command, is a comment there, with an example value.
 std::string defaultConfig();
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// What the documents made from the table share.
+// Common to the documents that are made from the table.
 #pragma once
 
 #include "app/options/commands_table.h"

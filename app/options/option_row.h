@@ -1,4 +1,4 @@
-// What a row of the table of options is made of: a name, a help text, and a field of a struct with its type and range, from which reading,
+// A row of the table of options: a name, a help text, and a field of a struct with its type and range, from which reading,
 // writing and the documents follow.
 #pragma once
 
@@ -34,28 +34,28 @@ enum CommandBit : unsigned {
 // An option's value as it is reported; nothing where there is none.
 using OptionValue = std::variant<std::monostate, bool, std::uint64_t, double, std::string, glm::dvec3>;
 
-// One field of Owner: how its text is read, what it holds, and what it may hold, in words.
+// One field of Owner: the reader of its text, its value, and its range in words.
 template <typename Owner>
 struct OptionField {
     std::function<void(const Setting&, Owner&)> read;  // throws Error (bad input)
     std::function<OptionValue(const Owner&)> value;
     std::string range;
     std::optional<double> least, most;      // of a number
-    std::optional<double> slider_most;      // where a slider ends: beyond, up to `most`, lies what few want
+    std::optional<double> slider_most;      // the end of a slider: few want values beyond it, up to `most`
     std::vector<std::string_view> choices;  // where it is one of a few names
     bool is_file = false;                   // the name of a file or a folder
 };
 
-// What people are told about an option.
+// The description of an option.
 struct OptionText {
     const char* key;    // --key on the command line, key in a config
     const char* table;  // the config table it may stand in, at whose place it may also stand at the top; "": command line alone
     unsigned commands;
     const char* value;  // placeholder, which says the unit; "" for a flag, in brackets if it may be left out
     const char* help;
-    const char* standard = "";  // what it is if nobody says so, where the field cannot tell
+    const char* standard = "";  // the default, if the field does not have it
     bool required = false;
-    bool by_command = false;  // what it is if nobody says so is another thing for another command
+    bool by_command = false;  // the default depends on the command
 };
 
 template <typename Owner>
@@ -108,7 +108,7 @@ OptionValue toValue(const Value& value) {
     }
 }
 
-// `parse` makes what the field holds of a Setting.
+// `parse` makes the field's value from a Setting.
 template <auto... Members>
 auto make(std::string range, auto parse) {
     using At = Path<Members...>;
@@ -169,7 +169,7 @@ auto file() {
     return made;
 }
 
-// Where it may be left out.
+// For fields that may be absent.
 template <auto... Members>
 auto fileIfAny() {
     auto made = make<Members...>("", [](const Setting& s) { return s.text(); });
@@ -202,7 +202,7 @@ auto size() {
     return make<Members...>(fmt::format("1 to {} each", kMaxSide), readSize);
 }
 
-// `parse` makes what the field holds of a Setting that is one of `names`.
+// `parse` makes the field's value from a Setting that is one of `names`.
 template <auto... Members>
 auto oneOf(std::vector<std::string_view> names, auto parse) {
     auto made = make<Members...>(fmt::format("{}", fmt::join(names, ", ")), parse);

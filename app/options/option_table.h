@@ -1,5 +1,5 @@
-// Every option, once. The command line, config files, reports, what the viewer saves, the man page, the completions, docs/options.md and
-// configs/default.toml are made from these rows.
+// Every option, once. The command line, config files, reports, the viewer's saved settings, the man page, the completions, docs/options.md
+// and configs/default.toml are made from these rows.
 #pragma once
 
 #include "app/options/option_row.h"
@@ -28,17 +28,17 @@ std::span<const OptionRow<KernelsOptions>> kernelsRows();
 // "text", "0.5", "1,2,3", "true"; empty where there is none.
 std::string textOf(const OptionValue& value);
 
-// An option as people are told about it.
+// An option's description for people.
 struct OptionDescription {
     OptionText text;
-    std::string range, standard;  // what it may be and what it is if nobody says so; empty where the help says it, or nothing does
+    std::string range, standard;              // its range and default; empty if the help says it, or nothing does
     std::vector<std::string_view> choices{};  // as of its field
     bool is_file = false;
 
     [[nodiscard]] std::string help() const;  // with both in brackets
 };
 
-// In a fresh `Owner` fields have the values that they have when nobody says otherwise.
+// In a fresh `Owner` fields have their defaults.
 template <typename Owner>
 OptionDescription describe(const OptionRow<Owner>& row) {
     std::string standard = *row.text.standard != '\0' ? row.text.standard : textOf(row.field.value(Owner{}));
@@ -52,7 +52,7 @@ std::vector<OptionDescription> describe(std::span<const OptionRow<Owner>> rows) 
     return descriptions;
 }
 
-// Reads what `settings` have of `rows` into `options`; what they do not have stays.
+// Reads the `rows` that `settings` have into `options`; the others stay.
 template <typename Owner>
 void readRows(std::span<const OptionRow<Owner>> rows, const Settings& settings, Owner& options) {
     for (const OptionRow<Owner>& row : rows) {

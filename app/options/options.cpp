@@ -19,7 +19,7 @@ namespace binosplat {
 
 namespace {
 
-// What CLI11 fills in for one command; values stay text until they are laid over those of a config.
+// Filled in by CLI11 for one command; values stay text until they are laid over those of a config.
 struct CommandLine {
     const Command* command = nullptr;
     CLI::App* parser = nullptr;

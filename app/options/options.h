@@ -1,4 +1,4 @@
-// What the user asked for, typed and checked: the command line over the config file over the defaults.
+// The user's settings, typed and checked: the command line over the config file over the defaults.
 #pragma once
 
 #include "engine/geometry.h"
@@ -15,7 +15,7 @@
 
 namespace binosplat {
 
-// Where the eyes are and what they see. What is absent comes from --cameras, --headset or the scene.
+// The eyes: places and views. Missing values come from --cameras, --headset or the scene.
 struct CameraOptions {
     std::optional<glm::dvec3> eye, look, up;
     std::optional<double> fov_x_deg;
@@ -27,14 +27,14 @@ struct CameraOptions {
     glm::dvec3 background{0.0};
 };
 
-// What moving a tile costs, in pairs of tile and splat, where nobody has measured it.
+// The cost of warping a tile, in pairs of tile and splat, where nobody has measured it.
 inline constexpr std::uint32_t kDefaultMoveCost = 32;
 
-// The depth that moves a pixel, of what was blended: D, D/A or A/I (docs/how-it-works.md).
+// The depth that warps a pixel, from its blended sums: D, D/A or A/I (docs/how-it-works.md).
 enum class PixelDepth { kSum, kMean, kInverse };
-// How moved pixels are sampled: with a cubic kernel, or copied forward with gaps interpolated, as in the paper.
+// How warped pixels are sampled: with a cubic kernel, or copied forward with gaps interpolated, as in the paper.
 enum class Resampling { kCubic, kForward };
-// How wide the paper's borders are: as there, or also covering what near content uncovers.
+// The width of the paper's borders: as there, or also covering disocclusion by near content.
 enum class EdgeBounds { kPaper, kTight };
 
 struct StereoOptions {
@@ -61,16 +61,16 @@ struct StereoOptions {
 
 inline constexpr double kDefaultIpdMetres = 0.063;
 
-// What of a scene is loaded, and how: 3D Gaussians can be drawn in more than one way.
+// How a scene is loaded: which part, and how 3D Gaussians are drawn.
 struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
-    std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: what there is
+    std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     bool antialiased = false;                // with opacities that the low-pass dims, also where the file does not say so
     bool operator==(const LoadOptions&) const = default;
 };
 
-// What `render` and `bench` have in common.
+// Common to `render` and `bench`.
 struct RunOptions {
     CameraOptions camera;
     StereoOptions stereo;
@@ -94,12 +94,12 @@ struct BenchOptions {
     std::vector<std::string> scenes;  // empty: those of the config
     std::filesystem::path out;
     RunOptions run;
-    CameraOptions asked;                 // of `run.camera` what the command line says, and not the config
+    CameraOptions asked;                 // the part of `run.camera` from the command line, not from the config
     std::vector<SettingsTable> tables;   // the config's tables that the bench alone reads, see bench_plan.h
     std::string motion_file;             // --motion: head poses to play, relative to the camera
     std::string motion_axes = "openxr";  // --motion-axes: of the recording
     MotionSegment segment;               // --from, --seconds, --rate: of the motion
-    std::string photos_folder;           // --photos: what the cameras of --cameras saw
+    std::string photos_folder;           // --photos: photographs of the cameras of --cameras
     std::uint32_t every = 1;             // --every: of a motion's poses or of the cameras
     std::uint32_t repeats = 0;           // --repeats: measured frames per method; 0: as the config says
     bool orders = false;                 // --orders: how near each order of splats is to one that every pixel has of its own
@@ -112,7 +112,7 @@ struct ViewOptions {
     std::vector<SettingsTable> tables;  // the config's [view], see view_settings.h
     bool simulate = false;
     std::string script;             // of the simulated headset; empty: it rests
-    std::filesystem::path out;      // where the simulated headset writes what its wearer sees; empty: chosen by the command
+    std::filesystem::path out;      // directory for the simulated headset's pictures; empty: chosen by the command
     std::uint64_t frames = 0;       // stop after so many; 0: never
     bool load_first = false;        // before the session starts, so that runs repeat
     bool hide_panel = false;        // at the start
@@ -162,10 +162,10 @@ struct HelpText {
 using Options = std::variant<RenderOptions, BenchOptions, ViewOptions, InfoOptions, SceneOptions, ConvertOptions, CompareOptions,
                              StabilityOptions, KernelsOptions, HelpText>;
 
-// Throws Error: kUsage where the command line cannot be understood, kBadInput for a bad value or config file.
+// Throws Error: kUsage if the command line cannot be understood, kBadInput for a bad value or config file.
 Options parseOptions(int argument_count, const char* const* arguments);
 
-// Typed values of merged settings; what they do not say stays as in `options`.
+// Typed values of merged settings; missing ones stay as in `options`.
 RunOptions runOptions(const Settings& settings, RunOptions options = {});
 
 }  // namespace binosplat

@@ -125,7 +125,7 @@ float colourScore(float difference, float largest) {
     return std::min(1.0f, kKneeScore + (difference - knee) / (largest - knee) * (1.0f - kKneeScore));
 }
 
-// What the eye makes of a picture: hunt-adjusted Lab behind its contrast sensitivity, and how strong edges and points are.
+// A picture as the eye perceives it: Hunt-adjusted Lab after contrast sensitivity, and the strength of edges and points.
 struct Seen {
     Planes lab;
     Plane edges, points;

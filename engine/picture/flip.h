@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// What the paper assumes: a screen of 3840 pixels, as far away as it is wide, so that a pixel in its middle is 1/3840 rad.
+// The paper's assumption: a screen of 3840 pixels, as far away as it is wide, so that a pixel in its middle is 1/3840 rad.
 inline constexpr double kFlipPixelsPerDegree = 3840.0 * 3.14159265358979323846 / 180.0;  // 67.02
 
 // Pixels wider than a degree, or a thousand to a degree: nothing that the paper's filters are made for.

@@ -1,6 +1,6 @@
 // Image files: EXR and PNG through OpenImageIO, or through OpenEXR and libpng, which nothing outside this folder knows; PFM and PPM in a
 // build without any of them.
-// A failed write leaves no file. Files that others may watch are written where OutputFiles stages them.
+// A failed write leaves no file. Write files that others may watch into OutputFiles' staging folder.
 #pragma once
 
 #include "engine/picture/image.h"

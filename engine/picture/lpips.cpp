@@ -47,7 +47,7 @@ std::vector<float> readWeights(const std::filesystem::path& file) {
     return values;
 }
 
-// What a pixel's features are multiplied by to have length 1.
+// The factor that gives a pixel's features length 1.
 double scaleOf(const float* features, std::size_t channels) {
     double squares = 0.0;
     for (std::size_t i = 0; i < channels; ++i) { squares += static_cast<double>(features[i]) * static_cast<double>(features[i]); }

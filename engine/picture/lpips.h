@@ -1,6 +1,6 @@
 // LPIPS: how different two pictures look to a network that was trained on photographs. Zhang, Isola, Efros, Shechtman, Wang, "The
 // Unreasonable Effectiveness of Deep Features as a Perceptual Metric", CVPR 2018, section 3; version 0.1 on SqueezeNet 1.1. Papers
-// mostly print the AlexNet or the VGG variant: figures of this one are comparable among themselves alone.
+// mostly print the AlexNet or the VGG variant: figures of this one are comparable only with each other.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -15,7 +15,7 @@
 
 namespace binosplat {
 
-// The least sides that leave the network a pixel.
+// The smallest side that leaves the network a pixel.
 inline constexpr std::uint32_t kLpipsLeastSide_px = SqueezeNet::kLeastSide_px;
 
 // R, G and B as they are encoded, clamped to 0 to 1 (0 where not finite), scaled and shifted as the network was trained:
@@ -34,7 +34,7 @@ public:
     // 0 (alike) or more; below 1 for all but the strangest pictures. After each stage every pixel's features are scaled to length 1;
     // squared differences are weighted by the stage's head, added over channels and averaged over pixels; the stages are added.
     // Symmetric. Infinite where a value of either picture is not finite.
-    // Beside the two pictures it holds at most 160 bytes for each pixel of one: 160 MiB at 1024x1024, which two cores do in one to two
+    // Beside the two pictures it holds at most 160 bytes for each pixel of one: 160 MiB at 1024x1024, which takes two cores one to two
     // seconds (6 billion multiplications a picture). The result does not depend on the number of threads.
     // Throws Error if sizes differ, a side is less than kLpipsLeastSide_px, or a picture has fewer than three channels.
     [[nodiscard]] double measure(const Image& a, const Image& b, int threads = 2) const;

@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// Two steps of an 8-bit display: what a comparison may lose to rounding before it counts as off.
+// Two steps of an 8-bit display: the rounding that a comparison tolerates before a value counts as off.
 inline constexpr double kTwoDisplaySteps = 2.0 / 255.0;
 
 // Over all values, i.e. pixels times the channels compared. A pair in which either value is not finite counts as off, with an

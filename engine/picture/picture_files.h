@@ -1,4 +1,4 @@
-// PNG and EXR, and whatever else the library of this build knows: one of picture_files_*.cpp.
+// PNG and EXR, and the other formats that this build's library knows: one of picture_files_*.cpp.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -9,7 +9,7 @@
 
 namespace binosplat {
 
-// Values that a picture may have: a broken file must not ask for all there is.
+// The largest number of values of a picture: a broken file must not exhaust memory.
 inline constexpr std::uint64_t kMostPictureValues = std::uint64_t{1} << 30;
 
 // Without, neither of the next two is called.

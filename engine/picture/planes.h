@@ -1,4 +1,4 @@
-// One channel of a picture, separable filters over it, and scores per pixel: what SSIM and FLIP share.
+// One channel of a picture, separable filters over it, and scores per pixel: the common part of SSIM and FLIP.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -16,7 +16,7 @@ struct Plane {
     std::vector<float> values;
 };
 
-// What a filter sees beyond the border.
+// The values that a filter sees beyond the border.
 enum class Border {
     kClamp,      // the nearest pixel of the picture
     kZero,       // zeros

@@ -1,4 +1,4 @@
-// What made each pixel of the affiliated picture, as one class per pixel and as a tinted picture (roi.png).
+// The origin of each pixel of the affiliated picture, as one class per pixel and as a tinted picture (roi.png).
 #pragma once
 
 #include "engine/picture/image.h"
@@ -11,13 +11,13 @@ namespace binosplat {
 
 // Where a pixel of the finished affiliated picture came from.
 enum class PixelOrigin : std::uint8_t {
-    kReprojected,   // moved from the dominant picture
+    kReprojected,   // warped from the dominant picture
     kGap,           // interpolated: a small gap between reprojected pixels
     kHole,          // interpolated: a wide hole that no tile was rendered for
     kEdgeRoi,       // rendered again: at the picture's border
     kCenterRoi,     // rendered again: a hole's box
     kPredictedRoi,  // rendered again: great expected error
-    kCheap,         // rendered: cheaper than to move
+    kCheap,         // rendered: cheaper than to warp
 };
 
 // One PixelOrigin a pixel, row-major. `tile_kinds` holds kTileEdge, kTileCenter, kTilePredicted, kTileCheap, or 0 for a tile that stays as
@@ -31,7 +31,7 @@ std::vector<std::uint8_t> pixelOrigins(glm::uvec2 size_px, std::span<const std::
 // Reprojected pixels have none (black, unused).
 glm::vec3 tintOf(PixelOrigin origin);
 
-// The share of the tint in a tinted pixel; the rest is the picture, so that what a tile shows can still be seen.
+// The share of the tint in a tinted pixel; the rest is the picture, so that the content of a tile stays visible.
 inline constexpr float kTintShare = 0.4f;
 
 // The picture (3 channels or more, display-encoded) with every pixel that was not reprojected tinted by its origin: 3 channels.

@@ -17,10 +17,10 @@ struct Pixels {
     std::vector<std::uint8_t> rgba;
 };
 
-// Whether this build can decode and encode WebP: it needs libwebp.
+// True if this build can decode and encode WebP: it needs libwebp.
 bool canDecodeWebp();
 
-// The size that the header of a lossless WebP file states, so that it can be judged before anything is decoded. Throws Error naming `name`
+// The size that the header of a lossless WebP file states, so that it can be checked before anything is decoded. Throws Error naming `name`
 // if there is no lossless picture in `file`.
 glm::uvec2 webpSize(std::span<const std::byte> file, const std::string& name);
 
@@ -29,7 +29,7 @@ Pixels decodeWebp(std::span<const std::byte> file, const std::string& name);
 
 inline constexpr std::uint32_t kMaxWebpSide = 16383;
 
-// A file that gives back the same bytes, also where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error naming `name` if memory is
+// A lossless file: the same bytes, also where alpha is 0. The sides are 1 to kMaxWebpSide. Throws Error naming `name` if memory is
 // short.
 std::vector<std::byte> encodeWebp(const Pixels& pixels, const std::string& name);
 

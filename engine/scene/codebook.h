@@ -1,4 +1,4 @@
-// 256 values that stand for many numbers: what SOG keeps of scales, colours and harmonics.
+// 256 values that stand for many numbers: SOG's representation of scales, colours and harmonics.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ public:
     // values are kept as they are. `apart`, less than all numbers, is the first value.
     explicit Codebook(std::span<const float> numbers, std::optional<float> apart = {});
 
-    // Ascending; the last one fills what is left over.
+    // Ascending; the last one fills the rest.
     [[nodiscard]] const std::array<float, 256>& values() const { return values_; }
     [[nodiscard]] std::uint8_t nearest(float number) const;
 

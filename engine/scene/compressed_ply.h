@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-// Whether the file is a PLY whose header names a property packed_position.
+// True if the file is a PLY whose header names a property packed_position.
 bool isCompressedPly(InputFile& file);
 
 // Reads the elements chunk (min and max of position and logarithmic scale, optionally of colour, as float), vertex (packed_position,

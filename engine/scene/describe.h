@@ -1,4 +1,4 @@
-// What a scene is, in numbers: for `info`, the report and the choice of what to leave out.
+// A scene in numbers: for `info`, the report and the choice of passes to leave out.
 #pragma once
 
 #include "engine/scene/scene.h"

@@ -154,7 +154,7 @@ double reachBeyond(const std::vector<SplatSample>& samples, const FloorPlane& fl
     return distances[0].empty() ? 0.0 : findQuantile(distances[1], 0.9) / std::max(findQuantile(distances[0], 0.9), 1e-300);
 }
 
-// Whether nothing but what may be floaters begins at the floor: before a wall things hover, on a floor they stand.
+// True if only possible floaters begin at the floor: things float in front of a wall, but stand on a floor.
 bool hovers(const std::vector<SplatSample>& samples, const FloorPlane& floor, double size) {
     std::vector<double> heights;
     for (const SplatSample& sample : samples) {

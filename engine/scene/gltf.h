@@ -6,11 +6,11 @@
 
 namespace binosplat {
 
-// Whether the file is a GLB, by its first bytes, or JSON with the keys of glTF.
+// True if the file is a GLB, by its first bytes, or JSON with the keys of glTF.
 bool isGltf(InputFile& file);
 
-// All splats that the default scene's nodes place, in that scene's axes; the harmonics are turned along. What has no splats is left out,
-// with a note. Throws Error in a build without tinygltf.
+// All splats that the default scene's nodes place, in that scene's axes; the harmonics are rotated with them. Nodes without splats are left
+// out, with a note. Throws Error in a build without tinygltf.
 Scene readGltf(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Where the bytes of a glTF are: in the GLB itself, in files beside it, or in its text.
+// The bytes of a glTF: in the GLB itself, in files beside it, or in its text.
 #pragma once
 
 #include "engine/scene/input_file.h"

@@ -21,7 +21,7 @@ constexpr std::uint64_t kMostTextBytes = std::uint64_t{1} << 31;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN\0"
 constexpr const char* kPrefix = "KHR_gaussian_splatting:";
 
-// What is to be parsed, and the chunk of a GLB that holds its first buffer.
+// The text to parse, and the chunk of a GLB that holds its first buffer.
 struct Content {
     std::vector<std::byte> text;
     std::optional<GltfBuffer> chunk;
@@ -211,7 +211,7 @@ GltfSplats openSplats(const Place& place, const glm::dmat4& world_from_node) {
     return splats;
 }
 
-// What the primitives ask for, and which of it is not known.
+// The primitives' requests, and the unknown ones among them.
 class Wishes {
 public:
     explicit Wishes(const std::string& file) : file_(file) {}

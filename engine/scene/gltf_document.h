@@ -1,4 +1,4 @@
-// A glTF judged as a whole: which splats its nodes place where, in columns whose bytes are known to be there.
+// A glTF checked as a whole: the splats that its nodes place, in columns whose bytes are known to exist.
 #pragma once
 
 #include "engine/scene/gltf_buffers.h"
@@ -53,7 +53,7 @@ struct GltfDocument {
     std::vector<std::string> notes;
 };
 
-// Throws Error for whatever is not as the format has it, before a splat is read.
+// Throws Error for anything that violates the format, before a splat is read.
 GltfDocument openGltf(InputFile& file);
 
 }  // namespace binosplat

@@ -32,7 +32,7 @@ public:
     // The first bytes of the file, `count` at most, without moving on. Only before anything was read.
     [[nodiscard]] std::string_view peek(std::size_t count);
 
-    // What a line ended with: a line break, the end of the file after at least one character, or there was no line at all.
+    // The end of a line: a line break, the end of the file after at least one character, or there was no line at all.
     enum class LineEnd { kBreak, kFileEnd, kNoLine };
     // The next line without its break ("\n" or "\r\n"); valid until the next call. Throws Error for a line over 1 MiB.
     LineEnd readLine(std::string_view& line);

@@ -10,18 +10,18 @@
 
 namespace binosplat {
 
-// `file` is the name for messages, `expected` what it should be. Throws Error for what is no JSON or nested deeper than `max_depth`:
-// nothing that walks through it or quotes it need fear for the stack.
+// `file` is the name for messages, `expected` what it should be. Throws Error for text that is no JSON or nested deeper than `max_depth`:
+// so code that walks through it or quotes it cannot overflow the stack.
 nlohmann::json parseJson(std::span<const std::byte> text, const std::string& file, const char* expected, int max_depth = 64);
 
-// A value of a document that outlives it. Whatever is asked for throws Error where it is not so.
+// A value of a document that outlives it. A request that the value does not meet throws Error.
 struct JsonNode {
     const nlohmann::json& value;
     const std::string& file;
     std::string key = {};  // from the document on; empty: the document
 
     [[nodiscard]] std::string place() const { return key.empty() ? file : file + ": " + key; }
-    // Whether it is an object with a `name` that is not null.
+    // True if it is an object with a `name` that is not null.
     [[nodiscard]] bool has(const char* name) const;
     [[nodiscard]] JsonNode at(const std::string& name) const;
     [[nodiscard]] JsonNode at(std::size_t index) const;  // of an array, below its size

@@ -7,7 +7,7 @@
 
 namespace binosplat {
 
-// Whether the file begins with such a header: the format has no mark.
+// True if the file begins with such a header: the format has no mark.
 bool isKsplat(InputFile& file);
 
 Scene readKsplat(InputFile& file, LoadNotes& notes, const Progress& progress);

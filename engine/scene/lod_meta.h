@@ -1,5 +1,5 @@
 // lod-meta.json of a streamed SOG scene, as PlayCanvas specifies it (developer.playcanvas.com, "The Streamed SOG Format", version 1):
-// which splats of which chunk make up each level of detail.
+// the splats of each chunk that make up each level of detail.
 #pragma once
 
 #include "engine/scene/sog_meta.h"
@@ -21,14 +21,14 @@ struct LodLevel {
 
 struct LodMeta {
     std::vector<std::string> files;  // the meta.json or .sog bundle of each chunk, relative to the folder of lod-meta.json and within it
-    std::string environment;         // likewise, of splats that belong to every level; empty: none
+    std::string environment;         // the same, of splats that belong to every level; empty: none
     std::vector<LodLevel> levels;    // at least one
     std::uint64_t leaves = 0;
     std::vector<std::uint64_t> leaves_without;  // for each level: leaves with splats at other levels, but not at this one
 };
 
-// `place` is the file's name for messages. Throws Error naming the key and what was expected. Whether the chunks have as many splats as
-// the ranges say is the reader's to see.
+// `place` is the file's name for messages. Throws Error naming the key and what was expected. The reader checks
+// that the chunks have as many splats as the ranges say.
 LodMeta parseLodMeta(std::span<const std::byte> text, const std::string& place);
 
 }  // namespace binosplat

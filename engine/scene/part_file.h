@@ -1,4 +1,4 @@
-// A file being written beside its target: it takes the target's place in one step when it is whole, and is gone otherwise.
+// A file being written beside its target: it replaces the target in one step when it is complete, and is removed otherwise.
 #pragma once
 
 #include "engine/platform.h"

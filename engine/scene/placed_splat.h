@@ -1,4 +1,4 @@
-// Splats under a transform that need not be rigid: a Gaussian stays one, since its covariance goes along.
+// Splats under a transform that need not be rigid: a Gaussian stays one, since its covariance is transformed with it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,13 +11,13 @@ struct Ellipsoid {
     glm::dvec3 scales;    // of the axes, not negative
 };
 
-// Whether a matrix is a rotation, with or without a mirror, times one scale for all directions.
+// True if a matrix is a rotation, with or without a mirror, times one scale for all directions.
 bool isSimilarity(const glm::dmat3& matrix);
 
 // The rotation, with or without a mirror, that is nearest to an invertible matrix: the orthogonal part of its polar decomposition.
 glm::dmat3 nearestRotation(const glm::dmat3& matrix);
 
-// What an ellipsoid with a unit rotation becomes under `matrix`.
+// The image of an ellipsoid with a unit rotation under `matrix`.
 Ellipsoid place(const glm::dmat3& matrix, const Ellipsoid& ellipsoid);
 
 }  // namespace binosplat

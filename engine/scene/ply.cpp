@@ -83,7 +83,7 @@ Layout planColumns(const InputFile& file, const ply::Element& vertex) {
     return layout;
 }
 
-// Whether all scales so far are positive and all opacities within 0 to 1: no training leaves such logarithms and logits.
+// True if all scales so far are positive and all opacities within 0 to 1: no training leaves such logarithms and logits.
 bool looksActivated(const StoredBlock& block, bool three_scales) {
     const auto all = [&](int attribute, auto&& isSo) {
         return std::all_of(block.column(attribute), block.column(attribute) + block.rows, isSo);

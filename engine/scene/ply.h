@@ -1,4 +1,4 @@
-// PLY files of Gaussian splats as 2DGS and 3DGS trainings leave them: reading and writing.
+// PLY files of Gaussian splats from 2DGS and 3DGS trainings: reading and writing.
 #pragma once
 
 #include "engine/scene/input_file.h"
@@ -8,12 +8,12 @@
 
 namespace binosplat {
 
-// Whether the file is a PLY, by its first line.
+// True if the file is a PLY, by its first line.
 bool isPly(InputFile& file);
 
 // Reads element `vertex` with x y z, f_dc_0..2, f_rest_0.. (none, 9, 24 or 45, channel-major), opacity (logit), scale_0 scale_1
-// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is passed over,
-// but for a comment that asks for antialiasing. Throws Error that says so for a point cloud or a mesh.
+// [scale_2] (logarithms), rot_0..3 (w, x, y, z); any order, any scalar types, ascii or binary. Anything else in the file is ignored,
+// except a comment that asks for antialiasing. Throws Error that says so for a point cloud or a mesh.
 Scene readPly(InputFile& file, LoadNotes& notes, const Progress& progress);
 
 // Writes the 2DGS layout in binary little-endian: x y z nx ny nz f_dc f_rest opacity scale_0 scale_1 rot_0..3, the normal along t_w; of

@@ -1,4 +1,4 @@
-// The header of a PLY file: which elements and properties follow, in which encoding.
+// The header of a PLY file: its elements and properties, and their encoding.
 #pragma once
 
 #include "engine/scene/input_file.h"

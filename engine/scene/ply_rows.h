@@ -10,7 +10,7 @@
 
 namespace binosplat::ply {
 
-// Where a property goes: `attribute` of a StoredBlock.
+// The target of a property: `attribute` of a StoredBlock.
 struct Column {
     std::size_t property;
     int attribute;
@@ -28,7 +28,7 @@ public:
 // Moves `file` past an element that is of no interest.
 void skipElement(InputFile& file, Encoding encoding, const Element& element);
 
-// Checks the element's size against what is left of the file, then returns its reader. The element must have no list.
+// Checks the element's size against the rest of the file, then returns its reader. The element must have no list.
 std::unique_ptr<RowReader> openRows(InputFile& file, const Header& header, const Element& element, std::vector<Column> columns);
 
 }  // namespace binosplat::ply

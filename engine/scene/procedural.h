@@ -32,7 +32,7 @@
 
 namespace binosplat {
 
-// Where to look at a built-in scene from.
+// A view of a built-in scene.
 struct View {
     glm::dvec3 eye, look, up;
     double fov_x_deg;
@@ -46,7 +46,7 @@ struct BuiltinInfo {
 };
 std::vector<BuiltinInfo> listBuiltins();
 
-// Whether `source` has the prefix "builtin:".
+// True if `source` has the prefix "builtin:".
 bool isBuiltin(const std::string& source);
 
 // The recommended view; `name` with or without the prefix. Empty for names that are not there.

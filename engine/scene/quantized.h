@@ -1,4 +1,4 @@
-// What the compressed formats have in common: small integers back to stored attributes (see scene_builder.h).
+// Common to the compressed formats: small integers back to stored attributes (see scene_builder.h).
 #pragma once
 
 #include <algorithm>

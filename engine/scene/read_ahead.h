@@ -1,4 +1,4 @@
-// Two threads for one scene: one reads blocks and activates them, the other one puts them together.
+// Two threads for one scene: one reads blocks and activates them, the other assembles them.
 #pragma once
 
 #include "engine/scene/stored_block.h"
@@ -36,15 +36,15 @@ private:
     std::ptrdiff_t count_;
 };
 
-// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of whoever takes them. A scene of few rows is filled
-// where it is taken: a thread would take longer to start.
+// Blocks of `rows` rows in all, filled in order on a thread of its own, a little ahead of their consumer. A scene of few rows is filled
+// on the consumer's thread: another would take longer to start.
 class ReadAhead {
 public:
     struct Block {
         StoredBlock stored;
         ActiveBlock active;
     };
-    // `fill(block)` fills stored.rows rows and activates them. What it throws, next() throws where that block would have come.
+    // `fill(block)` fills stored.rows rows and activates them. If it throws, next() throws the same in place of that block.
     ReadAhead(std::uint64_t rows, std::function<void(Block&)> fill);
     ReadAhead(const ReadAhead&) = delete;
     ReadAhead& operator=(const ReadAhead&) = delete;

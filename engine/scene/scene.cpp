@@ -25,7 +25,7 @@ namespace binosplat {
 
 namespace {
 
-// What the user named: a directory, or a file (then open, nothing read yet).
+// The user's choice: a directory, or a file (then open, nothing read yet).
 struct Source {
     std::string path;
     std::unique_ptr<InputFile> file;  // null for a directory

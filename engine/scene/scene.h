@@ -37,7 +37,7 @@ struct Scene {
     [[nodiscard]] bool isGaussian3d() const { return !thicknesses.empty(); }
 };
 
-// What loading met on the way, for `info`, the report and the user.
+// Findings of loading, for `info`, the report and the user.
 struct LoadNotes {
     std::uint64_t splats_in_file = 0;
     std::uint64_t skipped_not_finite = 0;     // a NaN or infinity in position, scale, rotation, opacity or colour
@@ -54,10 +54,10 @@ struct LoadNotes {
     std::vector<std::string> lines;           // one sentence each, for the user
 };
 
-// Which level of detail is loaded of a scene that has several.
+// The choice among several levels of detail.
 struct LevelChoice {
     std::optional<std::uint32_t> level;  // 0: the finest; an error if there is no such level
-    // Without `level`: whether so many splats fit. The finest level that does is loaded, or the coarsest; absent: the finest.
+    // Without `level`: true if so many splats fit. The finest level that does is loaded, or the coarsest; absent: the finest.
     std::function<bool(std::uint64_t splats, int sh_degree)> fits;
 };
 

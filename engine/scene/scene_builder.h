@@ -1,5 +1,5 @@
 // From attributes as files store them to a Scene: activations, skipped splats, the order of axes, the SH bands worth keeping.
-// A format fills blocks column by column and hands them over; all formats share what happens next.
+// A format fills blocks column by column and hands them over; all formats share the rest.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -24,7 +24,7 @@ public:
     void activate(const StoredBlock& block, ActiveBlock& active) const;
     void append(const StoredBlock& block, const ActiveBlock& active);
 
-    // The scene, with what was met on the way added to `notes`.
+    // The scene, with the findings added to `notes`.
     [[nodiscard]] Scene finish(LoadNotes& notes);
 
 private:
@@ -37,7 +37,7 @@ private:
     ActiveBlock active_;
 };
 
-// Of a file that says that its splats are discs, though it has a third scale for each: the shortest one means nothing.
+// Of a file that says that its splats are discs, though it has a third scale for each: the shortest one has no meaning.
 void takeAsDiscs(Scene& scene, LoadNotes& notes);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// What a folder holds that is no format of its own: the output of a training, or the numbered files of a moving scene.
+// Folders that are no format of their own: the output of a training, or the numbered files of a moving scene.
 #pragma once
 
 #include <filesystem>

@@ -16,7 +16,7 @@ namespace binosplat {
 
 namespace {
 
-// What none of the formats has a word for.
+// Properties that none of the formats can store.
 void addUnsaid(const Scene& scene, std::vector<std::string>& losses) {
     if (scene.by_distance) { losses.emplace_back("that splats are blended by distance (render it with --order distance)"); }
     if (scene.y_up) { losses.emplace_back("that y is up (render it with --up 0,1,0)"); }

@@ -11,7 +11,7 @@ namespace binosplat {
 struct SceneTarget {
     const char* extension;  // with its dot
     void (*write)(const Scene& scene, const std::string& path, const Progress& progress);
-    // What the file does not keep of this scene, for the user; one line.
+    // The losses of this scene in the file, for the user; one line.
     std::string (*describeLoss)(const Scene& scene);
 };
 

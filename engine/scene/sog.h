@@ -9,10 +9,10 @@
 
 namespace binosplat {
 
-// Whether the directory holds a meta.json.
+// True if the directory holds a meta.json.
 bool isSogFolder(const std::string& folder);
 
-// Whether the file is a zip archive, as every .sog is, by its first bytes; or a meta.json itself, by its keys.
+// True if the file is a zip archive, as every .sog is, by its first bytes; or a meta.json itself, by its keys.
 bool isSogFile(InputFile& file);
 
 // Throws Error in a build that cannot decode WebP.

@@ -1,4 +1,4 @@
-// meta.json of a SOG scene, version 1 or 2, as lookup tables: what each byte of each picture stands for.
+// meta.json of a SOG scene, version 1 or 2, as lookup tables: the value of each byte of each picture.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline constexpr std::size_t kSogPaletteColumns = 64;  // entries per row of the
 // SH beyond the constant band: each splat has a label, each label a row of coefficients.
 struct SogPalette {
     int sh_degree = 0;                                                // 0: version 1 does not say, the picture's width tells
-    std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // likewise
+    std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  // the same
     ByteTable values{};
     std::string centroids_file, labels_file;
 };

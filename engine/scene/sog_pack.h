@@ -16,7 +16,7 @@ struct SogPlaces {
 };
 SogPlaces findSogPlaces(const Scene& scene);
 
-// The splats along a Morton curve: what is near in space is near in the pictures, so that what neighbours share is stored once.
+// The splats along a Morton curve: neighbours in space are neighbours in the pictures, which then compress better.
 std::vector<std::uint32_t> mortonOrder(const SogPlaces& places);
 
 // Three bytes for the smaller components, between -1/sqrt(2) and 1/sqrt(2), and one from 252 on for which of w, x, y, z is left out.

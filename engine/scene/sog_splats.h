@@ -1,4 +1,4 @@
-// The splats of one SOG directory or bundle, in steps, so that many can be judged before the first is decoded.
+// The splats of one SOG directory or bundle, in steps, so that many can be checked before the first is decoded.
 #pragma once
 
 #include "engine/picture/webp.h"

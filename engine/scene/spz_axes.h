@@ -1,5 +1,5 @@
-// The axes of an SPZ file, which its extension SPZ_ADOBE_coordinate_system may name, and what turns splats into those of trained PLY
-// scenes.
+// The axes of an SPZ file, which its extension SPZ_ADOBE_coordinate_system may name, and the conversion of splats to the axes of trained
+// PLY scenes.
 #pragma once
 
 #include "engine/scene/sh_turn.h"
@@ -23,7 +23,7 @@ public:
     // `system` is the extension's number, 1 to kLast.
     explicit SpzAxes(std::uint32_t system = kUsual);
 
-    // Where x, y and z lead, and whether they are right-handed.
+    // The directions of x, y and z, and their handedness.
     [[nodiscard]] std::string describe() const;
 
     // To axes right, down, forward.
@@ -40,7 +40,7 @@ private:
     std::array<float, 15> sh_signs_{};  // all that it is where y and z keep their places
 };
 
-// The number that the records of a file's extensions say, if they say one: type, length and content, one behind the other. What is broken
+// The number in the records of a file's extensions, if there is one: type, length and content, one after the other. A broken record
 // ends the search.
 std::optional<std::uint32_t> findSpzAxes(std::span<const std::byte> records);
 

@@ -217,7 +217,7 @@ void unpackSplat(const Header& header, const SpzAxes& axes, const Attributes& at
     }
 }
 
-// What the file says of its axes, or what files mean that say nothing.
+// The file's axes, or those of files that do not name any.
 SpzAxes chooseAxes(const std::string& file, const Header& header, const Attributes& attributes, LoadNotes& notes) {
     const std::optional<std::uint32_t> said = header.has_extensions ? findSpzAxes(attributes.records) : std::nullopt;
     if (said && *said > SpzAxes::kLast) {

@@ -94,7 +94,7 @@ std::vector<SplatSample> coreOf(std::vector<SplatSample> samples) {
     return samples;
 }
 
-// What is known of the scene before one stands in it.
+// The scene's properties that do not depend on the standpoint.
 struct Lie {
     std::vector<Spot> spots;
     Range x, z;              // nine tenths of all
@@ -176,7 +176,7 @@ double furnishedShare(const Lie& lie) {
     return all == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(all);
 }
 
-// Whether splats far from the middle are larger than those near it, as they are where cameras stood inside.
+// True if splats far from the middle are larger than those near it, as they are in scenes captured from inside.
 bool growsOutwards(const Lie& lie) {
     const double radius = 0.5 * std::hypot(lie.x.length(), lie.z.length());
     const auto reachAt = [&](double from, double to) {

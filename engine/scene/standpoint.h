@@ -1,4 +1,4 @@
-// Where to stand in a scene that comes without cameras, judged from its splats alone; one in fifty may be a floater.
+// The standpoint for a scene without cameras, derived from its splats alone; one in fifty may be a floater.
 #pragma once
 
 #include "engine/scene/procedural.h"
@@ -20,16 +20,17 @@ struct Standpoint {
     std::string why;  // half a sentence: "inside: ...", "outside: ..."
 };
 
-// A scene that surrounds its middle, a room or a street, is entered: at eye height over its floor, near the middle of what is dense but
-// clear of it, looking at the densest part. Anything else is looked at from in front (from -z where y points down, from +z where it points
+// A scene that surrounds its middle, a room or a street, is entered: at eye height over its floor, near the middle of the dense part but
+// clear of it, facing the densest part. Anything else is viewed from the front (from -z where y points down, from +z where it points
 // up) so that nine tenths of the splats fill the picture's width. Up is `wish.up`, else the floor's (floor_plane.h), else -y, or +y as in
 // glTF.
 Standpoint judgeStandpoint(const Scene& scene, const StandpointWish& wish = {});
 
-// The longest side, along the axes, of the box with nine tenths of what one stands in or before: hills and sky beyond it do not count.
+// The longest side, along the axes, of the box with nine tenths of the splats that one stands in or in front of: hills and sky beyond do
+// not count.
 double coreSize(const Scene& scene);
 
-// How high the floor lies along `up`, a unit vector, if there is one: dot(up, p) of its points.
+// The height of the floor along `up`, a unit vector, if there is one: dot(up, p) of its points.
 std::optional<double> floorHeight(const Scene& scene, const glm::dvec3& up);
 
 }  // namespace binosplat

@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-// What is stored of a splat. The f_rest values are channel-major: kRest0 + channel * (coefficients - 1) + (k - 1).
+// The stored attributes of a splat. The f_rest values are channel-major: kRest0 + channel * (coefficients - 1) + (k - 1).
 enum StoredAttribute : int {
     kStoredX,
     kStoredY,
@@ -70,7 +70,7 @@ struct ActiveBlock {
     std::size_t skipped_not_finite = 0, skipped_zero_rotation = 0;
 };
 
-// `sh_degree` and `three_scales` say what the file has.
+// `sh_degree` and `three_scales` describe the file.
 void activate(const StoredBlock& block, int sh_degree, bool three_scales, ActiveBlock& active);
 
 }  // namespace binosplat

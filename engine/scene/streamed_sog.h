@@ -9,15 +9,15 @@
 
 namespace binosplat {
 
-// Whether the directory holds a lod-meta.json.
+// True if the directory holds a lod-meta.json.
 bool isStreamedSogFolder(const std::string& folder);
 
-// Whether the file is a lod-meta.json, by its name, as the format has it, or by its keys.
+// True if the file is a lod-meta.json, by its name, as in the format, or by its keys.
 bool isStreamedSogFile(InputFile& file);
 
 // All splats that the leaves have at the chosen level, and the environment's: chunk by chunk in the order of their names' list, those of a
-// chunk in its own order. A leaf that does not have the level has no splats there: that is what the format says, and what PlayCanvas shows
-// of a level. Throws Error in a build that cannot decode WebP.
+// chunk in its own order. A leaf without the level has no splats there, as in the format's specification and in PlayCanvas'
+// viewer. Throws Error in a build that cannot decode WebP.
 Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
 Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress);
 

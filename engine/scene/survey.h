@@ -1,4 +1,4 @@
-// What a scene's splats are like, counted: what costs time without being seen, and what is probably rubbish.
+// Counts of a scene's splats: those that cost time without being visible, and those that are probably rubbish.
 #pragma once
 
 #include "engine/scene/scene.h"

@@ -1,4 +1,4 @@
-// cameras.json as a 3DGS or 2DGS training leaves it.
+// cameras.json of a 3DGS or 2DGS training.
 #pragma once
 
 #include "engine/geometry.h"
@@ -18,7 +18,7 @@ struct FileCamera {
 // pixels; optional cx, cy (the middle otherwise) and img_name. Throws Error naming file, camera and key.
 std::vector<FileCamera> readCameraFile(const std::filesystem::path& path);
 
-// The same view with another number of pixels; fx, fy, cx, cy are scaled along.
+// The same view with another number of pixels; fx, fy, cx, cy are scaled with it.
 Eye resize(const Eye& eye, glm::uvec2 size_px);
 
 }  // namespace binosplat

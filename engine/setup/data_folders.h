@@ -1,4 +1,4 @@
-// Where the files lie that come with the program: configs/headsets and the bench plans.
+// The places of the files that come with the program: configs/headsets and the bench plans.
 #pragma once
 
 #include "engine/platform.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// The folders that may hold configs/, first come first served: $BINOSPLAT_DATA, the working directory, those that the program lies in (a
+// The folders that may hold configs/, in order of precedence: $BINOSPLAT_DATA, the working directory, those above the program (a
 // build inside the source tree), and ../share/binosplat beside its folder (an installed program).
 std::vector<std::filesystem::path> dataFolders();
 

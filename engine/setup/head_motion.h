@@ -14,7 +14,7 @@ namespace binosplat {
 // The axes a recording was made in; y points up in both, x to the right.
 enum class MotionAxes {
     kOpenXr,  // right-handed, the wearer looks along -z: OpenXR, WebXR, SteamVR
-    kUnity,   // left-handed, the wearer looks along +z: what Unity applications write
+    kUnity,   // left-handed, the wearer looks along +z: recordings of Unity applications
 };
 
 // A recorded pose in the camera's axes (x right, y down, z forward), head and world alike. Lengths stay in metres.
@@ -48,14 +48,14 @@ private:
     std::vector<HeadSample> samples_;
 };
 
-// What is played of a recording.
+// The part of a recording that is played.
 struct MotionSegment {
-    double from_s = 0.0;            // where it begins
-    std::optional<double> seconds;  // how long it is, the end not included; absent: to the end, that included
+    double from_s = 0.0;            // its beginning
+    std::optional<double> seconds;  // its length, the end not included; absent: to the end, that included
     std::optional<double> rate_hz;  // frames in a second; absent: one for each sample
 };
 
-// Where a motion that starts at the segment's beginning has its frames. Throws Error if there are more than a million; `file` is for
+// The times of the frames of a motion that starts at the segment's beginning. Throws Error if there are more than a million; `file` is for
 // messages.
 std::vector<double> frameTimes(const HeadMotion& motion, const MotionSegment& segment, const std::string& file);
 

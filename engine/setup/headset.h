@@ -16,7 +16,7 @@ struct Headset {
     std::array<ViewAngles, 2> angles{};  // by Side, each relative to its own eye's axis
     double canting_rad = 0.0;            // each eye's axis is turned outwards by this
     double eye_distance_m = 0.0;
-    std::array<glm::dvec3, 2> lens_centres{};  // by Side: where the lens is at its best, a direction in the eye's axes
+    std::array<glm::dvec3, 2> lens_centres{};  // by Side: the lens's centre, a direction in the eye's axes
 };
 
 // Keys name, source, size, canting_deg, eye_distance_m; tables [left] and [right] with left, right, up, down in degrees (left and
@@ -25,7 +25,7 @@ struct Headset {
 Headset readHeadset(const std::filesystem::path& path);
 
 // The file of a headset: NAME itself if it is a path to a .toml, otherwise configs/headsets/NAME.toml in the first of dataFolders() that
-// has it. Throws Error with the names that there are.
+// has it. Throws Error with the available names.
 std::filesystem::path findHeadset(const std::string& name);
 
 // Both eyes of a wearer whose mid-eye is at `world_from_middle`.

@@ -9,12 +9,12 @@ namespace binosplat {
 
 class OutputFiles {
 public:
-    // Makes `folder` (with its parents) and proves that it can be written. Throws Error otherwise, naming the folder.
+    // Makes `folder` (with its parents) and checks that it can be written. Throws Error otherwise, naming the folder.
     explicit OutputFiles(const std::filesystem::path& folder);
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
 
-    // Removes what was not published, and the folders made for it.
+    // Removes unpublished files, and the folders made for them.
     ~OutputFiles();
 
     // Where to write files for now, under their final names. The hidden folder is made by the first call, so that a run that is

@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// One value as it was written. `origin` is how messages name it: "--size" or "default.toml:12: size".
+// One value as it was written. `origin` is its name in messages: "--size" or "default.toml:12: size".
 struct Setting {
     std::string origin;
     std::vector<std::string> items;  // one entry, or those of a TOML array

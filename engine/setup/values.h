@@ -1,4 +1,4 @@
-// Typed values out of settings. Every error is one line: where it was written, what it is, what it must be.
+// Typed values from settings. Every error is one line: the place, the value, the allowed range.
 #pragma once
 
 #include "engine/setup/settings.h"

@@ -1,4 +1,4 @@
-// What came to OpenXR after 1.0.20, the version of Debian bookworm's headers, as far as this runtime has it: names, values and layouts of
+// Additions to OpenXR since 1.0.20, the version of Debian bookworm's headers, as far as this runtime has them: names, values and layouts of
 // the registry (xr.xml). Newer headers declare it themselves.
 #pragma once
 

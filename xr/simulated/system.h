@@ -1,4 +1,4 @@
-// What only the operating system can say or do for this runtime: system_posix.cpp or system_windows.cpp. Texts are UTF-8.
+// The operating system's services for this runtime: system_posix.cpp or system_windows.cpp. Texts are UTF-8.
 #pragma once
 
 #include <cstdio>
@@ -16,10 +16,10 @@ std::FILE* createFile(const std::filesystem::path& path);
 // A function of the system's Vulkan loader; null without it. The library is held open for good: the application's Vulkan objects may
 // outlive this runtime's interest in them.
 void* vulkanLoadersFunction(const char* name);
-// What messages call that loader.
+// The name of that loader in messages.
 extern const char* const kVulkanLoader;
 
-// What happened must outlive the instance that it happened to, though the loader closes this library with it.
+// This library's state must outlive the instance, though the loader closes the library with it.
 void keepThisLibrary();
 
 }  // namespace simulated

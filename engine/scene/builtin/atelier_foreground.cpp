@@ -1,4 +1,4 @@
-// What is close to the eye, so that the two eyes see different things behind it: a lattice screen and a plant.
+// Objects close to the eyes, so that each eye sees different things behind them: a lattice screen and a plant.
 #include "engine/scene/builtin/atelier.h"
 #include "engine/scene/builtin/noise.h"
 #include "engine/scene/builtin/shapes.h"

@@ -1,4 +1,4 @@
-// What the window shows: a meadow, rows of hills into the haze, trees, and the sky. Unlit: colours are painted with the light in them.
+// The view from the window: a meadow, rows of hills into the haze, trees, and the sky. Unlit: colours are painted with the light in them.
 #include "engine/scene/builtin/atelier.h"
 #include "engine/scene/builtin/noise.h"
 

@@ -1,4 +1,4 @@
-// What lies on the table and the sideboard. The vase is the one glossy thing in the room.
+// The objects on the table and the sideboard. The vase is the one glossy thing in the room.
 #include "engine/scene/builtin/atelier.h"
 #include "engine/scene/builtin/noise.h"
 #include "engine/scene/builtin/shapes.h"

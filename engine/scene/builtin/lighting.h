@@ -12,7 +12,7 @@ namespace binosplat::builtin {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
-// What blocks light: boxes (turned about the vertical) and ellipsoids (upright).
+// Occluders of light: boxes (turned about the vertical) and ellipsoids (upright).
 struct Occluder {
     enum class Shape { kBox, kEllipsoid };
     Occluder(Shape shape, const glm::vec3& centre, const glm::vec3& half, float yaw_rad);

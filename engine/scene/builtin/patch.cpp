@@ -211,7 +211,7 @@ void forAll(std::size_t count, const Work& work, const Progress& progress, doubl
     });
 }
 
-// Whether a patch lies in a wall, floor or ceiling and looks out of the room: the back of a picture frame, the underside of a pot.
+// True if a patch lies in a wall, floor or ceiling and faces out of the room: the back of a picture frame, the underside of a pot.
 bool isHidden(const Patch& patch, const Room& room) {
     if (!patch.lit || patch.two_sided || !patch.behind) { return false; }
     const Frame frame = frameAt(patch, {0.5f, 0.5f});

@@ -9,7 +9,7 @@
 
 namespace binosplat::builtin {
 
-// What a surface is made of at a point; colours are linear.
+// The material of a surface at a point; colours are linear.
 struct Material {
     glm::vec3 albedo{0.5f};
     glm::vec3 emission{0.0f};

@@ -38,7 +38,7 @@ std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActions
     return active;
 }
 
-// What the four xrGetActionState functions have in common.
+// Common to the four xrGetActionState functions.
 const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* getInfo, XrActionType type) {
     const XrActionStateGetInfo& info = checked(getInfo, XR_TYPE_ACTION_STATE_GET_INFO);
     const AttachedAction& action = getAttached(session, info.action);

@@ -67,7 +67,7 @@ XrResult answerUnlocked(const char* function, Body&& body) {
     }
 }
 
-// What explain() has for the application's own function (messages.h), once the lock is free.
+// explain()'s message for the application's own function (messages.h), once the lock is free.
 void deliverMessages();
 
 template <class Body>

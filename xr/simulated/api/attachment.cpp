@@ -182,7 +182,7 @@ std::pair<const AttachedAction*, const ActionReading*> readingOf(const Session& 
     return {};
 }
 
-// What a pose action is read from; null while it is inactive.
+// The source of a pose action; null while it is inactive.
 const BoundSource* sourceOf(const Session& session, std::uint64_t action, XrPath subaction_path) {
     const auto [attached, reading] = readingOf(session, action, subaction_path);
     if (reading == nullptr || !reading->is_active || !reading->followed) return nullptr;

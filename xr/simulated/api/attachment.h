@@ -53,12 +53,12 @@ struct Attachment {
     std::vector<AttachedAction> actions;
     // The profile that each device plays; none before the first xrSyncActions in focus.
     std::array<const Profile*, kDevices> profiles{};
-    // What the hands play as long as nobody says otherwise, and what they were to play when that was chosen; empty: whatever there is.
+    // The hands' default profile, and the requested one when that was chosen; empty: any.
     const Profile* hands = nullptr;
     std::optional<std::string> hands_wanted;
 
     [[nodiscard]] AttachedAction* find(std::uint64_t action);
-    // Whether any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
+    // True if any device plays another one now. Throws ScriptError if the script moves what the controllers lack.
     bool chooseProfiles(Instance& instance, const Automation& automation, double time_s);
     [[nodiscard]] bool isSuggested(const Instance& instance, const Profile& profile) const;
     void bindSources(const Instance& instance);
@@ -75,9 +75,9 @@ AttachedAction& getAttached(Session& session, XrAction action);
 
 // Where a pose action's source is; none while it is inactive.
 std::optional<Pose> stageFromAction(const Session& session, std::uint64_t action, XrPath subaction_path, const State& state);
-// Whether its set was active then, with a source for it: else its spaces are nowhere, not even in one another.
+// True if its set was active then, with a source for it: otherwise its spaces cannot be located, not even in one another.
 bool isLocatable(const Session& session, std::uint64_t action, XrPath subaction_path);
-// Whether that source is the eye tracker.
+// True if that source is the eye tracker.
 bool isOfGaze(const Session& session, std::uint64_t action, XrPath subaction_path);
 
 }  // namespace simulated

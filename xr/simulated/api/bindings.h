@@ -1,4 +1,4 @@
-// What an application suggested in xrSuggestInteractionProfileBindings.
+// An application's suggestions in xrSuggestInteractionProfileBindings.
 #pragma once
 
 #include <cstdint>

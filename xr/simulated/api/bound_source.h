@@ -1,4 +1,4 @@
-// What a suggested binding means for an action of some type (chapter 11, "Suggested Bindings").
+// The meaning of a suggested binding for an action of some type (chapter 11, "Suggested Bindings").
 #pragma once
 
 #include <openxr/openxr.h>

@@ -26,7 +26,7 @@ const Entry kEntries[] = {
 #undef SIMULATED_EXTENSION_ENTRY
 };
 
-// What may be asked for before there is an instance.
+// Functions that exist without an instance.
 bool needsNoInstance(const char* name) {
     for (const char* candidate : {"xrEnumerateInstanceExtensionProperties", "xrEnumerateApiLayerProperties", "xrCreateInstance"}) {
         if (std::strcmp(name, candidate) == 0) return true;

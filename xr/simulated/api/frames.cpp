@@ -96,7 +96,7 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             const EyeState& seen = state.eyes[eye];
             Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
-            // What is not known is not told either.
+            // Unknown values are not reported.
             if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
                 if (!state.head_place_known) pose.position = glm::dvec3(0.0);
                 if (!state.head_turn_known) pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0);

@@ -42,7 +42,7 @@ std::uint64_t numberOf(Handle handle) {
     return reinterpret_cast<std::uint64_t>(handle);
 }
 
-// What the specification calls them.
+// Their names in the specification.
 constexpr const char* typeOf(XrInstance) { return "XrInstance"; }
 constexpr const char* typeOf(XrSession) { return "XrSession"; }
 constexpr const char* typeOf(XrSpace) { return "XrSpace"; }

@@ -26,11 +26,11 @@ struct Instance : Object, Enabled {
     std::unique_ptr<Simulation> simulation;
     // Announced by the script; calls fail once the grace is over.
     std::optional<XrTime> lost_from;
-    // What the application suggested, by interaction profile, in the order in which it first named them.
+    // The application's suggestions, by interaction profile, in the order in which it first named them.
     std::vector<SuggestedProfile> suggestions;
     bool has_asked_requirements = false;
     ObjectNames object_names;
-    // What xrGetVulkanGraphicsDevice(2)KHR gave and for which VkInstance, and where the functions of each VkInstance come from.
+    // The device of xrGetVulkanGraphicsDevice(2)KHR and its VkInstance, and the source of each VkInstance's functions.
     VkPhysicalDevice graphics_device = VK_NULL_HANDLE;
     VkInstance graphics_instance = VK_NULL_HANDLE;
     std::map<VkInstance, PFN_vkGetInstanceProcAddr> vulkan_loaders;
@@ -46,7 +46,7 @@ struct Instance : Object, Enabled {
     [[nodiscard]] bool hasUserPath(std::string_view path) const {
         return isUserPath(path) && (path != "/user/eyes_ext" || extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME));
     }
-    // What the core has since 1.1, and what 1.0 has with an extension.
+    // Features in the core since 1.1, and in 1.0 with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
 };
 

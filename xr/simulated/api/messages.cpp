@@ -115,7 +115,7 @@ void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const ch
 }
 
 void deliverMessages() {
-    // What a callback does may queue others.
+    // A callback may queue others.
     for (const Pending& message : std::exchange(pending(), {})) {
         std::vector<XrDebugUtilsLabelEXT> labels;
         for (const std::string& label : message.labels) labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()});
@@ -173,7 +173,7 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
         require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
         require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
-        // What the application says stays as it is, but for the names of objects; what it leaves open is filled in.
+        // The application's message is unchanged, except for the names of objects; missing parts are filled in.
         Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
                         {},      {}};
         for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) message.labels.push_back(checkedLabel(&data.sessionLabels[i]));

@@ -52,7 +52,7 @@ extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRunt
     if (!isUnderstood(loader_info) || !isUnderstood(request)) return XR_ERROR_INITIALIZATION_FAILED;
     simulated::keepThisLibrary();
     request->interface_version = kInterfaceVersion;
-    // What this runtime implements, or what the loader can do with.
+    // The versions that this runtime implements, as far as the loader supports them.
     request->api_version = std::min<XrVersion>(kApiVersion, loader_info->most_api_version);
     request->get_instance_proc_addr = simulated::xrGetInstanceProcAddr;
     return XR_SUCCESS;

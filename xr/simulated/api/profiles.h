@@ -10,7 +10,7 @@
 
 namespace simulated {
 
-// What a component reads or does: its type in the registry.
+// The kind of a component: its type in the registry.
 enum class ComponentKind { kBoolean, kFloat, kPose, kVibration };
 
 // `depends` is in the registry's words: names of versions and extensions, + is and, a comma is or; empty: always.
@@ -46,12 +46,12 @@ const Profile* findProfile(std::string_view path);
 const Profile* findHandProfile(std::string_view name);
 // All of these names, for messages.
 std::string handProfiles();
-// Whether "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
+// True if "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
 // Null if it has none: of this user path, with this version and these extensions.
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
 
-// What the profile has this path with, if that is all that it lacks; else empty.
+// The extension or version that the profile has this path with, if only that is missing; else empty.
 std::string_view neededFor(const Profile& profile, std::string_view binding);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.

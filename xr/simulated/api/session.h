@@ -48,7 +48,7 @@ struct Session : Object {
     std::vector<std::string> log_events;
     Automation automation;
     Labels labels;
-    // What the application was told last of the wearer (XR_EXT_user_presence).
+    // The last user presence reported to the application (XR_EXT_user_presence).
     std::optional<bool> announced_presence;
 
     Session(Instance& owner, std::unique_ptr<Device> graphics);
@@ -66,7 +66,7 @@ struct Session : Object {
     [[nodiscard]] bool isHeadless() const { return device == nullptr; }
     void settle();
     void passHeadlessFrame();
-    // What the script lets happen once, up to this display time.
+    // The script's events up to this display time.
     void meetEvents(XrTime display_time);
     // Tells whether somebody wears the headset, if that is new.
     void announcePresence(const State& now);

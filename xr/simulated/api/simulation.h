@@ -1,4 +1,4 @@
-// What is simulated: the script that moves the headset, the clock that moves the script, and where the wearer's view is written.
+// The simulation: the script that moves the headset, the clock that moves the script, and where the wearer's view is written.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct Output {
 Script scriptOfEnvironment();
 
 struct Simulation {
-    // What the environment said.
+    // The environment's settings.
     std::string origin;
     Script script;
     Clock clock;

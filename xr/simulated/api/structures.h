@@ -1,4 +1,4 @@
-// What holds for every structure and array that an application passes: types, next chains, the two-call idiom, fixed strings.
+// Checks of every structure and array that an application passes: types, next chains, the two-call idiom, fixed strings.
 #pragma once
 
 #include <cstring>
@@ -64,7 +64,7 @@ inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* b
     return XR_SUCCESS;
 }
 
-// What an application passed, in quotes and without what a line of text cannot show.
+// An application's text, in quotes and without characters that a line cannot show.
 std::string printable(std::string_view text);
 // A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it has no end or is not UTF-8.
 std::string textOf(const char* characters, std::size_t size);

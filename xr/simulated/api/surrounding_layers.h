@@ -6,7 +6,7 @@
 
 namespace simulated {
 
-// Whether this is one of these layers, and its extension is enabled.
+// True if this is one of these layers, and its extension is enabled.
 bool isSurrounding(const Session& session, XrStructureType type);
 void checkSurrounding(const Session& session, const XrCompositionLayerBaseHeader& layer);
 Layer surroundingLayer(const Session& session, const XrCompositionLayerBaseHeader& layer, const Pose& stage_from_space);

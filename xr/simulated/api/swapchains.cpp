@@ -17,7 +17,7 @@ constexpr XrSwapchainUsageFlags kKnownUsage = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMEN
                                               XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
 constexpr XrSwapchainCreateFlags kKnownFlags = XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT | XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT;
 
-// What is asked for, and what the runtime itself needs: the attachment layout in which images are handed over, and the read-back.
+// The requested usage, and the runtime's own: the attachment layout in which images are handed over, and the read-back.
 VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& format) {
     VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;

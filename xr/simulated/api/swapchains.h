@@ -28,7 +28,7 @@ struct Swapchain : Object {
     std::uint64_t acquisitions = 0;
     // Of the image that is acquired next, in the script's order: one that the application does not hold.
     [[nodiscard]] std::uint32_t nextImage() const;
-    // What the compositor sees: the image that was released last, and its texels once somebody wanted them.
+    // The compositor's input: the image that was released last, and its texels once somebody wanted them.
     bool has_released = false;
     std::uint32_t released_index = 0;
     bool has_texels = false;

@@ -125,7 +125,7 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
         result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
         if (result == VK_SUCCESS) owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr;
-        // What Vulkan says stands in vulkanResult; this call did what it was asked for. A machine without a driver is reported all the
+        // Vulkan's result is in vulkanResult; this call itself succeeded. A machine without a driver is reported all the
         // same.
         if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
             explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");

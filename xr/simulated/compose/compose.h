@@ -1,4 +1,4 @@
-// What the wearer sees: layers over one another in linear light, one eye at a time, as 8-bit sRGB. On the CPU and the same on every run.
+// The wearer's view: layers over one another in linear light, one eye at a time, as 8-bit sRGB. On the CPU and the same on every run.
 #pragma once
 
 #include "xr/simulated/compose/geometry.h"
@@ -112,7 +112,7 @@ struct EyeView {
     Fov fov;
 };
 
-// What is behind all layers, where the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
+// The room behind all layers, where the headset does not shut it out: light that is added, or that shows as far as the layers' alpha lets
 // it.
 struct Backdrop {
     glm::dvec3 light{0.0};  // linear

@@ -1,4 +1,4 @@
-// What an earlier run left in the folder that this one writes to.
+// Leftovers of an earlier run in this one's output folder.
 #pragma once
 
 #include "xr/simulated/script/script.h"

@@ -28,7 +28,7 @@ namespace {
     throw std::runtime_error(path.string() + ": cannot be " + what + " (" + reason + ")");
 }
 
-// What libpng holds for a picture ends with it.
+// Owns libpng's memory for a picture.
 struct PngImage : png_image {
     PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
     ~PngImage() { png_image_free(this); }

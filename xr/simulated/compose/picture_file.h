@@ -7,7 +7,7 @@
 
 namespace simulated {
 
-// What the file is called until it is whole.
+// The file's name until it is complete.
 [[nodiscard]] std::filesystem::path unfinishedPicture(const std::filesystem::path& path);
 // The file appears whole or not at all. Throws std::runtime_error naming it, also if there is an unfinished one already.
 void writePng(const std::filesystem::path& path, const RgbPicture& picture);

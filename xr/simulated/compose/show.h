@@ -1,4 +1,4 @@
-// What the wearer sees of a frame: composed, written and logged, if SIMULATED_OPENXR_OUT names a folder.
+// A frame as the wearer sees it: composed, written and logged, if SIMULATED_OPENXR_OUT names a folder.
 #pragma once
 
 #include "xr/simulated/api/session.h"

@@ -1,4 +1,4 @@
-// What the readers of headsets and head motion have in common: numbers, and errors that name file and line.
+// Common to the readers of headsets and head motion: numbers, and errors that name file and line.
 #pragma once
 
 #include <optional>

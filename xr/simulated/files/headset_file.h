@@ -19,7 +19,7 @@ struct HeadsetFile {
     double canting_rad = 0.0;                // each eye outwards
     double eye_distance_m = 0.0;
     std::array<HeadsetAngles, 2> angles;  // left, right
-    // Likewise: where the lens is at its best, to the right of the eye's axis and above it.
+    // In degrees too: the lens's centre, to the right of the eye's axis and above it.
     std::array<std::array<double, 2>, 2> lens_centres_rad{};
 };
 

@@ -16,7 +16,7 @@ constexpr std::size_t kColumns = 8;
 constexpr std::array<const char*, kColumns> kNames{"time", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::string_view kExpected = "time, position x, y, z, orientation x, y, z, w";
 
-// What a header said.
+// The contents of a header.
 struct Layout {
     std::optional<double> seconds_per_count;
     bool w_first = false;

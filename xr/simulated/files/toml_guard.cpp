@@ -15,7 +15,7 @@ constexpr int kMostParts = 64;
 // Follows a text outside of its quotes and comments.
 class Place {
 public:
-    // Whether a text in quotes may begin here.
+    // True if a text in quotes may begin here.
     [[nodiscard]] bool beginsText() const { return begins_; }
 
     void pass(char letter) {

@@ -1,4 +1,4 @@
-// What TOML allows and the library that reads it, toml++ 3.1 to 3.4, does not survive. Everybody who parses with it looks here first.
+// Guards against TOML that crashes the library that reads it, toml++ 3.1 to 3.4. All who parse with it call this first.
 #pragma once
 
 #include <optional>

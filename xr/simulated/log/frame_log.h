@@ -64,7 +64,7 @@ struct FrameRecord {
     std::string picture;              // the file's name, empty if the frame has none
 };
 
-// What happens between the frames that are shown: a frame that xrEndFrame refused, or session states that no frame follows.
+// Events between shown frames: a frame that xrEndFrame refused, or session states that no frame follows.
 struct BetweenRecord {
     std::string refused;  // "XR_ERROR_VALIDATION_FAILURE"; empty: no frame was
     std::string reason;

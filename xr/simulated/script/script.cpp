@@ -11,7 +11,7 @@ namespace simulated {
 
 namespace {
 
-// What an axis or a press means for the components of its input.
+// The effect of an axis or a press on the components of its input.
 void setAxis(ControllerState& state, const std::string& name, InputKind kind, const glm::dvec2& value) {
     if (kind == InputKind::kStick) {
         state.inputs[name + "/x"] = value.x;

@@ -1,4 +1,4 @@
-// What happens to the simulated headset: poses, angles, controllers and misbehaviour, a pure function of display time that is read from
+// The state of the simulated headset: poses, angles, controllers and misbehaviour, a pure function of display time that is read from
 // a text file. docs/simulated_script.md has the commands.
 #pragma once
 
@@ -27,7 +27,7 @@ public:
     explicit ScriptError(std::string message) : std::runtime_error(oneLine(std::move(message))) {}
 
 private:
-    // What a message quotes comes from a file and may hold anything.
+    // Quoted text comes from a file and may hold anything.
     static std::string oneLine(std::string message) {
         for (char& letter : message) {
             if (static_cast<unsigned char>(letter) < ' ') { letter = ' '; }
@@ -64,7 +64,7 @@ struct State {
     std::array<EyeState, 2> eyes;                          // by Side
     std::array<ControllerState, 2> controllers;            // by Side
     bool head_turn_known = true, head_place_known = true;  // whether the head is tracked
-    // What the head's and a gamepad's buttons say: nothing, unless a program's own test moves them (XR_EXT_conformance_automation).
+    // The head's and a gamepad's buttons: at rest, unless a program's own test moves them (XR_EXT_conformance_automation).
     // The gaze is the aim pose of the last one.
     std::array<ControllerState, 3> others;
     bool gaze_is_good = true;  // else what is known of it is not to be relied on
@@ -78,7 +78,7 @@ struct State {
     bool present = true;  // whether somebody wears the headset
 };
 
-// What happens once, when the display time first reaches `time_s`.
+// An event that happens once, when the display time first reaches `time_s`.
 struct ScriptEvent {
     enum class Kind {
         kRate,          // the display shows `value` frames a second
@@ -154,7 +154,7 @@ public:
     bool has_stage = true;                          // whether there is a reference space STAGE
     enum class Depth { kTaken, kNoImages, kNoLayers } depth = Depth::kTaken;
     std::uint32_t calls_without_headset = 0;  // so many calls of xrGetSystem find none
-    std::uint32_t calls_after_loss = 0;       // likewise, each time after a session was lost
+    std::uint32_t calls_after_loss = 0;       // the same, each time after a session was lost
     std::optional<Pose> stage_from_local;
     std::vector<double> recentres_s;
     enum class BlendMode { kOpaque, kAdditive, kAlphaBlend };  // in the order of OpenXR's numbers, which begin with 1

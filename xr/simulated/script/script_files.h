@@ -6,7 +6,7 @@
 
 namespace simulated {
 
-// What people write, and what programs record.
+// Files that people write, and files that programs record.
 inline constexpr std::size_t kMostTextBytes = std::size_t{4} << 20, kMostRecordingBytes = std::size_t{16} << 20;
 
 // The text of a regular file of at most `most_bytes`. `place` is who names it, for messages ("walk.script:3: ", or nothing). Throws

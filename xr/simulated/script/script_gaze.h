@@ -9,9 +9,9 @@ namespace simulated {
 
 class Words;
 
-// Whether the headset tracks eyes: refused, it does, but its wearer does not let this program see it.
+// Eye tracking. Refused: the headset has it, but the wearer does not allow it to this program.
 enum class EyeTracking { kOn, kOff, kRefused };
-// What is known of the gaze: degraded, a direction, but not a good one.
+// The quality of the gaze. Degraded: a direction, but not a good one.
 enum class GazeTracking { kOn, kOff, kDegraded };
 
 struct GazeScript {

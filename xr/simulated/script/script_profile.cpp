@@ -1,4 +1,4 @@
-// Whether the inputs that a script moves are on the controllers it is written for.
+// Checks that the controllers have the inputs that a script moves.
 #include "xr/simulated/script/script_profile.h"
 
 #include "xr/simulated/script/script_inputs.h"
