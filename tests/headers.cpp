@@ -1,0 +1,1 @@
+// Nothing: CMake makes the headers that test programs share only for a target with a source that includes them.
