@@ -157,7 +157,7 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
         return !runner.run(tight).passes;
     };
     CHECK(misses([](Sequence& s) { s.psnr_db = 100.0; }));
-    CHECK(misses([](Sequence& s) { s.drift_db = 0.0; }));
+    CHECK(misses([](Sequence& s) { s.drift_db = -100.0; }));
     CHECK(misses([](Sequence& s) { s.beyond = 0.0; }));
     CHECK(misses([](Sequence& s) { s.bias = 0.0; }));
     CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
