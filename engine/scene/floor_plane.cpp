@@ -15,9 +15,12 @@ constexpr int kTries = 1500;                 // of either kind
 constexpr std::size_t kFewForFloor = 256;    // fewer make no floor
 constexpr std::size_t kMostAtFirst = 2048;   // samples that a try is judged by
 constexpr std::size_t kKept = 12;            // tries that are fitted
+constexpr double kAlikeCosine = 0.9962;      // 5 degrees
 constexpr double kThickness = 0.01;          // of the size, to each side
-constexpr double kLeastShare = 0.08;         // of all splats
+constexpr double kLeastShare = 0.08;         // of all splats; twice that where up would not be about the usual one
+constexpr double kTiltedCosine = 0.9397;     // 20 degrees
 constexpr double kMostBehind = 0.15;         // of the others
+constexpr double kLeastAcross = 0.03;        // of the size: standard deviation, as of a corridor an eighth as wide as long
 constexpr double kUsualCosine = 0.70710678;  // 45 degrees
 constexpr double kMoreThanUsual = 3.0, kLeastUnusualShare = 0.3, kLeastUnusualReach = 1.3;
 constexpr double kHoversFrom = 0.1;  // of the size
@@ -28,13 +31,15 @@ struct Plane {
     std::size_t inliers = 0;
 };
 
-double sizeOf(const std::vector<SplatSample>& samples) {
+// Of the box with nine tenths of the samples along each axis: its diagonal; and the middle of all.
+double sizeOf(const std::vector<SplatSample>& samples, glm::dvec3& middle) {
     glm::dvec3 sides;
     std::vector<double> values(samples.size());
     for (int axis = 0; axis < 3; ++axis) {
         std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });
         const double low = findQuantile(values, 0.05);
         sides[axis] = findQuantile(values, 0.95) - low;
+        middle[axis] = findQuantile(values, 0.5);
     }
     return glm::length(sides);
 }
@@ -60,9 +65,10 @@ glm::dvec3 leastSpread(const glm::dmat3& covariance, const glm::dvec3& near) {
     return glm::length(found) > 1e-9 ? glm::normalize(found) : near;
 }
 
-// To the splats near it, those twice as thick first.
+// To the splats near it, farther ones first: where walls begin at the floor those near the plane alone are all of the floor.
 Plane fit(const std::vector<SplatSample>& samples, Plane plane, double thickness) {
-    for (const double near : {2.0 * thickness, thickness, thickness}) {
+    for (const double near :
+         {2.0 * thickness, thickness, thickness, 0.5 * thickness, 0.5 * thickness, 0.25 * thickness, 0.25 * thickness}) {
         glm::dvec3 sum(0.0);
         std::vector<glm::dvec3> inside;
         for (const SplatSample& sample : samples) {
@@ -102,8 +108,26 @@ std::vector<Plane> tryPlanes(const std::vector<SplatSample>& samples, double thi
     return tried;
 }
 
+// Those with the most splats, each unlike the others: a table full of things is tried a hundred times before the ground beneath it.
+std::vector<Plane> bestOf(std::vector<Plane> tried, const glm::dvec3& middle, double thickness) {
+    std::ranges::sort(tried, std::greater<>(), &Plane::inliers);
+    std::vector<Plane> kept;
+    for (const Plane& plane : tried) {
+        const auto isLike = [&](const Plane& other) {
+            const double side = glm::dot(plane.normal, other.normal) < 0.0 ? -1.0 : 1.0;
+            const double apart = glm::dot(plane.normal - side * other.normal, middle) - plane.height + side * other.height;
+            return std::abs(glm::dot(plane.normal, other.normal)) > kAlikeCosine && std::abs(apart) < 2.0 * thickness;
+        };
+        if (std::ranges::any_of(kept, isLike)) { continue; }
+        kept.push_back(plane);
+        if (kept.size() == kKept) { break; }
+    }
+    return kept;
+}
+
 // As a floor or a ceiling; empty where splats lie on both sides, or the plane is a strip.
-std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, double size, double thickness) {
+std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const Plane& plane, const glm::dvec3& usual, double size,
+                                  double thickness) {
     std::size_t above = 0, below = 0;
     glm::dvec3 sum(0.0);
     for (const SplatSample& sample : samples) {
@@ -114,7 +138,9 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
     }
     const double share = static_cast<double>(plane.inliers) / static_cast<double>(samples.size());
     const std::size_t others = above + below, behind = std::min(above, below);
-    if (share < kLeastShare || others == 0 || static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
+    const bool is_tilted = std::abs(glm::dot(plane.normal, usual)) < kTiltedCosine;
+    if (share < (is_tilted ? 2.0 : 1.0) * kLeastShare || others == 0 ||
+        static_cast<double>(behind) > kMostBehind * static_cast<double>(others)) {
         return std::nullopt;
     }
     const glm::dvec3 mean = sum / static_cast<double>(plane.inliers);
@@ -128,10 +154,12 @@ std::optional<FloorPlane> asFloor(const std::vector<SplatSample>& samples, const
     glm::dvec3 longest = glm::dvec3(0.3, 0.5, 0.8);
     for (int i = 0; i < 32; ++i) { longest = glm::normalize(covariance * longest + 1e-300); }
     const double across = trace - glm::dot(longest, covariance * longest);
-    if (across < 0.0025 * size * size) { return std::nullopt; }
+    if (across < kLeastAcross * kLeastAcross * size * size) { return std::nullopt; }
     const bool rest_is_above = above >= below;
     const glm::dvec3 up = rest_is_above ? plane.normal : -plane.normal;
-    return FloorPlane{up, rest_is_above ? plane.height : -plane.height, thickness, share, false};
+    return FloorPlane{up,        rest_is_above ? plane.height : -plane.height,
+                      thickness, share,
+                      false,     static_cast<double>(behind) / static_cast<double>(others)};
 }
 
 // How far from the middle of the floor its splats lie, in terms of how far those do that stand on it.
@@ -191,7 +219,8 @@ double findQuantile(std::vector<double>& values, double share) {
 
 std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples, const glm::dvec3& usual) {
     if (samples.size() < kFewForFloor) { return std::nullopt; }
-    const double size = sizeOf(samples), thickness = kThickness * size;
+    glm::dvec3 middle;
+    const double size = sizeOf(samples, middle), thickness = kThickness * size;
     if (!(size > 0.0) || !std::isfinite(size)) { return std::nullopt; }
     std::vector<Plane> tried = tryPlanes(samples, thickness);
     // Those about the usual up and the others each have their best.
@@ -200,13 +229,14 @@ std::optional<FloorPlane> findFloorPlane(const std::vector<SplatSample>& samples
         std::vector<Plane> of_kind;
         std::ranges::copy_if(tried, std::back_inserter(of_kind),
                              [&](const Plane& plane) { return (std::abs(glm::dot(plane.normal, usual)) >= kUsualCosine) == is_usual; });
-        std::ranges::sort(of_kind, std::greater<>(), &Plane::inliers);
         double best_score = 0.0;
-        for (std::size_t i = 0; i < std::min(kKept, of_kind.size()); ++i) {
-            std::optional<FloorPlane> floor = asFloor(samples, fit(samples, of_kind[i], thickness), size, thickness);
+        for (const Plane& plane : bestOf(std::move(of_kind), middle, thickness)) {
+            std::optional<FloorPlane> floor = asFloor(samples, fit(samples, plane, thickness), usual, size, thickness);
             if (!floor || (std::abs(glm::dot(floor->up, usual)) >= kUsualCosine) != is_usual) { continue; }
-            if (is_usual && glm::dot(floor->up, usual) < 0.0) { *floor = {-floor->up, -floor->height, thickness, floor->share, true}; }
-            const double score = floor->share * (floor->is_ceiling ? 0.5 : 1.0);
+            if (is_usual && glm::dot(floor->up, usual) < 0.0) {
+                *floor = {-floor->up, -floor->height, thickness, floor->share, true, floor->behind};
+            }
+            const double score = floor->share * (1.0 - 0.5 * floor->behind / kMostBehind) * (floor->is_ceiling ? 0.5 : 1.0);
             if (score > best_score) { best_score = score, best[is_usual ? 0 : 1] = floor; }
         }
     }

@@ -25,6 +25,7 @@ struct FloorPlane {
     double thickness;  // how far from it a splat may lie and still be of the floor
     double share;      // of the samples lie in it
     bool is_ceiling;   // `up` is right, but what was found is above the rest
+    double behind;     // of the other samples lie beyond it
 };
 
 // Empty where there is none. Planes within 45 degrees of `usual` count for more: on another one things must stand, not hover before it as

@@ -308,10 +308,9 @@ Standpoint standOutside(const Lie& lie, const Axes& axes, const Scene& scene, do
     // A sphere about the common box fills the picture's width; about a point it holds the first splat, and half a unit at least.
     // Where splats lie evenly the tenth that is left out at its ends makes it a ninth longer.
     double radius = 0.5 / 0.9 * glm::length(glm::dvec3(x.length(), h.length(), z.length()));
-    if (radius < 1e-3) {
-        const glm::vec2 scale = scene.scales.empty() ? glm::vec2(0.0f) : scene.scales.front();
-        radius = std::max(3.0 * static_cast<double>(std::max(scale.x, scale.y)), 0.5);
-    }
+    const glm::vec2 scale = scene.scales.empty() ? glm::vec2(0.0f) : scene.scales.front();
+    const auto first = static_cast<double>(std::max(scale.x, scale.y));
+    if (radius <= first) { radius = std::max(3.0 * first, 0.5); }
     const double distance = radius / std::sin(glm::radians(0.5 * std::min(fov_x_deg, 120.0)));
     const double rise = lie.has_floor ? 0.26 : 0.0;  // 15 degrees
     const glm::dvec3 look = axes.world(x.middle(), h.middle(), z.middle());
