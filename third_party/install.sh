@@ -9,8 +9,8 @@ packages=(
     glslang-tools spirv-tools
     libglm-dev libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
     libtinygltf-dev libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev
-    libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libfontconfig-dev libglfw3-dev fonts-dejavu-core
-    fonts-droid-fallback
+    libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libfontconfig-dev libharfbuzz-dev libfreetype-dev libglfw3-dev
+    fonts-dejavu-core fonts-droid-fallback fonts-lohit-deva
     doctest-dev python3 xvfb xdotool
     dpkg-dev file
 )

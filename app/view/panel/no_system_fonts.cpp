@@ -1,8 +1,10 @@
-// Where the system does not tell which fonts have which letters.
-#include "app/view/panel/system_fonts.h"
+// Where the system does not tell which fonts have which letters, and nobody forms words of them.
+#include "app/view/panel/formed_words.h"
 
 namespace binosplat {
 
 std::vector<SystemFont> fontsWith(const std::set<std::uint32_t>&) { return {}; }
+
+FormedWords formWords(const std::set<std::u32string>&, std::span<const LoadedFont>, float, std::size_t) { return {}; }
 
 }  // namespace binosplat

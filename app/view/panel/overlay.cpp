@@ -36,15 +36,18 @@ void drawSaid(const OverlayStatus& status) {
 }
 
 std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, const OverlayStatus& status) {
-    std::string names = asShown(status.scene) + asShown(status.message) + asShown(status.files);
+    std::string names;
+    const auto add = [&](const std::string& name) { names += name + '\n'; };
+    for (const std::string& name : {status.scene, status.message, status.files}) { add(name); }
     if (settings.page == PanelPage::kScenes) {
-        names += asShown(pages.chooser.list().title) + asShown(pages.chooser.list().trouble);
+        add(pages.chooser.list().title);
+        add(pages.chooser.list().trouble);
         for (const SceneEntry& entry : pages.chooser.shown()) {
-            names += asShown(entry.name) + asShown(entry.about) + asShown(entry.trouble);
+            for (const std::string& name : {entry.name, entry.about, entry.trouble}) { add(name); }
         }
-        names += asShown(status.viewpoint);
+        add(status.viewpoint);
     } else if (settings.page == PanelPage::kMethod) {
-        for (const auto& [name, value] : status.facts) { names += asShown(value); }
+        for (const auto& [name, value] : status.facts) { add(value); }
     }
     return names;
 }

@@ -74,7 +74,7 @@ struct OverlayActions {
     WidgetPlaces places;       // of what was drawn
 };
 
-// All that a canvas shows of names and messages, as it shows them; see Canvas::bringLetters.
+// All that a canvas shows of names and messages, a line each; see Canvas::wantsLetters.
 std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, const OverlayStatus& status);
 // Likewise the pictures.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const OverlayPages& pages);

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -28,8 +29,8 @@ constexpr std::array<ImWchar, 17> kRanges{0x0020, 0x024f, 0x0300, 0x052f, 0x1e00
 // Fonts of all of Unicode take 20 MB.
 constexpr std::size_t kMostFontBytes = std::size_t{64} << 20;
 // With them the atlas stays below 4096x2048, which every device can sample.
-constexpr std::size_t kMostAdded = 3000;
-constexpr std::size_t kMostPictures = 48;
+constexpr std::size_t kMostAdded = 3000, kMostSigns = 1500;
+constexpr std::size_t kMostPictures = 48, kMostWords = 400;
 
 bool isThereFromTheBeginning(ImWchar letter) {
     for (std::size_t i = 0; kRanges[i] != 0; i += 2) {
@@ -54,12 +55,38 @@ std::string readFont(const fs::path& file, std::string& complaint) {
     return {};
 }
 
+// What else lies in the atlas.
+struct AtlasPicture {
+    glm::uvec2 size_px;
+    std::function<void(unsigned char* rgba, std::size_t y)> draw_row;
+    std::function<void(ImFont& font, const ImVec2& low, const ImVec2& high)> use;  // by where it lies, in shares of the texture
+};
+
+void drawPictures(ImFontAtlas& atlas, std::span<const AtlasPicture> pictures, int first_rect) {
+    if (pictures.empty()) { return; }
+    // The letters' own texture, with colours.
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
+    for (const AtlasPicture& picture : pictures) {
+        const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(first_rect++);
+        for (std::size_t y = 0; y < picture.size_px.y; ++y) {
+            picture.draw_row(pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X), y);
+        }
+        ImVec2 low, high;
+        atlas.CalcCustomRectUV(&rect, &low, &high);
+        picture.use(*atlas.Fonts[0], low, high);
+    }
+}
+
 // With the letters of the beginning and those added, each from the first font that has it. False, and an empty atlas: one is none.
-// `add_pictures` asks for room for what else belongs there, `draw_pictures` draws it.
 bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std::set<ImWchar>& added,
-                const std::function<void(ImFontAtlas&)>& add_pictures = {}, const std::function<void(ImFontAtlas&)>& draw_pictures = {}) {
+                std::span<const AtlasPicture> pictures = {}) {
     atlas.Clear();
-    if (add_pictures) { add_pictures(atlas); }
+    const int first_rect = atlas.CustomRects.Size;
+    for (const AtlasPicture& picture : pictures) {
+        atlas.AddCustomRectRegular(static_cast<int>(picture.size_px.x), static_cast<int>(picture.size_px.y));
+    }
     std::vector<ImWchar> ranges;
     for (const ImWchar letter : added) { ranges.insert(ranges.end(), {letter, letter}); }
     ranges.insert(ranges.end(), kRanges.begin(), kRanges.end());
@@ -75,12 +102,38 @@ bool buildAtlas(ImFontAtlas& atlas, std::span<const LoadedFont> fonts, const std
         atlas.Clear();
         return false;
     }
-    if (draw_pictures) { draw_pictures(atlas); }
+    drawPictures(atlas, pictures, first_rect);
     // The fonts' bytes are not asked for again, nor where what else is there lies.
     atlas.ClearInputData();
     atlas.Fonts[0]->FallbackChar = kBox;
     atlas.Fonts[0]->BuildLookupTable();
     return true;
+}
+
+AtlasPicture pictureOf(const ScenePicture& scene, PicturePlaces& places) {
+    return {kScenePicturePx,
+            [&scene](unsigned char* rgba, std::size_t y) {
+                const std::size_t bytes = 4 * kScenePicturePx.x;
+                std::copy_n(scene.rgba.begin() + static_cast<std::ptrdiff_t>(y * bytes), bytes, rgba);
+            },
+            [&scene, &places](ImFont&, const ImVec2& low, const ImVec2& high) {
+                places[scene.key] = {low, high};
+            }};
+}
+
+AtlasPicture pictureOf(const FormedSign& sign, ImWchar letter) {
+    return {glm::max(sign.size_px, 1u),  // a blank has none
+            [&sign](unsigned char* rgba, std::size_t y) {
+                for (std::size_t x = 0; x < sign.size_px.x && y < sign.size_px.y; ++x) {
+                    const unsigned char alpha = sign.coverage[y * sign.size_px.x + x];
+                    rgba = std::copy_n(std::array<unsigned char, 4>{255, 255, 255, alpha}.begin(), 4, rgba);
+                }
+            },
+            [&sign, letter](ImFont& font, const ImVec2& low, const ImVec2& high) {
+                const glm::vec2 at = sign.low_px + glm::vec2(0.0f, std::round(font.Ascent)),
+                                end = at + glm::vec2(sign.size_px) * glm::vec2(0.5f, 1.0f);
+                font.AddGlyph(nullptr, letter, at.x, at.y, end.x, end.y, low.x, low.y, high.x, high.y, sign.advance_px);
+            }};
 }
 
 }  // namespace
@@ -131,29 +184,39 @@ PanelFont::PanelFont() {
 bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pictures) {
     if (is_building_ || fonts_.empty()) { return false; }
     std::set<ImWchar> brought;
-    for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
+    const std::string shown = asShown(text);
+    for (const char *at = shown.data(), *const end = at + shown.size(); at < end;) {
         unsigned int letter = 0;
         at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
         const auto wanted = static_cast<ImWchar>(letter);
-        const bool is_letter = letter <= IM_UNICODE_CODEPOINT_MAX && letter != IM_UNICODE_CODEPOINT_INVALID;
+        const bool is_letter = letter != IM_UNICODE_CODEPOINT_INVALID && (letter < kFirstPrivate || letter > kLastPrivate);
         const bool is_there = isThereFromTheBeginning(wanted) && ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(wanted) != nullptr;
         if (is_letter && !is_there) { brought.insert(wanted); }
     }
+    std::set<std::u32string> words = wordsToForm(text);
     const bool shows_new = std::ranges::any_of(pictures, [&](const ScenePicture& picture) { return !pictures_.contains(picture.key); });
-    const bool says_new = brought.size() <= kMostAdded && !std::ranges::includes(added_, brought);
+    const bool says_new = brought.size() <= kMostAdded && words.size() <= kMostWords &&
+                          (!std::ranges::includes(added_, brought) || !std::ranges::includes(words_, words));
     if (!says_new && !shows_new) { return false; }
-    if (!says_new) { brought.clear(); }
+    if (!says_new) {
+        brought.clear();
+        words.clear();
+    }
     if (shows_new && pictures_.size() + pictures.size() > kMostPictures) { pictures_.clear(); }
     for (const ScenePicture& picture : pictures) { pictures_.emplace(picture.key, picture); }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
+    if (words_.size() + words.size() > kMostWords) { words_.clear(); }
     added_.merge(brought);
+    words_.merge(words);
     is_building_ = true;
     return true;
 }
 
 void PanelFont::build() {
     // They are large, and only now needed.
-    std::vector<SystemFont> wanted = fontsWith({added_.begin(), added_.end()});
+    std::set<std::uint32_t> letters(added_.begin(), added_.end());
+    for (const std::u32string& word : words_) { letters.insert(word.begin(), word.end()); }
+    std::vector<SystemFont> wanted = fontsWith(letters);
     if (wanted.empty() && fonts_.size() == 1) {
         for (const fs::path& file : furtherSystemFonts()) { wanted.push_back({file}); }
     }
@@ -163,34 +226,22 @@ void PanelFont::build() {
         std::string complaint, bytes = is_there ? "" : readFont(font.file, complaint);
         if (!bytes.empty()) { fonts_.push_back({font, std::move(bytes)}); }
     }
+    built_places_.clear();
+    built_forms_.clear();
+    std::vector<AtlasPicture> pictures;
+    for (const auto& [key, picture] : pictures_) { pictures.push_back(pictureOf(picture, built_places_)); }
+    const std::size_t scenes = pictures.size();
+    const FormedWords formed = formWords(words_, fonts_, kFontPx, kMostSigns);
+    for (const FormedSign& sign : formed.signs) {
+        pictures.push_back(pictureOf(sign, static_cast<ImWchar>(kFirstPrivate + pictures.size() - scenes)));
+    }
     // ImGui counts allocations of the context, if there is one, for a window of its own that is never opened: nothing else is shared.
     built_.reset(IM_NEW(ImFontAtlas)());
-    std::vector<std::pair<int, const ScenePicture*>> rects;
-    const auto add_pictures = [&](ImFontAtlas& atlas) {
-        rects.clear();
-        for (const auto& [key, picture] : pictures_) {
-            rects.emplace_back(atlas.AddCustomRectRegular(static_cast<int>(kScenePicturePx.x), static_cast<int>(kScenePicturePx.y)),
-                               &picture);
+    if (buildAtlas(*built_, fonts_, added_, pictures)) {
+        for (const auto& [word, signs] : formed.words) {
+            for (const std::size_t sign : signs) { built_forms_[word] += static_cast<char32_t>(kFirstPrivate + sign); }
         }
-    };
-    const auto draw_pictures = [&](ImFontAtlas& atlas) {
-        // The letters' own texture, with colours.
-        unsigned char* pixels = nullptr;
-        int width = 0, height = 0;
-        atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
-        for (const auto& [id, picture] : rects) {
-            const ImFontAtlasCustomRect& rect = *atlas.GetCustomRectByIndex(id);
-            for (std::size_t y = 0; y < kScenePicturePx.y; ++y) {
-                const auto row = picture->rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * kScenePicturePx.x);
-                std::copy_n(row, 4 * kScenePicturePx.x, pixels + 4 * ((rect.Y + y) * static_cast<std::size_t>(width) + rect.X));
-            }
-            PictureCorners& corners = built_places_[picture->key];
-            atlas.CalcCustomRectUV(&rect, &corners.low, &corners.high);
-        }
-    };
-    built_places_.clear();
-    if (!buildAtlas(*built_, fonts_, added_, add_pictures, draw_pictures) &&
-        !buildAtlas(*built_, std::span(fonts_).first(1), {}, add_pictures, draw_pictures)) {
+    } else if (!buildAtlas(*built_, std::span(fonts_).first(1), {}, std::span(pictures).first(scenes))) {
         built_.reset();
     }
 }
@@ -199,9 +250,11 @@ void PanelFont::take() {
     is_building_ = false;
     if (!built_) { return; }
     places_ = std::exchange(built_places_, {});
-    // The context owns the one that it has.
+    forms_ = std::exchange(built_forms_, {});
+    // The context owns the font that it has.
     ImGuiIO& io = ImGui::GetIO();
     IM_DELETE(std::exchange(io.Fonts, built_.release()));
+    io.UserData = &forms_;
 }
 
 }  // namespace binosplat

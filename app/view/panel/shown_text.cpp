@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
@@ -14,30 +15,84 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD, which is shown as a box
 
-// Hebrew, U+0590, begins the letters that are read from right to left.
-bool mayTurnRound(std::string_view text) {
+// Hebrew, U+0590, begins the letters that are read from right to left, and those that change with others.
+bool mayChange(std::string_view text) {
     return std::ranges::any_of(text, [](char byte) { return static_cast<unsigned char>(byte) >= 0xd6; });
 }
 
-std::string turnedRound(const std::string& text) {
-    std::vector<FriBidiChar> letters, seen;
+// The scripts from Hebrew to Burmese, Korean in parts, the rest of South and South-East Asia, and what lies beyond the 16 bits that ImGui
+// has for a letter.
+bool isOfWord(char32_t letter) {
+    constexpr std::array<std::pair<char32_t, char32_t>, 4> kScripts{
+        {{0x0590, 0x11ff}, {0x1700, 0x1cff}, {0xa800, 0xabff}, {0x10000, 0x10ffff}}};
+    return std::ranges::any_of(kScripts, [&](const auto& range) { return letter >= range.first && letter <= range.second; });
+}
+
+// What joins letters, keeps them apart or chooses between their forms.
+bool isWithinWord(char32_t letter) {
+    return isOfWord(letter) || letter == 0x200c || letter == 0x200d || (letter >= 0x0300 && letter <= 0x036f) ||
+           (letter >= 0xfe00 && letter <= 0xfe0f);
+}
+
+std::u32string lettersOf(std::string_view text) {
+    std::u32string letters;
     for (const char *at = text.data(), *const end = at + text.size(); at < end;) {
         unsigned int letter = 0;
-        at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
-        letters.push_back(letter);
+        const int bytes = std::max(ImTextCharFromUtf8(&letter, at, end), 1);
+        if (bytes == 4) {  // which ImGui knows the length of, and no more
+            const auto bits = [&](int i) { return static_cast<unsigned>(static_cast<unsigned char>(at[i])) & 0x3fu; };
+            const auto continues = [&](int i) { return (static_cast<unsigned char>(at[i]) & 0xc0) == 0x80; };
+            const unsigned whole = (bits(0) & 7u) << 18 | bits(1) << 12 | bits(2) << 6 | bits(3);
+            const bool is_one = continues(1) && continues(2) && continues(3) && whole >= 0x10000 && whole <= 0x10ffff;
+            letter = is_one ? whole : IM_UNICODE_CODEPOINT_INVALID;
+        }
+        at += bytes;
+        letters += letter >= kFirstPrivate && letter <= kLastPrivate ? char32_t{IM_UNICODE_CODEPOINT_INVALID} : char32_t{letter};
     }
-    seen.resize(letters.size() + 1);
-    FriBidiParType base = FRIBIDI_PAR_LTR;  // a path, or a sentence in English
-    const auto length = static_cast<FriBidiStrIndex>(letters.size());
-    if (fribidi_log2vis(letters.data(), length, &base, seen.data(), nullptr, nullptr, nullptr) == 0) { return text; }
-    seen.pop_back();
-    std::erase(seen, FriBidiChar{FRIBIDI_CHAR_FILL});  // what is left of letters that became one
+    return letters;
+}
+
+// Calls `use` with where each word begins and ends.
+template <typename Use>
+void forEachWord(const std::u32string& letters, const Use& use) {
+    for (auto at = letters.begin(); (at = std::find_if(at, letters.end(), isOfWord)) != letters.end();) {
+        const auto end = std::find_if_not(at, letters.end(), isWithinWord);
+        use(static_cast<std::size_t>(at - letters.begin()), static_cast<std::size_t>(end - letters.begin()));
+        at = end;
+    }
+}
+
+void append(std::string& shown, FriBidiChar letter) {
+    std::array<char, 8> bytes{};
+    const FriBidiStrIndex count = fribidi_unicode_to_charset(FRIBIDI_CHAR_SET_UTF8, &letter, 1, bytes.data());
+    shown.append(bytes.data(), static_cast<std::size_t>(count));
+}
+
+std::string changed(const std::string& text) {
+    const std::u32string letters = lettersOf(text);
+    const std::vector<FriBidiChar> read(letters.begin(), letters.end());
+    std::vector<FriBidiChar> seen(letters.size() + 1);
+    std::vector<FriBidiStrIndex> places(letters.size() + 1);  // of what is seen, in what is read
+    FriBidiParType base = FRIBIDI_PAR_LTR;                    // a path, or a sentence in English
+    if (fribidi_log2vis(read.data(), static_cast<FriBidiStrIndex>(read.size()), &base, seen.data(), nullptr, places.data(), nullptr) == 0) {
+        return text;
+    }
+    const auto* const forms = ImGui::GetCurrentContext() != nullptr ? static_cast<const WordForms*>(ImGui::GetIO().UserData) : nullptr;
+    std::vector<const std::u32string*> forms_at(letters.size(), nullptr);
+    forEachWord(letters, [&](std::size_t begin, std::size_t end) {
+        if (forms == nullptr) { return; }
+        const auto found = forms->find(letters.substr(begin, end - begin));
+        if (found != forms->end()) { std::fill(&forms_at[begin], &forms_at[end - 1] + 1, &found->second); }
+    });
     std::string shown;
-    for (const FriBidiChar letter : seen) {
-        std::array<char, 8> bytes{};
-        FriBidiChar one = letter;
-        const FriBidiStrIndex count = fribidi_unicode_to_charset(FRIBIDI_CHAR_SET_UTF8, &one, 1, bytes.data());
-        shown.append(bytes.data(), static_cast<std::size_t>(count));
+    const std::u32string* before = nullptr;
+    for (std::size_t i = 0; i < letters.size(); ++i) {
+        const std::u32string* const form = forms_at[static_cast<std::size_t>(places[i])];
+        if (form == nullptr && seen[i] != FRIBIDI_CHAR_FILL) { append(shown, seen[i]); }  // that: what is left of letters that became one
+        if (form != nullptr && form != before) {
+            for (const char32_t letter : *form) { append(shown, letter); }
+        }
+        before = form;
     }
     return shown;
 }
@@ -55,7 +110,15 @@ std::string withoutControls(std::string_view text) {
 
 std::string asShown(std::string_view text) {
     std::string shown = withoutControls(text);
-    return mayTurnRound(shown) ? turnedRound(shown) : shown;
+    return mayChange(shown) ? changed(shown) : shown;
+}
+
+std::set<std::u32string> wordsToForm(std::string_view text) {
+    std::set<std::u32string> words;
+    if (!mayChange(text)) { return words; }
+    const std::u32string letters = lettersOf(text);
+    forEachWord(letters, [&](std::size_t begin, std::size_t end) { words.insert(letters.substr(begin, end - begin)); });
+    return words;
 }
 
 }  // namespace binosplat

@@ -1,25 +1,18 @@
 // By fontconfig.
 #include "app/view/panel/system_fonts.h"
 
-#include <fontconfig/fontconfig.h>
+#include "app/view/panel/unique_of.h"
 
-#include <memory>
+#include <fontconfig/fontconfig.h>
 
 namespace binosplat {
 
 namespace {
 
-template <auto kDestroy>
-struct Destroyer {
-    template <typename Owned>
-    void operator()(Owned* owned) const {
-        kDestroy(owned);
-    }
-};
-using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPatternDestroy>>;
-using FontSet = std::unique_ptr<FcFontSet, Destroyer<FcFontSetDestroy>>;
-using CharSet = std::unique_ptr<FcCharSet, Destroyer<FcCharSetDestroy>>;
-using Config = std::unique_ptr<FcConfig, Destroyer<FcConfigDestroy>>;
+using Pattern = UniqueOf<FcPattern, FcPatternDestroy>;
+using FontSet = UniqueOf<FcFontSet, FcFontSetDestroy>;
+using CharSet = UniqueOf<FcCharSet, FcCharSetDestroy>;
+using Config = UniqueOf<FcConfig, FcConfigDestroy>;
 
 bool isTrue(FcPattern* font, const char* property) {
     FcBool value = FcFalse;

@@ -1,0 +1,39 @@
+// Words of scripts in which letters change with those beside them, as a font forms them.
+#pragma once
+
+#include "app/view/panel/system_fonts.h"
+
+#include <glm/glm.hpp>
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct LoadedFont {
+    SystemFont font;
+    std::string bytes;
+};
+
+// What a font draws for a letter or for several, moved to where it belongs in its word.
+struct FormedSign {
+    glm::uvec2 size_px;                   // of its picture, whose pixels are half as wide as the panel's
+    std::vector<unsigned char> coverage;  // row by row
+    glm::vec2 low_px;                     // the picture's upper left corner, from where the sign begins on the base line; y down
+    float advance_px;
+};
+
+struct FormedWords {
+    std::map<std::u32string, std::vector<std::size_t>> words;  // their signs from left to right
+    std::vector<FormedSign> signs;
+};
+
+// Of these words those that one of the fonts has whole, by the first such; at most `most_signs` different signs. Lines of the first are
+// `line_px` high.
+FormedWords formWords(const std::set<std::u32string>& words, std::span<const LoadedFont> fonts, float line_px, std::size_t most_signs);
+
+}  // namespace binosplat
