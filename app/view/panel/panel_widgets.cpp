@@ -47,15 +47,27 @@ std::optional<std::string_view> PanelWidgets::chooseFrom(const char* label, std:
     const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
+    const auto widthOf = [](std::string_view name) {
+        return ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x +
+               ImGui::CalcTextSize(name.data(), name.data() + name.size()).x;
+    };
+    const float column = (1.0f - kLabelShare) * width / static_cast<float>(per_row);
+    // One row whose words are too long for columns of one width has gaps of one width.
+    const bool has_columns = std::ranges::all_of(names, [&](std::string_view name) { return widthOf(name) < column; });
+    float used = 0.0f;
+    for (const std::string_view name : names) { used += widthOf(name); }
+    const float gap = ((1.0f - kLabelShare) * width - used) / std::max(static_cast<float>(names.size()) - 1.0f, 1.0f);
     std::optional<std::string_view> pressed;
+    float at = start + kLabelShare * width;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const float at = kLabelShare + (1.0f - kLabelShare) * static_cast<float>(i % per_row) / static_cast<float>(per_row);
+        if (has_columns) { at = start + kLabelShare * width + column * static_cast<float>(i % per_row); }
         if (i == 0 || i % per_row != 0) {
-            ImGui::SameLine(start + at * width);
+            ImGui::SameLine(at);
         } else {
-            ImGui::SetCursorPosX(start + at * width);
+            ImGui::SetCursorPosX(at);
         }
         if (radio(std::string(names[i]).c_str(), chosen == names[i])) { pressed = names[i]; }
+        at += widthOf(names[i]) + gap;
     }
     return pressed;
 }
