@@ -4,6 +4,7 @@
 Each is the panel's part of the viewer's window on a display without a screen (Xvfb), beside the simulated headset, which a script
 brings into the state; frames go by the clock. A state lasts until the picture has been taken, but for the one in which the scene loads."""
 
+import collections
 import os
 import shutil
 import struct
@@ -37,7 +38,7 @@ STATES = {
     "held": ("builtin:one-splat --load-first --config view.toml", "rate 11\nsize 1000 1000\nframes none\n"),
     "failed": ("a.ply --load-first", LAST + NEXT_SCENE),
 }
-SCENES = ("room2.ply", "Τραπέζι.ply", "Комната.ply", "חדר.ply", "غرفة.ply", "森の家.ply")
+SCENES = ("room2.ply", "Комната.ply", "חדר השינה.ply", "غرفة الجلوس.ply", "हिन्दी कक्षा.ply", "森林小屋.ply")
 SEEN = (*SCENES[2:], SCENES[0])
 BUILT_IN = ("fence", "step-edge", "slanted-wall")
 SCREEN = (1400, 800)
@@ -65,14 +66,20 @@ def shows_window(path):
 
 
 def write_png(path, rows):
-    """With a palette; channels are rounded until 256 colours are enough."""
-    for step in (1, 4, 8, 17, 36, 51):
-        rounded = [[tuple(min(255, (c + step // 2) // step * step) for c in pixel) for pixel in row] for row in rows]
-        colours = sorted({pixel for row in rounded for pixel in row})
-        if len(colours) <= 256:
-            break
-    index = {colour: i for i, colour in enumerate(colours)}
-    raw = b"".join(b"\0" + bytes(index[pixel] for pixel in row) for row in rounded)
+    """With a palette of the most frequent colours that differ; each other one becomes the nearest of these."""
+    counts = collections.Counter(pixel for row in rows for pixel in row)
+
+    def distance(one, other):
+        return sum((a - b) ** 2 for a, b in zip(one, other))
+
+    colours, index = [], {}
+    for pixel, _ in counts.most_common():
+        nearest = min(range(len(colours)), key=lambda i: distance(pixel, colours[i]), default=None)
+        if len(colours) < 256 and (nearest is None or distance(pixel, colours[nearest]) > 60):
+            nearest = len(colours)
+            colours.append(pixel)
+        index[pixel] = nearest
+    raw = b"".join(b"\0" + bytes(index[pixel] for pixel in row) for row in rows)
 
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))

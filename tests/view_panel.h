@@ -30,10 +30,10 @@ inline std::string pointAt(const Panel& panel, const glm::dvec2& share, double t
                        at.y, at.z, q.x, q.y, q.z, q.w);
 }
 
-// The right hand points at a place and clicks there once.
-inline std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s) {
-    return pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15) +
-           fmt::format("press right trigger {} {}\n", time_s + 0.05, time_s + 0.1);
+// The right hand points at a place and clicks there once: within 0.15 s, or so many times as long, for frames that may be late.
+inline std::string clickAt(const Panel& panel, const glm::dvec2& place, double time_s, double slower = 1.0) {
+    return pointAt(panel, place, time_s) + pointAt(panel, place, time_s + 0.15 * slower) +
+           fmt::format("press right trigger {} {}\n", time_s + 0.05 * slower, time_s + 0.1 * slower);
 }
 
 // Points at one place after the other, a fifth of a second each, and clicks there with the right hand's `input`.
