@@ -2,7 +2,6 @@
 #include "app/options/option_table.h"
 #include "app/view/panel/shown_text.h"
 #include "app/view/scenes/recent_scenes.h"
-#include "app/view/scenes/scene_facts.h"
 #include "app/view/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/platform.h"
@@ -11,6 +10,7 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +51,28 @@ TEST_CASE("every widget lies on the panel, none on another, on each page") {
                     if (name < other) { CHECK_MESSAGE(glm::length(place - there) > 20.0, other); }
                 }
             }
+        }
+    }
+}
+
+TEST_CASE("what one points at is 1.5 degrees high at least, and what is used most twice that") {
+    PanelSketch sketch;
+    const double half_px = 0.5 * 1.5 * kPanelPx.x / 26.0;
+    const auto hoveredAt = [&](glm::dvec2 place, double down_px) {
+        place.y += down_px;
+        sketch.draw(&place);
+        return ImGui::GetCurrentContext()->HoveredId;
+    };
+    for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
+        sketch.settings.page = page;
+        sketch.pages.chooser.showFolder(kBuiltinFolder);
+        const WidgetPlaces places = sketch.draw().places;
+        for (const auto& [name, place] : places) {
+            const ImGuiID id = hoveredAt(place, 0.0);
+            CAPTURE(name);
+            CHECK((id != 0 || name == "Up"));  // there is none above
+            const bool is_large = std::ranges::count(std::array{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset"}, name) != 0;
+            for (const double side : {-0.97, 0.97}) { CHECK(hoveredAt(place, side * half_px * (is_large ? 2.0 : 1.0)) == id); }
         }
     }
 }
@@ -311,55 +333,6 @@ TEST_CASE("names of any bytes and of any length are shown, and a long message is
         sketch.status.message += longest;
         CHECK(sketch.draw().places == before);
     }
-}
-
-TEST_CASE("a scene is described in words: how much, of what kind, how large") {
-    SceneFacts facts;
-    facts.splats = 1234567;
-    facts.left_out = 3;
-    facts.kind = "3D Gaussians";
-    facts.sh_degree = 1;
-    facts.sh_degree_in_file = 3;
-    facts.device_bytes = 64u << 20;
-    facts.file_bytes = 2048;
-    const auto lines = describeFacts(facts, 0.25);
-    const auto valueOf = [&](const std::string& name) {
-        const auto found = std::ranges::find(lines, name, &std::pair<std::string, std::string>::first);
-        REQUIRE(found != lines.end());
-        return found->second;
-    };
-    CHECK(valueOf("Splats") == "1 234 567, 3 broken ones left out");
-    CHECK(valueOf("Kind") == "3D Gaussians");
-    CHECK(valueOf("Colours (SH)") == "degree 1, 3 in the file");
-    CHECK(valueOf("In memory") == "64.0 MiB");
-    CHECK(valueOf("File") == "2.0 KiB");
-    CHECK(valueOf("Scale") == "0.25 metres a scene unit");
-    CHECK(describeFacts({}, 1.0).at(0).second == "0");
-    // From what loading met.
-    const Workplace work;
-    fs::create_directory(work.path / "sog");
-    write(work.path / "sog" / "meta.json", std::string(100, 'x'));
-    write(work.path / "sog" / "means.webp", std::string(1000, 'x'));
-    Scene scene;
-    scene.positions.resize(2);
-    scene.thicknesses.resize(2);
-    scene.sh_degree = 2;
-    LoadNotes notes;
-    notes.three_scales = true;
-    notes.skipped_not_finite = 4;
-    notes.sh_degree_in_file = 2;
-    const SceneFacts folder = factsOf(scene, notes, (work.path / "sog").string());
-    CHECK(folder.splats == 2);
-    CHECK(folder.left_out == 4);
-    CHECK(folder.kind == "3D Gaussians");
-    CHECK(folder.file_bytes == 1100);
-    CHECK(folder.device_bytes > 0);
-    CHECK(factsOf(scene, notes, "builtin:fence").file_bytes == 0);
-    CHECK(factsOf(scene, notes, (work.path / "sog" / "meta.json").string()).file_bytes == 100);
-    scene.thicknesses.clear();
-    CHECK(factsOf(scene, notes, "x").kind == "3D Gaussians, drawn as discs");
-    notes.three_scales = false;
-    CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }
 
 TEST_CASE("the rates that the headset offers can be chosen, and left to it; where it offers none there is no row") {

@@ -1,8 +1,9 @@
-// Facts about looking for a scene: what a folder holds, in which order, and which scenes were shown last.
+// Facts about looking for a scene: what a folder holds, in which order, which scenes were shown last, and what is said of one.
 #include "app/view/scenes/scene_list.h"
 #include "app/view/file_worker.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/view_scenes.h"
 #include "engine/error.h"
 #include "tests/run_program.h"
@@ -25,7 +26,7 @@ using binosplat::test::Workplace;
 
 namespace {
 
-void write(const fs::path& path) { std::ofstream(path) << "x"; }
+void write(const fs::path& path, const std::string& text = "x") { std::ofstream(path) << text; }
 
 std::vector<std::string> namesOf(const SceneList& list) {
     std::vector<std::string> names;
@@ -178,4 +179,53 @@ TEST_CASE("files are read beside whoever asks, who waits for nothing, and what i
         });
     }
     CHECK(was_written);
+}
+
+TEST_CASE("a scene is described in words: how much, of what kind, how large") {
+    SceneFacts facts;
+    facts.splats = 1234567;
+    facts.left_out = 3;
+    facts.kind = "3D Gaussians";
+    facts.sh_degree = 1;
+    facts.sh_degree_in_file = 3;
+    facts.device_bytes = 64u << 20;
+    facts.file_bytes = 2048;
+    const auto lines = describeFacts(facts, 0.25);
+    const auto valueOf = [&](const std::string& name) {
+        const auto found = std::ranges::find(lines, name, &std::pair<std::string, std::string>::first);
+        REQUIRE(found != lines.end());
+        return found->second;
+    };
+    CHECK(valueOf("Splats") == "1 234 567, 3 broken ones left out");
+    CHECK(valueOf("Kind") == "3D Gaussians");
+    CHECK(valueOf("Colours (SH)") == "degree 1, 3 in the file");
+    CHECK(valueOf("In memory") == "64.0 MiB");
+    CHECK(valueOf("File") == "2.0 KiB");
+    CHECK(valueOf("Scale") == "0.25 metres a scene unit");
+    CHECK(describeFacts({}, 1.0).at(0).second == "0");
+    // From what loading met.
+    const Workplace work;
+    fs::create_directory(work.path / "sog");
+    write(work.path / "sog" / "meta.json", std::string(100, 'x'));
+    write(work.path / "sog" / "means.webp", std::string(1000, 'x'));
+    Scene scene;
+    scene.positions.resize(2);
+    scene.thicknesses.resize(2);
+    scene.sh_degree = 2;
+    LoadNotes notes;
+    notes.three_scales = true;
+    notes.skipped_not_finite = 4;
+    notes.sh_degree_in_file = 2;
+    const SceneFacts folder = factsOf(scene, notes, (work.path / "sog").string());
+    CHECK(folder.splats == 2);
+    CHECK(folder.left_out == 4);
+    CHECK(folder.kind == "3D Gaussians");
+    CHECK(folder.file_bytes == 1100);
+    CHECK(folder.device_bytes > 0);
+    CHECK(factsOf(scene, notes, "builtin:fence").file_bytes == 0);
+    CHECK(factsOf(scene, notes, (work.path / "sog" / "meta.json").string()).file_bytes == 100);
+    scene.thicknesses.clear();
+    CHECK(factsOf(scene, notes, "x").kind == "3D Gaussians, drawn as discs");
+    notes.three_scales = false;
+    CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }

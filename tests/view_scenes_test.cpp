@@ -26,7 +26,7 @@ const std::string kLeftHand = "controller left 0 position -0.2 1.2 -0.35 turn 0 
 const std::string kDense = "rate 90\nsize 64 64\nframes none\n" + kLeftHand, kSmall = "rate 45\nsize 64 64\nframes none\n" + kLeftHand;
 // Scenes load in the meantime, as long as it takes them: not in lock-step, where frames come as fast as they can.
 const std::string kWhileLoading = kValidated + " SIMULATED_OPENXR_CLOCK=real";
-constexpr double kSlower = 5.0;  // clicks, there
+constexpr double kSlower = 6.0;  // clicks, there
 
 const glm::dvec2 kBeside(0.9, 0.95);
 
@@ -49,8 +49,8 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     const Panel panel = startPanel(work);
     const glm::dvec2 next = placeOfScene("Next scene", work.path.string());
     const ViewRun run = runView(work, "next",
-                                kSmall + clickAt(panel, placeOf("Scenes"), 0.5, kSlower) + clickAt(panel, next, 1.5, kSlower) +
-                                    clickAt(panel, next, 3.0, kSlower) + "at 5 exit\n",
+                                kSmall + clickAt(panel, placeOf("Scenes"), 1.5, kSlower) + clickAt(panel, next, 2.8, kSlower) +
+                                    clickAt(panel, next, 4.3, kSlower) + "at 6 exit\n",
                                 "a.ply --load-first --mode mono --hide-hands", kWhileLoading);
     checkClean(run);
     const std::string& output = run.outcome.output;
@@ -74,8 +74,8 @@ TEST_CASE("a scene is chosen on the panel, in the folder of the one that is show
     const Panel panel = startPanel(work);
     const glm::dvec2 broken = placeOfScene("room1.ply", folder.string()), other = placeOfScene("room9.ply", folder.string());
     const ViewRun run = runView(work, "choose",
-                                kSmall + clickAt(panel, placeOf("Scenes"), 0.5, kSlower) + clickAt(panel, broken, 1.5, kSlower) +
-                                    clickAt(panel, other, 3.0, kSlower) + "at 5 exit\n",
+                                kSmall + clickAt(panel, placeOf("Scenes"), 1.5, kSlower) + clickAt(panel, broken, 2.8, kSlower) +
+                                    clickAt(panel, other, 4.3, kSlower) + "at 6 exit\n",
                                 name + "/room10.ply --load-first --mode mono --hide-hands", kWhileLoading);
     checkClean(run);
     const std::string& output = run.outcome.output;
