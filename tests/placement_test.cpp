@@ -147,6 +147,17 @@ TEST_CASE("a wearer starts where the options put the eye, upright, metres as lon
     checkNear(startPlacement(options, emptyScene()).orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
 }
 
+TEST_CASE("a scene that would be looked at from nearer than half a metre is shown larger, and no other one is") {
+    const auto growthAt = [](double distance, double metres_per_unit) {
+        return growthToSee({{1, 2, 3}, {1, 2, 3 + distance}, {0, -1, 0}, 60.0}, metres_per_unit);
+    };
+    CHECK(growthAt(0.25, 1.0) == doctest::Approx(2.0));
+    CHECK(growthAt(0.25, 0.1) == doctest::Approx(20.0));
+    for (const double distance : {0.5, 2.0, 100.0}) { CHECK(growthAt(distance, 1.0) == 1.0); }
+    CHECK(growthAt(0.25, 10.0) == 1.0);
+    CHECK(growthAt(0.0, 1.0) == 1000.0);  // as far as hands can make it grow
+}
+
 TEST_CASE("walking moves, turning keeps the head in its place") {
     checkNear(transform(movedBy(kSome, {0.1, 0.2, 0.3}), glm::dvec3(0.0)), transform(kSome, {0.1, 0.2, 0.3}));
     const glm::dvec3 head(0.2, -1.0, 0.4);

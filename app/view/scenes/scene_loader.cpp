@@ -73,7 +73,9 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
         try {
             loaded_->remembered = rememberedPlacement(scene_);
         } catch (const Error& error) { loaded_->remembering_trouble = error.what(); }
-        loaded_->start = startPlacement(start, options.metres_per_unit);
+        const bool is_asked_for = options.camera.eye || options.camera.look || !options.camera.cameras_file.empty();
+        const double growth = is_asked_for ? 1.0 : growthToSee(start, options.metres_per_unit);
+        loaded_->start = startPlacement(start, growth * options.metres_per_unit);
         loaded_->up = up;
         loaded_->floor = floor;
         loaded_->viewpoints = findViewpoints(scene_, options.camera.cameras_file);

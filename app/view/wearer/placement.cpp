@@ -59,6 +59,11 @@ Similarity startPlacement(const View& view, double metres_per_unit) {
             view.eye, 1.0 / metres_per_unit};
 }
 
+double growthToSee(const View& view, double metres_per_unit) {
+    constexpr double kNearestMetres = 0.5, kMostGrowth = 1000.0;
+    return std::clamp(kNearestMetres / (metres_per_unit * glm::distance(view.eye, view.look)), 1.0, kMostGrowth);
+}
+
 Similarity movedBy(const Similarity& scene_from_room, const glm::dvec3& step_m) {
     return compose(scene_from_room, {glm::dquat(1.0, 0.0, 0.0, 0.0), step_m, 1.0});
 }

@@ -25,6 +25,9 @@ Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c);
 // 1 / metres_per_unit scene units.
 Similarity startPlacement(const RunOptions& options, const Scene& scene);
 Similarity startPlacement(const View& view, double metres_per_unit);
+// How many times as large as it is a scene is shown, so that what is looked at is no nearer than half a metre: nearer eyes would have to
+// squint, and what is nearer than the near plane is not there.
+double growthToSee(const View& view, double metres_per_unit);
 
 // What moves the wearer through the scene: each is a scene_from_room to follow `scene_from_room`.
 // By `step_m` in the room.
