@@ -116,11 +116,12 @@ public:
         std::ofstream(work_.path / "walk.script") << walkOf(rounds, (work_.path / "scenes").string());
         const char* const kept = std::getenv("BINOSPLAT_WALK_KEEP");
         const std::filesystem::path alive = kept != nullptr ? std::filesystem::path(kept) : work_.path / "alive.txt";
-        outcome_ = work_.run(fmt::format("view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk",
-                                         2 * rounds * static_cast<int>(kRound) * kRate),
-                             fmt::format("{} {} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
-                                         "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}'",
-                                         environment, kSteadyHeap, alive.string()));
+        // In a process that begins with it: the C library reads its settings once.
+        outcome_ =
+            work_.runCommand(fmt::format("{} {} VK_ADD_LAYER_PATH='" BINOSPLAT_FAULT_LAYER
+                                         "' VK_INSTANCE_LAYERS=VK_LAYER_BINOSPLAT_faults BINOSPLAT_FAULT_LIVE='{}' '" BINOSPLAT_PROGRAM
+                                         "' view scenes/a.ply --load-first --frames {} --simulate walk.script --out walk",
+                                         environment, kSteadyHeap, alive.string(), 2 * rounds * static_cast<int>(kRound) * kRate));
         lines_ = readAlive(alive);
         const auto least = static_cast<std::size_t>(rounds);
         REQUIRE(lines_.size() >= least * 5);
