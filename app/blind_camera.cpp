@@ -10,7 +10,7 @@
 
 namespace binosplat {
 
-std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions) {
+std::string describeNearest(const Pose& world_from_camera, std::span<const glm::vec3> positions, double near) {
     if (positions.empty()) { return "no splat is seen: the scene has none"; }
     double nearest = std::numeric_limits<double>::infinity();
     glm::dvec3 towards(0.0);
@@ -24,8 +24,10 @@ std::string describeNearest(const Pose& world_from_camera, std::span<const glm::
     const glm::dvec3 eye = world_from_camera.position, forward = world_from_camera.orientation * glm::dvec3(0.0, 0.0, 1.0);
     const double cosine = nearest > 0.0 ? glm::dot(towards, forward) / nearest : 1.0;
     return fmt::format(
-        "no splat is seen from {:.4g},{:.4g},{:.4g}: the nearest is {:.4g} scene units away, {:.0f} degrees off the middle of the picture",
-        eye.x, eye.y, eye.z, nearest, glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))));
+        "no splat is seen from {:.4g},{:.4g},{:.4g}: the nearest is {:.4g} scene units away, {:.0f} degrees off the middle of the "
+        "picture{}",
+        eye.x, eye.y, eye.z, nearest, glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0))),
+        nearest < near ? fmt::format("; nothing nearer than {:.4g} is drawn (near)", near) : "");
 }
 
 }  // namespace binosplat

@@ -70,7 +70,7 @@ void warnOfBlindFrames(const PathReport& report, std::span<const glm::vec3> posi
     if (first == report.frames.end()) { return; }
     warn(fmt::format("{}: frame {}, the first of {} of {}: {}", report.options.scene, first - report.frames.begin(),
                      std::ranges::count_if(report.frames, is_blind), report.frames.size(),
-                     describeNearest(first->cameras.middle.world_from_camera, positions)));
+                     describeNearest(first->cameras.middle.world_from_camera, positions, report.options.run.camera.near)));
 }
 
 }  // namespace
@@ -119,7 +119,8 @@ void runRender(const RenderOptions& options) {
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }
         if (result.sees_nothing) {
-            warn(fmt::format("{}: {}", options.scene, describeNearest(cameras.middle.world_from_camera, positions)));
+            warn(fmt::format("{}: {}", options.scene,
+                             describeNearest(cameras.middle.world_from_camera, positions, options.run.camera.near)));
         }
     }
     for (const std::string& line : notes.lines) { fmt::print("  note: {}\n", line); }

@@ -319,6 +319,8 @@ TEST_CASE("aCameraThatSeesNoSplatIsSaidToInOneLine") {
     for (const std::string mode : {"mono", "predicted"}) {
         refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,1 --mode " + mode, "");
     }
+    refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,1 --mode mono --near 3",
+                   "0 degrees off the middle of the picture; nothing nearer than 3 is drawn (near)");
     write(work.path / "poses.csv", "0,0,0,0,0,0,0,1\n1,0,0,-9,0,0,0,1\n2,0,0,-10,0,0,0,1\n");
     refusesNothing("builtin:one-splat --eye 0,0,0 --look 0,0,1 --mode mono --path poses.csv",
                    "builtin:one-splat: frame 1, the first of 2 of 3: no splat is seen from 0,0,9: the nearest is 7 scene units away");
