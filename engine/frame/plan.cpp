@@ -26,10 +26,6 @@ void keepForWarp(Kept& source, const Warp& warp) {
 // Pictures that two eyes with a past take turns in: the pasts, one that is made meanwhile, and one more where sizes change.
 constexpr int kPastPictures = 4;
 
-// Without a past one eye is rendered in full. Of the other less than the budget is rendered then, so that such a frame costs no more than
-// one of kPredicted, which moves pixels for less and so has more left.
-constexpr double kStandInShare = 0.5;
-
 // A picture that is nobody's past, nor `taken`.
 int freePicture(const Pasts& pasts, std::optional<int> taken = {}) {
     for (int picture = 0; picture < kPastPictures; ++picture) {
@@ -199,7 +195,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (apart) { listOf(second); }
     if (mode == Mode::kTemporal) {  // nothing is there from before, but the other eye is
         makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
-        plan.budget = kStandInShare * settings.stereo.budget;
+        plan.budget = settings.stereo.budget;
         plan.steps.push_back({Step::Kind::kPast, second});
         plan.steps.push_back({Step::Kind::kChoose, 0});
     } else if (reprojects(mode)) {

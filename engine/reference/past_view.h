@@ -47,7 +47,7 @@ public:
     [[nodiscard]] const glm::dvec4& colour(int x, int y) const { return past_.rgba[indexOf({x, y})]; }
     [[nodiscard]] std::optional<MovingPixel> pixel(const glm::ivec2& at) const {
         // A lens hides the same parts of a picture at any size.
-        const glm::uvec2 tile = glm::uvec2(glm::dvec2(glm::clamp(at, glm::ivec2(0), last)) * size_ratio_) / unsigned{kTileSize};
+        const glm::uvec2 tile = glm::uvec2((glm::dvec2(glm::clamp(at, glm::ivec2(0), last)) + 0.5) * size_ratio_) / unsigned{kTileSize};
         const bool is_hidden = !hidden_.empty() && hidden_[std::size_t{tile.y} * columns_ + tile.x] != 0;
         return is_hidden ? std::nullopt : past_.pixels[indexOf(at)];
     }

@@ -12,10 +12,10 @@ struct Seen {
     vec2 off_px;          // where that pixel's middle comes to lie, less where `wanted_px` is
 };
 
-// The lens hides the same parts of a picture at any size.
+// The lens hides the same parts of a picture at any size. By a pixel's middle: a GPU's division is not exact, not even of equal numbers.
 bool isHiddenInPast(PastView view, uvec2 at) {
     if (!kHiddenTiles) { return false; }
-    return !isInMask(pass.shown_mask, view.size_tiles, uvec2(vec2(at) * (vec2(view.size_px) / vec2(view.past_size_px))) / kTileSize);
+    return !isInMask(pass.shown_mask, view.size_tiles, uvec2((vec2(at) + 0.5) * (vec2(view.size_px) / vec2(view.past_size_px))) / kTileSize);
 }
 
 uint wordAt(PastView view, vec2 place_px) {
