@@ -46,19 +46,33 @@ double stageMs(const MotionFrame& frame, const std::string& stage) {
 }
 
 double totalMs(const MotionFrame& frame) { return frame.total_ms; }
-double meanSquare(const MotionFrame& frame) { return frame.worseSquare(); }
 
-constexpr std::size_t kSettling = 10;  // frames that do not count for the run: a method that reuses its past is at its best in the first
+// Frames whose errors do not count where there are more: a method that reuses its past has none yet in the first, and little after it.
+constexpr std::size_t kSettling = 10;
+
+std::vector<const MotionFrame*> steadyFrames(const Sequence& sequence) {
+    const bool settles = sequence.frames.back()->number >= kSettling;
+    std::vector<const MotionFrame*> frames;
+    for (const MotionFrame* frame : sequence.frames) {
+        if (!settles || frame->number >= kSettling) { frames.push_back(frame); }
+    }
+    return frames;
+}
 
 double runSquare(const Sequence& sequence) {
-    const bool settles = sequence.frames.back()->number >= kSettling;
     double sum = 0.0, count = 0.0;
-    for (const MotionFrame* frame : sequence.frames) {
-        if (settles && frame->number < kSettling) { continue; }
+    for (const MotionFrame* frame : steadyFrames(sequence)) {
         sum += frame->mean_square[0] + frame->mean_square[1];
         count += 2.0;
     }
     return sum / count;
+}
+
+// Of the worse eye.
+std::vector<double> steadySquares(const Sequence& sequence) {
+    std::vector<double> squares;
+    for (const MotionFrame* frame : steadyFrames(sequence)) { squares.push_back(frame->worseSquare()); }
+    return squares;
 }
 
 // The first frame has none before it.
@@ -131,12 +145,10 @@ std::string motionJson(const MotionRun& run) {
                   {"stage_ms", stages},
                   {"pass_ms", passesJson(sequence)}};
         if (isLossy(sequence)) {
-            const std::vector<double> errors = valuesOf(sequence, meanSquare);
-            json["psnr_db"] = {{"median", psnrJson(median(errors))},
-                               {"p95", psnrJson(percentile(errors, 0.95))},
-                               {"p99", psnrJson(percentile(errors, 0.99))},
-                               {"worst", psnrJson(std::ranges::max(errors))},
-                               {"run", psnrJson(runSquare(sequence))}};
+            const std::vector<double> errors = steadySquares(sequence);
+            json["psnr_db"] = {{"median", psnrJson(median(errors))},        {"p95", psnrJson(percentile(errors, 0.95))},
+                               {"p99", psnrJson(percentile(errors, 0.99))}, {"worst", psnrJson(std::ranges::max(errors))},
+                               {"run", psnrJson(runSquare(sequence))},      {"first", psnrJson(sequence.frames.front()->worseSquare())}};
             json["flicker"] = statisticsJson(flickerOf(sequence));
             json["tile_steps"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.tile_steps; }));
             json["sharpness_gap"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.sharpness_gap; }));
@@ -159,8 +171,7 @@ std::string motionTable(const MotionRun& run) {
             table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}\n", "method", "ms median", "ms p95",
                                  "ms worst", "dB run", "dB 95", "dB worst", "flicker", "p95", "p99");
         }
-        const std::vector<double> times = valuesOf(sequence, totalMs), errors = valuesOf(sequence, meanSquare),
-                                  flicker = flickerOf(sequence);
+        const std::vector<double> times = valuesOf(sequence, totalMs), errors = steadySquares(sequence), flicker = flickerOf(sequence);
         table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f}", sequence.method, median(times), percentile(times, 0.95),
                              std::ranges::max(times));
         if (isLossy(sequence)) {
@@ -199,8 +210,7 @@ std::string motionPlot(const MotionRun& run) {
         PlotPanel& panel = panelOf(sequence.point + ": run", "PSNR of the run, down to the worst frame's, dB");
         panel.x_label = "median GPU time of the pair, ms";
         const double time_ms = median(valuesOf(sequence, totalMs));
-        lineOf(panel, sequence.method).points = {{time_ms, psnrOf(square)},
-                                                 {time_ms, psnrOf(std::ranges::max(valuesOf(sequence, meanSquare)))}};
+        lineOf(panel, sequence.method).points = {{time_ms, psnrOf(square)}, {time_ms, psnrOf(std::ranges::max(steadySquares(sequence)))}};
     }
     return drawPlot("Measured on " + run.device + " with " + run.motion, panels);
 }

@@ -41,7 +41,7 @@ struct MotionRun {
 
 std::string motionCsv(const MotionRun& run);
 // Medians, 95th and 99th percentiles and worst frames by point and method; of the error the PSNR that so many frames reach in both eyes,
-// and the run's: that of the mean square of both eyes and of all frames after the tenth, or of all where there are no more.
+// and the run's: that of the mean square of both eyes. Errors are those of all frames after the tenth, or of all where there are no more.
 std::string motionJson(const MotionRun& run);
 std::string motionTable(const MotionRun& run);
 std::string motionPlot(const MotionRun& run);
