@@ -6,6 +6,7 @@
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
+#include "engine/passes/periphery.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "engine/setup/output_files.h"
@@ -23,6 +24,7 @@ KernelTable allKernels(const Context& context) {
     KernelTable table = passKernels(context);
     append(table, warpKernels(context));
     append(table, pastKernels());
+    append(table, peripheryKernels());
     append(table, presentKernels());
     return table;
 }

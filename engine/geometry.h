@@ -43,6 +43,8 @@ struct Eye {
     Pose world_from_camera;
     Intrinsics intrinsics;
     glm::uvec2 size_px{0, 0};
+    // How wide a pixel of the eye's own picture is in this one, which may have fewer: splats keep the low-pass that they have there.
+    double own_pixel_px = 1.0;
 };
 
 enum Side : int { kLeft = 0, kRight = 1 };

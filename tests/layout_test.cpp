@@ -3,6 +3,7 @@
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"
+#include "engine/passes/periphery.h"
 #include "engine/passes/present.h"
 #include "engine/passes/warp_passes.h"
 #include "shaders/embedded_shaders.h"
@@ -55,7 +56,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
                FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth),
                FIELD(camera_from_world_x_low), FIELD(camera_from_world_y_low), FIELD(camera_from_world_z_low), FIELD(position_low),
-               FIELD(focal_px_low), FIELD(principal_px_low)),
+               FIELD(focal_px_low), FIELD(principal_px_low), FIELD(low_pass), FIELD(screen_variance)),
         LAYOUT(Place, FIELD(position), FIELD(position_low)),
         LAYOUT(ProjectedSplat, FIELD(reference_px), FIELD(plane_from_pixel), FIELD(perspective), FIELD(inverse_depth), FIELD(opacity),
                FIELD(colour)),
@@ -87,7 +88,8 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(ProjectPass, FIELD(chunks), FIELD(eyes), FIELD(order), FIELD(visible), FIELD(splats), FIELD(tile_sets), FIELD(tile_counts),
                FIELD(group_sums), FIELD(pairs), FIELD(counters), FIELD(tile_mask), FIELD(chunk_bits), FIELD(eye), FIELD(capacity)),
         LAYOUT(BinPass, FIELD(splats), FIELD(tile_sets), FIELD(tile_counts), FIELD(group_sums), FIELD(visible), FIELD(pairs), FIELD(tiles),
-               FIELD(ranks), FIELD(large_splats), FIELD(large_begins), FIELD(counters), FIELD(tile_mask), FIELD(size_tiles)),
+               FIELD(ranks), FIELD(large_splats), FIELD(large_begins), FIELD(counters), FIELD(tile_mask), FIELD(size_tiles),
+               FIELD(low_pass)),
         LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges), FIELD(tile_list), FIELD(masked_tiles), FIELD(full_tiles),
                FIELD(counters), FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(moving), FIELD(past_tiles), FIELD(visible),
                FIELD(background), FIELD(size_px)),
@@ -114,6 +116,10 @@ std::vector<Layout> hostLayouts() {
                FIELD(masked_tiles), FIELD(counters), FIELD(budget), FIELD(past_tiles), FIELD(is_last), FIELD(gaze)),
         LAYOUT(SelectPass, FIELD(warp), FIELD(tile_kinds), FIELD(tile_prices), FIELD(tile_list), FIELD(tile_mask), FIELD(tile_costs),
                FIELD(visible), FIELD(masked_tiles), FIELD(masked_visible), FIELD(counters), FIELD(budget)),
+        LAYOUT(PeripheryPass, FIELD(colours), FIELD(half_colours), FIELD(shown_mask), FIELD(tile_list), FIELD(tile_mask),
+               FIELD(chosen_tiles), FIELD(size_px), FIELD(gaze)),
+        LAYOUT(FillPeripheryPass, FIELD(source), FIELD(half_source), FIELD(source_depths), FIELD(target), FIELD(half_target), FIELD(depths),
+               FIELD(tile_mask), FIELD(shown_mask), FIELD(background), FIELD(size_px)),
         LAYOUT(SortCountPass, FIELD(keys), FIELD(histograms), FIELD(run_sums), FIELD(digit_begins), FIELD(list), FIELD(shift),
                FIELD(digits)),
         LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(run_sums),
@@ -284,6 +290,7 @@ TEST_CASE_FIXTURE(test::Gpu, "every kernel reads each constant that it is compil
     KernelTable table = passKernels(context());
     append(table, warpKernels(context()));
     append(table, pastKernels());
+    append(table, peripheryKernels());
     append(table, presentKernels());
     std::set<std::string> made;
     for (const KernelVariant& variant : table) { made.insert(variant.shader); }

@@ -62,6 +62,7 @@ std::vector<TilePair> binOnDevice(Gpu& gpu, const ViewedScene& view, const TwinS
     pass.counters = projected.counters.address<gpu::EyeCounters>();
     pass.tile_mask = tile_mask;
     pass.size_tiles = (view.eye.size_px + 15u) / 16u;
+    pass.low_pass = viewOf(view.eye, 0.2).low_pass;
     gpu.run([&](Commands& commands) {
         commands.dispatchIndirect(kernel, pass, projected.list, offsetof(gpu::ListState, per_block));
         commands.dispatch(large_kernel, pass, gpu::kBinLargeGroups);

@@ -31,6 +31,9 @@ gpu::EyeView viewOf(const Eye& eye, double near) {
     split(glm::dvec2(k.cx, k.cy), view.principal_px, view.principal_px_low);
     view.size_px = eye.size_px;
     view.size_tiles = tilesOf(eye.size_px);
+    const auto own_pixel = static_cast<float>(eye.own_pixel_px);
+    view.low_pass = gpu::kLowPass / (own_pixel * own_pixel);
+    view.screen_variance = gpu::kScreenVariance * own_pixel * own_pixel;
     view.near = static_cast<float>(near);
     view.max_inverse_depth = static_cast<float>(1.0 / near);
     return view;

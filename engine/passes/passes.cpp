@@ -268,7 +268,8 @@ gpu::BinPass Passes::EyePart::binPass() const {
             .large_begins = target.pairs.spare.values,
             .counters = counters(),
             .tile_mask = tiles.mask,
-            .size_tiles = target.size_tiles};
+            .size_tiles = target.size_tiles,
+            .low_pass = target.low_pass};
 }
 
 void Passes::recordBinned(const EyePart& part) {

@@ -50,6 +50,7 @@ struct Target {
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
     gpu::uint row_words = 0;                                   // of these two
     int share = 0, shares = 1;                                 // of the lists' room: `pairs` is of this share
+    float low_pass = gpu::kLowPass;                            // EyeView
     bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and has no one of its own for these
     gpu::DeviceAddress<gpu::uint> shown = {};  // what the lens shows, as a mask, if it hides anything; the other tiles become background
 };

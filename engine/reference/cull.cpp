@@ -37,7 +37,7 @@ private:
 
     [[nodiscard]] bool lowPassTouches(const CameraSplat& splat) const {
         const glm::dvec2 beyond = beyondPicture(splat);
-        return kLowPassFactor * glm::dot(beyond, beyond) <= splat.cut;
+        return kLowPassFactor * glm::dot(beyond, beyond) <= splat.cut * frame.own_pixel_px * frame.own_pixel_px;
     }
 
     [[nodiscard]] bool gaussianTouches(const CameraSplat& splat) const {

@@ -69,6 +69,7 @@ ProjectedSplat projectOne(const Scene& scene, std::size_t index, const EyeFrame&
     const glm::dvec3 &a = camera->a, &b = camera->b, &c = camera->c;
     const Intrinsics& k = eye.intrinsics;
     splat.low_pass = c.z > settings.near;
+    splat.low_pass_factor = kLowPassFactor / (eye.own_pixel_px * eye.own_pixel_px);
     splat.reference_px = splat.low_pass ? glm::dvec2(k.fx * c.x / c.z + k.cx, k.fy * c.y / c.z + k.cy) : 0.5 * eye.size_px;
     splat.disc = std::abs(glm::dot(glm::cross(a, b), c)) > kMinPlaneSine * glm::length(a) * glm::length(b) * glm::length(c);
     splat.depth = c.z;

@@ -115,7 +115,7 @@ glm::ivec4 boxOfReach(const ProjectedSplat& splat, const Settings& settings, glm
         y = {y.low + rows.origin_px.y, y.high + rows.origin_px.y};
     }
     if (splat.low_pass && !splat.gaussian) {
-        const double radius = std::sqrt(splat.cut / kLowPassFactor);
+        const double radius = std::sqrt(splat.cut / splat.low_pass_factor);
         for (const double side : {-radius, radius}) {
             x.add(splat.reference_px.x + side);
             y.add(splat.reference_px.y + side);
@@ -172,7 +172,7 @@ std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1) {
     Span disc = plane.disc ? chordOfDisc(plane, y, x0, x1) : none;
     if (!plane.low_pass) { return {disc, none}; }
     const double dy = y + 0.5 - plane.centre_px.y;
-    const double half = std::sqrt(plane.cut / kLowPassFactor - dy * dy);
+    const double half = std::sqrt(plane.cut / plane.low_pass_factor - dy * dy);
     Span circle = pixelsIn(plane.centre_px.x - half, plane.centre_px.x + half, x0, x1);
     if (circle.begin >= circle.end) { return {disc, none}; }
     if (disc.begin >= disc.end) { return {circle, none}; }

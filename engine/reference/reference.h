@@ -43,6 +43,7 @@ struct ProjectedSplat {
     glm::dvec2 perspective;
     double inverse_depth;
     bool low_pass;
+    double low_pass_factor = 2.0;  // rho2 per squared distance from the centre
     bool gaussian;
     bool disc;            // false: the plane holds the eye, so no ray meets it; only the low-pass is left
     double depth;         // c.z, camera z of the centre

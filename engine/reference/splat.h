@@ -34,12 +34,14 @@ struct EyeFrame {
         : camera_from_world(glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation))),
           position_world(eye.world_from_camera.position),
           intrinsics(eye.intrinsics),
-          size_px(eye.size_px) {}
+          size_px(eye.size_px),
+          own_pixel_px(eye.own_pixel_px) {}
 
     glm::dmat3 camera_from_world;
     glm::dvec3 position_world;
     Intrinsics intrinsics;
     glm::dvec2 size_px;
+    double own_pixel_px;  // whose low-pass splats have
 };
 
 // The disc u a + v b + c in camera space, u^2 + v^2 < cut; or a 3D Gaussian about c with the axes a, b and w.
@@ -65,16 +67,17 @@ inline ScreenGaussian screenGaussian(const CameraSplat& splat, const EyeFrame& e
     const auto project = [&](const glm::dvec3& axis) { return focal / splat.c.z * (glm::dvec2(axis) - slope * axis.z); };
     const glm::dvec2 a = project(splat.a), b = project(splat.b), w = project(splat.w);
     const auto cross = [](const glm::dvec2& p, const glm::dvec2& q) { return p.x * q.y - p.y * q.x; };
+    const double variance = kScreenVariance * eye.own_pixel_px * eye.own_pixel_px;
     ScreenGaussian g{};
     const double sharp_xx = a.x * a.x + b.x * b.x + w.x * w.x, sharp_yy = a.y * a.y + b.y * b.y + w.y * w.y;
-    g.xx = sharp_xx + kScreenVariance;
+    g.xx = sharp_xx + variance;
     g.xy = a.x * a.y + b.x * b.y + w.x * w.y;
-    g.yy = sharp_yy + kScreenVariance;
+    g.yy = sharp_yy + variance;
     g.with_depth = -(splat.a.z * a + splat.b.z * b + splat.w.z * w) / (splat.c.z * splat.c.z);
     // xx yy - xy^2 as a sum of squares (Cauchy and Binet): of a needle the difference would keep no digit.
     const double ab = cross(a, b), aw = cross(a, w), bw = cross(b, w);
     g.sharp_det = ab * ab + aw * aw + bw * bw;
-    g.det = g.sharp_det + kScreenVariance * (sharp_xx + sharp_yy) + kScreenVariance * kScreenVariance;
+    g.det = g.sharp_det + variance * (sharp_xx + sharp_yy) + variance * variance;
     return g;
 }
 
@@ -122,6 +125,7 @@ struct RayPlane {
     double centre_depth, cut, near;
     bool disc, low_pass;
     bool gaussian = false;
+    double low_pass_factor = kLowPassFactor;
     glm::dvec2 depth_slope{0.0};  // of a 3D Gaussian: of 1/z, which rho does not depend on
 };
 
@@ -139,6 +143,7 @@ inline RayPlane rayPlane(const ProjectedSplat& splat, glm::uvec2 size_px, double
                 true,
                 false,
                 true,
+                splat.low_pass_factor,
                 splat.perspective};
     }
     const PixelRows rows = pixelRows(splat, size_px);
@@ -153,7 +158,9 @@ inline RayPlane rayPlane(const ProjectedSplat& splat, glm::uvec2 size_px, double
             splat.cut,
             near,
             splat.disc,
-            splat.low_pass};
+            splat.low_pass,
+            false,
+            splat.low_pass_factor};
 }
 
 // How a pixel sees a splat.
@@ -183,7 +190,7 @@ inline bool meet(const RayPlane& plane, const glm::dvec2& pixel, Hit& hit) {
     }
     if (plane.low_pass) {
         const glm::dvec2 d = pixel - plane.centre_px;
-        const double rho2 = kLowPassFactor * (d.x * d.x + d.y * d.y);
+        const double rho2 = plane.low_pass_factor * (d.x * d.x + d.y * d.y);
         if (rho2 < hit.rho) {
             hit = {rho2, plane.centre_depth};
             met = true;

@@ -54,7 +54,7 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
-    const Outline outline = outlineOfProjected(p);
+    const Outline outline = outlineOfProjected(p, eye.low_pass);
     const ivec4 box = tileBox(splat, eye, outline);
     const uint tiles = uint(max(box.z - box.x, 0) * max(box.w - box.y, 0));
     if (tiles == 0) { return true; }
@@ -65,7 +65,7 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
 
     // The integral of exp(-rho), the square of what a pixel blends: pi sigma_u sigma_v on the screen and that of the low-pass.
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
-    const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / kLowPass + p.inverse_depth * p.inverse_depth / jacobian);
+    const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / eye.low_pass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
     const float error = warp.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
     const uint steps = uint(min(error * error * pixels * kErrorSteps, kMostStepsOfOne));

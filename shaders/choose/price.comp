@@ -7,6 +7,7 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/last_group.glsl"
+#include "lib/gaze.glsl"
 
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { PricePass pass; };
@@ -17,17 +18,6 @@ const uint kBinsPerThread = kPriceBins / kWarpGroup;
 
 // 16 bins an octave, the greatest quotients last: exponent and four bits of the mantissa.
 uint binOf(float error_per_pair) { return min(max(floatBitsToUint(error_per_pair) >> 19, 104u << 4) - (104u << 4), kPriceBins - 1); }
-
-// The finest cycle that an eye resolves grows linearly with the angle to where it looks (Guenter et al. 2012). A picture has
-// cycles of two pixels and longer; of those the eye sees the part that is no finer, along both axes.
-float seenShare(uvec2 at) {
-    const vec2 middle_px = vec2(at * kTileSize + kTileSize / 2);
-    const vec3 direction = vec3((middle_px - pass.gaze.principal_px) / pass.gaze.focal_px, 1);
-    const float angle = atan(length(cross(direction, pass.gaze.direction)), dot(direction, pass.gaze.direction));
-    const float finest = kFovealCycle + kCyclePerAngle * max(angle - pass.gaze.clear_rad, 0);
-    const float share = min(pass.gaze.pixel_cycle / finest, 1);
-    return share * share;
-}
 
 // What rendering a tile is worth in a picture that is made from a past: its expected squared error, for each frame that it has waited. An
 // error that grows by the frame loses its area under that growth when it is mended (an index of Whittle's), and so every tile has its turn.
@@ -59,7 +49,7 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     }
     // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
-    const float share = kFoveated ? seenShare(uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
+    const float share = kFoveated ? seenShare(pass.gaze, uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];

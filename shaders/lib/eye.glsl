@@ -1,4 +1,4 @@
-// The eye that a workgroup works for, brought to shared memory once, so that its thirty-eight words are not fetched by every thread.
+// The eye that a workgroup works for, brought to shared memory once, so that its forty words are not fetched by every thread.
 
 shared EyeView group_eye;
 

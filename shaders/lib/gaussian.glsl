@@ -35,13 +35,13 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec3 areas = vec3(scales.y * px_per_unit.x, scales.x * px_per_unit.x, scales.x * px_per_unit.x) *
                        (vec3(scales.z, scales.z, scales.y) * px_per_unit.y) * along;
     ScreenGaussian g;
-    g.xx = u.x * u.x + v.x * v.x + w.x * w.x + kScreenVariance;
+    g.xx = u.x * u.x + v.x * v.x + w.x * w.x + eye.screen_variance;
     g.xy = u.x * u.y + v.x * v.y + w.x * w.y;
-    g.yy = u.y * u.y + v.y * v.y + w.y * w.y + kScreenVariance;
+    g.yy = u.y * u.y + v.y * v.y + w.y * w.y + eye.screen_variance;
     const vec3 climb = scales * vec3(splat.t_u.z, splat.t_v.z, t_w.z) / splat.centre.z;
     g.with_depth = -(climb.x * u + climb.y * v + climb.z * w) / splat.centre.z;
     // The low-pass's own part twice over in xx + yy.
-    const float blurred = sqrt(kScreenVariance) * sqrt(g.xx + g.yy - kScreenVariance);
+    const float blurred = sqrt(eye.screen_variance) * sqrt(g.xx + g.yy - eye.screen_variance);
     g.root_det = lengthOf(areas, blurred);
     g.root_sharp = lengthOf(areas, 0);
     return g;

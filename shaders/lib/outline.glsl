@@ -16,10 +16,10 @@ struct Outline {
     float y_leftmost, y_rightmost;
 };
 
-Outline outlineOf(vec2 centre_px, vec3 plane, vec2 perspective, float inverse_depth, float cut) {
+Outline outlineOf(vec2 centre_px, vec3 plane, vec2 perspective, float inverse_depth, float cut, float low_pass) {
     Outline o;
     o.centre_px = centre_px;
-    precise const float circle_px = sqrt(cut / kLowPass);
+    precise const float circle_px = sqrt(cut / low_pass);
     o.circle_px = circle_px;
     o.a = plane.x;
     o.b = plane.y;
@@ -89,15 +89,16 @@ ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     return ivec2(max(tiles.x, tile_box.x), min(tiles.y, tile_box.z));
 }
 
-Outline outlineOfProjected(ProjectedSplat p) {
+// `low_pass`: of EyeView.
+Outline outlineOfProjected(ProjectedSplat p, float low_pass) {
     const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
     if (kSplatKind != kDiscs) {  // an ellipse around its centre, if there is anything of it
-        Outline o = outlineOf(p.reference_px, p.plane_from_pixel, vec2(0), 1, cut);
+        Outline o = outlineOf(p.reference_px, p.plane_from_pixel, vec2(0), 1, cut, low_pass);
         o.circle_px = 0;
         o.ellipse = o.ellipse && cut > 0 && hasReference(p);
         return o;
     }
-    Outline o = outlineOf(p.reference_px, p.plane_from_pixel, p.perspective, p.inverse_depth, cut);
+    Outline o = outlineOf(p.reference_px, p.plane_from_pixel, p.perspective, p.inverse_depth, cut, low_pass);
     if (!hasReference(p)) {
         o.ellipse = false;
         o.circle_px = 0;

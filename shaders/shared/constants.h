@@ -127,6 +127,13 @@ BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
 // of those above and below. price writes this in place of the tile's error: it is more than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
+// A tile that is made from a picture of half the size is expected to have lost this part of what the second differences of its 8x8 samples
+// there have, squared and summed over both axes and all channels. Of 2DGS scenes as headsets show them: docs/tried.md.
+BINOSPLAT_CONSTANT float kHalfLoss = 0.3f;
+// Threads that look over a tile in it, each a row of its 8x8 samples.
+BINOSPLAT_CONSTANT uint kHalfTileRows = kTileSize / 2;
+// Tiles beside each other that a workgroup of fill_periphery fills.
+BINOSPLAT_CONSTANT uint kFillTiles = 8;
 // The spread of a moving pixel's inverse depth is kept in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;

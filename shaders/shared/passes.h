@@ -70,6 +70,7 @@ struct BinPass {
     EyeCounterss counters;
     Uints tile_mask;  // under a mask, as in ProjectPass
     uvec2 size_tiles;
+    float low_pass;  // EyeView
 };
 
 // tile_ranges: where each tile's pairs lie once they are sorted by tile. Under a mask also which tiles have any; the others become
@@ -251,6 +252,32 @@ struct SelectPass {
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
     WarpCounterss counters;
     WarpCounterss budget;  // as in PricePass
+};
+
+// periphery: which tiles of an eye's picture are rendered at half of its size, or which at its own.
+struct PeripheryPass {
+    FloatColours colours;  // of the half-size picture, once it is there: one of the two
+    HalfColours half_colours;
+    Uints shown_mask;         // where the eye has hidden tiles: the others; otherwise null
+    Uints tile_list;          // out, in no order: of the half-size picture or of the eye's
+    Uints tile_mask;          // in: zeros; out
+    ListStates chosen_tiles;  // counts workgroups; out
+    uvec2 size_px;            // of the eye's picture
+    EyeGaze gaze;
+};
+
+// fill_periphery: the tiles that are not rendered at the eye's own size, from the half-size picture.
+struct FillPeripheryPass {
+    FloatColours source;
+    HalfColours half_source;
+    Floats source_depths;  // D, where it is wanted
+    FloatColours target;   // out
+    HalfColours half_target;
+    Floats depths;     // out where wanted
+    Uints tile_mask;   // those that are there
+    Uints shown_mask;  // as in PeripheryPass
+    vec3 background;   // of tiles that are hidden
+    uvec2 size_px;
 };
 
 // A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups

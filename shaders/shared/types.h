@@ -50,6 +50,9 @@ struct EyeView {
     vec3 position_low;
     vec2 focal_px_low;
     vec2 principal_px_low;
+    // kLowPass and kScreenVariance of a pixel of the eye's own picture, which may have more pixels than this one.
+    float low_pass;
+    float screen_variance;
 };
 BINOSPLAT_ARRAY_OF(EyeView, EyeViews);
 

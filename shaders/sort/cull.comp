@@ -80,7 +80,7 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
         // And the circle of the low-pass around its centre. The square root of a difference of squares keeps half their digits.
         const vec2 rounding_px = 0.5 + 5e-4 * abs(eye.focal_px * middle) + kOutlinePadding;
         const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px;
-        const float circle_px = sqrt(cut / kLowPass);
+        const float circle_px = sqrt(cut / eye.low_pass);
         low_px = min(middle_px - half_px, centre_px - circle_px) - rounding_px;
         high_px = max(middle_px + half_px, centre_px + circle_px) + rounding_px;
     }
@@ -105,7 +105,7 @@ bool isVisible(CameraSplat splat, EyeView eye) {
         reachesInside(splat, radius, vec3(0, -eye.focal_px.y, to_far_edge.y))) {
         return true;
     }
-    return splat.centre.z > eye.near && isOnScreen(splat, eye, vec2(sqrt(cut / kLowPass)));
+    return splat.centre.z > eye.near && isOnScreen(splat, eye, vec2(sqrt(cut / eye.low_pass)));
 }
 
 bool isWanted(CameraSplat splat, EyeView eye, Uints mask) { return isVisible(splat, eye) && (!kMasked || meetsMask(splat, eye, mask)); }

@@ -53,7 +53,7 @@ void putRow(uvec2 pairs, int row, uint begin, uint end, uint rank) {
 void putLarge(uint i, uint lanes) {
     const uint rank = pass.large_splats.at[i];
     const ivec4 box = largeBox(pass.tile_sets.at[rank]);
-    const Outline outline = outlineOfProjected(pass.splats.at[rank]);
+    const Outline outline = outlineOfProjected(pass.splats.at[rank], pass.low_pass);
     uvec2 pairs = pairsFrom(pass.large_begins.at[i], pass.tile_counts.at[rank]);
     int first_row = box.y;
     [[dont_unroll]] do {

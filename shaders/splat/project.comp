@@ -97,7 +97,7 @@ uint project(uint rank, EyeView eye, out uint square_tiles) {
     bool has_reference;
     ProjectedSplat p = projectSplat(splat, eye, has_reference);
     if (has_reference) { placeExactly(p, in_world.centre, eye); }
-    const Outline outline = outlineOfProjected(p);
+    const Outline outline = outlineOfProjected(p, eye.low_pass);
     const ivec4 box = tileBox(splat, eye, outline);
     square_tiles = kSquareBoxes ? squareBoxTiles(splat, eye) : 0;
     uint small;

@@ -51,8 +51,8 @@ shared uint threads_done;
 shared uint squares;  // of what is rendered less what was there before, in kErrorSteps
 
 // Which cells of the tile the splat meets, a bit each.
-uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
-    const Outline outline = outlineOfProjected(splat);
+uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
+    const Outline outline = outlineOfProjected(splat, low_pass);
     if (!outline.ellipse) { return 15; }
     uint cells = 0;
     for (uint row = 0; row < 2; ++row) {
@@ -66,19 +66,19 @@ uint cellsOf(ProjectedSplat splat, uvec2 tile_px) {
     return cells;
 }
 
-void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px) {
+void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uvec2 tile_px, float low_pass) {
     const ProjectedSplat splat = pass.splats.at[rank];
     const bool has_reference = kSplatKind != kDiscs || hasReference(splat);
     const float scale = sqrt(kLog2PerRho);
     // Relative to the tile, single precision places the centre to 1e-6 px.
     batch_reference[slot] = has_reference ? vec4((splat.reference_px - vec2(tile_px)) + restOfReference(splat), 0, 0)
                                           : vec4(middle_px - vec2(tile_px), scale * splat.reference_px);
-    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * kLowPass : 0);
+    batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
     // A subgroup's slots follow one another, so that one lane can set the bits of all that are here; 32 divides the slot of lane 0 or is
     // divided by the subgroup's width.
-    const uint cells = cellsOf(splat, tile_px), first_slot = slot - gl_SubgroupInvocationID;
+    const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
         if (subgroupElect()) {
@@ -91,11 +91,11 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     }
 }
 
-void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_px) {
+void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_px, float low_pass) {
     uint slot = gl_SubgroupID * lanes + gl_SubgroupInvocationID;
     if (slot >= splats) { return; }
     [[dont_unroll]] do {
-        loadSplat(slot, lanes, pass.ranks.at[begin + slot], middle_px, tile_px);
+        loadSplat(slot, lanes, pass.ranks.at[begin + slot], middle_px, tile_px, low_pass);
         slot += kThreads;
     } while (slot < splats);
 }
@@ -246,7 +246,7 @@ void main() {
         barrier();
         if (threads_done == kThreads) { break; }
         const uint splats = min(range.y - begin, kBatchSize);
-        loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px);
+        loadBatch(begin, splats, lanes, vec2(size_px) * 0.5, tile_px, eye.low_pass);
         barrier();
         blendBatch(splats, cell, first_px, max_inverse_depth_bits);
         begin += kBatchSize;

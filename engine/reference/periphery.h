@@ -1,0 +1,40 @@
+// The float64 twins of periphery and fill_periphery: an eye's picture where it does not look, from one of half the size. Tiles and pixels
+// are listed by rows; `hidden` has a byte a tile, 1 where nobody sees it; empty: all are seen.
+#pragma once
+
+#include "engine/reference/reference.h"
+#include "engine/reference/stereo.h"
+
+namespace binosplat::reference {
+
+// The same view with pixels of twice the width and height, as many as cover the picture; splats have the low-pass of the smaller ones.
+Eye halfOf(const Eye& eye);
+
+// periphery: of an error that is spread over all that each tile may show, the share that the eye sees: as findSeenShares, but by the solid
+// angle that a pixel has at the tile's middle. Where it is no more than a quarter, the finest cycle that the eye resolves has four pixels,
+// or two samples of half the size: then the tile lies beyond.
+std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze);
+std::vector<std::uint8_t> findBeyond(const Eye& eye, const Gaze& gaze);
+// Likewise periphery, first: the tiles of the half-size picture that hold a sample which some tile beyond is made from, if that is seen.
+std::vector<std::uint8_t> findHalfTiles(const Eye& eye, const Gaze& gaze, std::span<const std::uint8_t> hidden = {});
+// Likewise periphery, second: what the eye is expected to see of each tile's loss, as a squared error summed over its pixels and their
+// channels: 0.3 of its samples' second differences along both axes, squared and summed (at most 4 a sample), times the seen share.
+std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze);
+// And so the tiles that are rendered at their own size: those not beyond, and those in which a hundredth would be seen in each pixel.
+std::vector<std::uint8_t> findOwnTiles(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze,
+                                       std::span<const std::uint8_t> hidden = {});
+
+// fill_periphery: all tiles but `own_tiles`, colours by Catmull and Rom's cubic (1974), not below 0, and alpha not above 1; D as alpha
+// times the depth D/A of the half-size picture between four samples, linearly of both. Hidden ones become background.
+void fillPeriphery(Picture& picture, const Picture& half, std::span<const std::uint8_t> own_tiles,
+                   std::span<const std::uint8_t> hidden = {}, const glm::dvec3& background = glm::dvec3(0.0));
+
+// Both pictures and what becomes of them.
+struct PeripheryPictures {
+    Picture picture, half;
+    std::vector<std::uint8_t> own_tiles;
+};
+PeripheryPictures renderPeriphery(const Scene& scene, const Eye& eye, const Gaze& gaze, const Settings& settings,
+                                  std::span<const std::uint8_t> hidden = {});
+
+}  // namespace binosplat::reference

@@ -1,0 +1,25 @@
+// What an eye sees of its picture, by the angle from where it looks.
+
+float angleFromGaze(EyeGaze gaze, vec2 px) {
+    const vec3 direction = vec3((px - gaze.principal_px) / gaze.focal_px, 1);
+    return atan(length(cross(direction, gaze.direction)), dot(direction, gaze.direction));
+}
+
+vec2 middleOfTile(uvec2 tile) { return vec2(tile * kTileSize + kTileSize / 2); }
+
+float finestCycle(EyeGaze gaze, float angle) { return kFovealCycle + kCyclePerAngle * max(angle - gaze.clear_rad, 0); }
+
+// The finest cycle that an eye resolves grows linearly with the angle to where it looks (Guenter et al. 2012). A picture has
+// cycles of two pixels and longer; of those the eye sees the part that is no finer, along both axes.
+float seenShare(EyeGaze gaze, uvec2 tile) {
+    const float share = min(gaze.pixel_cycle / finestCycle(gaze, angleFromGaze(gaze, middleOfTile(tile))), 1);
+    return share * share;
+}
+
+// The same with the size that pixels have there: the farther they lie from the lens's axis, the smaller they look.
+float seenShareThere(EyeGaze gaze, uvec2 tile) {
+    const vec2 px = middleOfTile(tile);
+    const float stretch = length(vec3((px - gaze.principal_px) / gaze.focal_px, 1));
+    const float solid_angle = 1 / (gaze.focal_px.x * gaze.focal_px.y * stretch * stretch * stretch), finest = finestCycle(gaze, angleFromGaze(gaze, px));
+    return min(4 * solid_angle / (finest * finest), 1);
+}

@@ -1,0 +1,79 @@
+// fill_periphery: the tiles that are not rendered at an eye's own size, from its picture of half the size, by Catmull and Rom's cubic. A
+// sample is as wide as two pixels, so that a pixel lies a quarter of it before or behind its centre. A thread goes down a tile by a column of
+// samples, so that each row is sampled across once.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "passes.h"
+#include "lib/tile_mask.glsl"
+
+layout(local_size_x = kTileSize / 2, local_size_y = kFillTiles) in;
+layout(push_constant, scalar) uniform Push { FillPeripheryPass pass; };
+layout(constant_id = 0) const bool kDepth = false;
+layout(constant_id = 1) const bool kHalfColours = false;
+
+#include "lib/picture.glsl"
+
+// Weights of the samples from two before a pixel to one behind it, where it lies before the centre of the third; in the other direction where
+// it lies behind the centre of the second.
+const vec4 kCubic = vec4(-0.0234375, 0.2265625, 0.8671875, -0.0703125);
+
+// The two pixels of each sample of a column in one of its rows, before and behind the sample's centre; D and A between two samples.
+struct Across {
+    vec4 before, behind;
+    vec2 linear_before, linear_behind;
+};
+
+Across sampleAcross(ivec2 at, ivec2 last) {
+    const int row = clamp(at.y, 0, last.y) * (last.x + 1);
+    vec4 taps[5];
+    vec2 depths[3] = vec2[](vec2(0), vec2(0), vec2(0));
+    [[unroll]] for (int x = 0; x < 5; ++x) {
+        const uint k = uint(row + clamp(at.x + x - 2, 0, last.x));
+        taps[x] = colourAt(pass.source, pass.half_source, k);
+        if (kDepth && x > 0 && x < 4) { depths[x - 1] = vec2(pass.source_depths.at[k], taps[x].a); }
+    }
+    return Across(kCubic.x * taps[0] + kCubic.y * taps[1] + kCubic.z * taps[2] + kCubic.w * taps[3],
+                  kCubic.w * taps[1] + kCubic.z * taps[2] + kCubic.y * taps[3] + kCubic.x * taps[4],
+                  0.25 * depths[0] + 0.75 * depths[1], 0.75 * depths[1] + 0.25 * depths[2]);
+}
+
+// A pixel's D is its alpha times the depth that linear weights give, which has no overshoot.
+void putPixel(uvec2 pixel, vec4 cubic, vec2 linear, bool hidden) {
+    if (any(greaterThanEqual(pixel, pass.size_px))) { return; }
+    const vec4 held = hidden ? vec4(pass.background, 0) : max(cubic, vec4(0));
+    const vec4 colour = vec4(held.rgb, min(held.a, 1));
+    const uint k = pixel.y * pass.size_px.x + pixel.x;
+    putColour(pass.target, pass.half_target, k, colour);
+    if (kDepth) { pass.depths.at[k] = !hidden && linear.y > 0 ? colour.a * linear.x / linear.y : 0; }
+}
+
+vec4 cubicDown(vec4 a, vec4 b, vec4 c, vec4 d) { return kCubic.x * a + kCubic.y * b + kCubic.z * c + kCubic.w * d; }
+vec2 linearDown(vec2 far, vec2 near) { return 0.25 * far + 0.75 * near; }
+
+void main() {
+    const uvec2 size_tiles = (pass.size_px + kTileSize - 1) / kTileSize;
+    const uvec2 tile = uvec2(gl_WorkGroupID.x * kFillTiles + gl_LocalInvocationID.y, gl_WorkGroupID.y);
+    if (tile.x >= size_tiles.x || isInMask(pass.tile_mask, size_tiles, tile)) { return; }
+    const bool hidden = any(notEqual(uvec2(pass.shown_mask), uvec2(0))) && !isInMask(pass.shown_mask, size_tiles, tile);
+    const ivec2 last = ivec2((pass.size_px + 1) / 2) - 1;
+    ivec2 at = ivec2(tile * (kTileSize / 2)) + ivec2(gl_LocalInvocationID.x, 0);
+    if (at.x > last.x) { return; }
+    // Rows from two above the sample to one below it.
+    Across a = sampleAcross(at - ivec2(0, 2), last), b = sampleAcross(at - ivec2(0, 1), last), c = sampleAcross(at, last);
+    Across d = sampleAcross(at + ivec2(0, 1), last);
+    const int end = min(at.y + int(kTileSize) / 2, last.y + 1);
+    [[dont_unroll]] do {
+        const Across e = sampleAcross(at + ivec2(0, 2), last);
+        const uvec2 pixel = uvec2(2 * at);
+        putPixel(pixel, cubicDown(a.before, b.before, c.before, d.before), linearDown(b.linear_before, c.linear_before), hidden);
+        putPixel(pixel + uvec2(1, 0), cubicDown(a.behind, b.behind, c.behind, d.behind), linearDown(b.linear_behind, c.linear_behind), hidden);
+        putPixel(pixel + uvec2(0, 1), cubicDown(e.before, d.before, c.before, b.before), linearDown(d.linear_before, c.linear_before), hidden);
+        putPixel(pixel + uvec2(1, 1), cubicDown(e.behind, d.behind, c.behind, b.behind), linearDown(d.linear_behind, c.linear_behind), hidden);
+        a = b;
+        b = c;
+        c = d;
+        d = e;
+        ++at.y;
+    } while (at.y < end);
+}
