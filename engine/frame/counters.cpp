@@ -19,6 +19,12 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         names["pixels" + eye] = target.pixels;
         names["pixel_bytes" + eye] = target.pixel_bytes;
     }
+    if (periphery) {
+        names["tile_pairs_half_size"] = periphery->tile_pairs;
+        names["tiles_half_size"] = periphery->half_tiles;
+        names["tiles_full_size"] = periphery->sharp_tiles;
+        names["periphery_bytes"] = periphery->bytes;
+    }
     if (warped) {
         if (warped->pixels) {
             names["pixels_covered"] = warped->pixels->covered;

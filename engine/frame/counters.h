@@ -38,6 +38,11 @@ struct FrameCounters {
     std::uint64_t commands = 0, splats_read = 0;
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
+    // An eye in two pictures: what the smaller one took, and how many tiles of each are rendered.
+    struct Periphery {
+        std::uint64_t tile_pairs = 0, half_tiles = 0, sharp_tiles = 0, bytes = 0;
+    };
+    std::optional<Periphery> periphery;
     std::optional<WarpedCounters> warped;
     // Of StereoFrame::renderAhead, since its frame was made.
     struct Ahead {

@@ -32,7 +32,8 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
                      .keep_both_depths = settings.keep_both_depths,
                      .keep_moments = settings.keep_moments,
                      .keep_classes = settings.keep_classes,
-                     .center_rois = settings.stereo.center_rois};
+                     .center_rois = settings.stereo.center_rois,
+                     .half_periphery = settings.half_periphery && settings.gazes[0].has_value()};
     for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
     return shape;
 }

@@ -13,7 +13,7 @@ struct FrameShape {
     Mode mode = Mode::kMono;
     int dominant = 0;
     bool per_eye = false, half_floats = false, keep_depth = false, keep_both_depths = false, keep_moments = false, keep_classes = false,
-         center_rois = false;
+         center_rois = false, half_periphery = false;
     std::array<glm::uvec2, 2> sizes_px{};
     bool operator==(const FrameShape&) const = default;
 };

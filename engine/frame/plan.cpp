@@ -91,6 +91,25 @@ void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     plan.steps.push_back({Step::Kind::kPast, other});
 }
 
+// The eye in two pictures, of which the smaller comes first: what it holds says where it will do.
+void planPeriphery(FramePlan& plan, const Gaze& gaze, ListPlan list) {
+    const int half = static_cast<int>(plan.targets.size());
+    plan.targets.push_back(plan.targets[0]);
+    TargetPlan &sharp = plan.targets[0], &coarse = plan.targets.back();
+    sharp.choice = TileChoice::kSharp;
+    sharp.gaze = gaze;
+    sharp.half = half;
+    coarse.eye = halfOf(sharp.eye);
+    coarse.choice = TileChoice::kHalf;
+    coarse.picture = half;
+    // Its last pixels may reach beyond the other's, so that it sees all that the other does.
+    list.eyes.first = list.eyes.order_eye = half;
+    plan.square_boxes = false;
+    plan.lists.push_back(list);
+    plan.steps = {{Step::Kind::kHalfTiles, 0}, {Step::Kind::kList, 0},   {Step::Kind::kRender, half},
+                  {Step::Kind::kOwnTiles, 0},  {Step::Kind::kRender, 0}, {Step::Kind::kFill, 0}};
+}
+
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
     StereoSettings stereo = settings.stereo;
     stereo.choice = choiceOf(settings.mode);
@@ -141,6 +160,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
 
     FramePlan plan{.near = settings.near, .background = settings.background, .square_boxes = settings.square_boxes};
     plan.dominant = first;
+    plan.eyes = eyes.size();
     for (int e = 0; e < static_cast<int>(eyes.size()); ++e) {
         const bool is_first = e == first;
         plan.targets.push_back({.eye = eyes[e],
@@ -183,6 +203,10 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         return plan;
     }
 
+    if (one_eye && settings.half_periphery && settings.gazes[0] && !settings.keep_moments) {
+        planPeriphery(plan, *settings.gazes[0], {.eyes = {.middle = middle}});
+        return plan;
+    }
     if (apart) {
         listOf(first);
     } else {

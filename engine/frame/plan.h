@@ -4,6 +4,7 @@
 #include "engine/frame/settings.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/passes.h"
+#include "engine/passes/periphery.h"
 
 #include <optional>
 #include <span>
@@ -52,6 +53,7 @@ struct TargetPlan {
     int picture = 0;                // of the room's, that it becomes
     std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
     bool keeps_classes = false;
+    std::optional<int> half = {};  // kSharp: the target of half the size that the other tiles are filled from
 };
 
 struct Step {
@@ -59,6 +61,9 @@ struct Step {
         kList,       // makes FramePlan::lists[index]
         kWarp,       // moves pixels into FramePlan::targets[index] and chooses its tiles
         kPast,       // makes FramePlan::targets[index] from its past
+        kHalfTiles,  // of the half-size picture of FramePlan::targets[index] chooses those that are needed
+        kOwnTiles,   // likewise of the target itself, once that picture is there
+        kFill,       // and makes the rest of it
         kChoose,     // chooses the tiles of all targets that have one
         kRender,     // renders these
         kRenderAll,  // renders the chosen tiles of all targets at the same time; their list and pairs need room for each
@@ -69,7 +74,8 @@ struct Step {
 
 struct FramePlan {
     std::vector<ListPlan> lists = {};
-    std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order
+    std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order; then those of half the size
+    std::size_t eyes = 0;
     std::vector<Step> steps = {};
     bool shares_order = false;  // one order of the splats is that of all eyes
     double near = 0.2;

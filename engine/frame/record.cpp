@@ -52,6 +52,15 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
             case Step::Kind::kChoose:
                 recordChoice(commands, plan);
                 break;
+            case Step::Kind::kHalfTiles:
+                periphery_passes.recordHalfChoice(commands, peripheryOf(plan, step.index));
+                break;
+            case Step::Kind::kOwnTiles:
+                periphery_passes.recordChoice(commands, peripheryOf(plan, step.index));
+                break;
+            case Step::Kind::kFill:
+                periphery_passes.recordFill(commands, peripheryOf(plan, step.index));
+                break;
             case Step::Kind::kRender:
                 recordPicture(commands, plan, step.index);
                 break;
@@ -110,6 +119,21 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
     past_passes.recordChoice(commands, eyes);
 }
 
+PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) const {
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
+    return {.buffers = room.lists(),
+            .tiles = room.periphery(),
+            .index = index,
+            .half_index = *target.half,
+            .role = target.role,
+            .target = room.picture(target.picture),
+            .half = room.picture(plan.targets[static_cast<std::size_t>(*target.half)].picture),
+            .shown = room.shown(index),
+            .background = glm::vec3(plan.background),
+            .lens = target.eye.intrinsics,
+            .gaze = *target.gaze};
+}
+
 EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
     if (list.of_chosen) {
@@ -125,12 +149,15 @@ void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int
     if (planned.choice == TileChoice::kAll) {
         passes.recordEye(commands, scene, room.lists(), target, planned.role);
     } else {
-        const Passes::Patch patch{target, chosenTiles(index)};
+        const Passes::Patch patch{target, chosenTiles(plan, index)};
         passes.recordTiles(commands, scene, room.lists(), std::span(&patch, 1), planned.role);
     }
 }
 
-TileMask FrameRecorder::chosenTiles(int index) const {
+TileMask FrameRecorder::chosenTiles(const FramePlan& plan, int index) const {
+    const TileChoice choice = plan.targets[static_cast<std::size_t>(index)].choice;
+    if (choice == TileChoice::kSharp) { return room.periphery().own(); }
+    if (choice == TileChoice::kHalf) { return room.periphery().ofHalf(); }
     const WarpBuffers& warp = room.warp(index);
     return {warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
 }
@@ -138,7 +165,7 @@ TileMask FrameRecorder::chosenTiles(int index) const {
 void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan) const {
     std::vector<Passes::Patch> patches;
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
-        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(t)});
+        Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(plan, t)});
         patch.target.share = t;
         patch.target.shares = plan.shares();
         patch.target.pairs = room.lists().pairs.arrays(t, plan.shares());
@@ -165,6 +192,8 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
         target.row_words = planned.eye.size_px.x;
         target.lists_chosen = plan.lists[static_cast<std::size_t>(planned.list)].of_chosen;
     }
+    target.low_pass = viewOf(planned.eye, plan.near).low_pass;
+    if (planned.choice == TileChoice::kSharp || planned.choice == TileChoice::kHalf) { target.lists_chosen = true; }
     if (!planned.feeds) { return target; }
     const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);
     if (planned.kept.moving) {

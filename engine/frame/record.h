@@ -11,6 +11,7 @@ struct FrameRecorder {
     Passes& passes;
     WarpPasses& warp_passes;
     PastPasses& past_passes;
+    PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
 
@@ -27,10 +28,11 @@ private:
     void recordPast(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
+    [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
     void recordPatches(Commands& commands, const FramePlan& plan) const;
-    [[nodiscard]] TileMask chosenTiles(int index) const;
+    [[nodiscard]] TileMask chosenTiles(const FramePlan& plan, int index) const;
     [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
 };
 

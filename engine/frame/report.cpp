@@ -73,8 +73,19 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     }
 }
 
+void countPeriphery(const FrameFacts& frame, const TargetPlan& target, const TargetState& state, FrameResult& result) {
+    const auto half = static_cast<std::size_t>(*target.half);
+    const TargetState& half_state = frame.state.targets[half];
+    const Picture& picture = frame.room.picture(frame.plan.targets[half].picture);
+    result.counters.periphery = {.tile_pairs = half_state.pairs.count,
+                                 .half_tiles = half_state.chosen_tiles.count,
+                                 .sharp_tiles = state.chosen_tiles.count,
+                                 .bytes = picture.colours.bytes() + picture.depths.bytes() + frame.room.periphery().buffer().bytes()};
+}
+
 bool seesNothing(const FrameCounters& counters) {
     if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
+    if (counters.periphery && counters.periphery->tile_pairs > 0) { return false; }
     // Pictures that are made from their pasts may need no splat: then their tiles know what they were made of. An empty one counts for
     // kTilePairs.
     std::uint64_t tiles = 0;
@@ -106,7 +117,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
         return target.kept.moments || (target.warp && (target.warp->settings.choice == TileChoice::kPredicted ||
                                                        target.warp->settings.depth_choice == gpu::kDepthInverse));
     });
-    const bool two = plan.targets.size() == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
+    const bool two = plan.eyes == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
     leaveOut(frame.scene.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
     leaveOut(two && !plan.targets[static_cast<std::size_t>(1 - plan.firstTarget())].kept.depth,
@@ -115,7 +126,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     leaveOut(both_at_once && plan.shares_order,
              plan.lists[0].eyes.middle ? "depth sort of the affiliated eye: both eyes go by the distance from the middle between them"
                                        : "depth sort of the affiliated eye: the eyes are parallel, so the dominant eye's order is exact");
-    for (std::size_t e = 0; e < plan.targets.size(); ++e) {
+    for (std::size_t e = 0; e < plan.eyes; ++e) {
         const glm::uvec2 tiles = tilesOf(plan.targets[e].eye.size_px);
         const ShownTiles& shown = frame.room.shown(static_cast<int>(e));
         leaveOut(shown.hideAny(), fmt::format("{} of the {} tiles of the {} eye: its lens never shows them", shown.hiddenCount(),
@@ -142,7 +153,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
     counters.visible_bytes = lists.visible.bytes();
     counters.pair_bytes = lists.pairs.bytes();
     counters.scratch_bytes = lists.scratch.bytes();
-    for (std::size_t t = 0; t < frame.plan.targets.size(); ++t) {
+    for (std::size_t t = 0; t < frame.plan.eyes; ++t) {
         const TargetPlan& target = frame.plan.targets[t];
         const TargetState& state = frame.state.targets[t];
         const glm::uvec2 size_px = target.eye.size_px, tiles = tilesOf(size_px);
@@ -158,6 +169,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
         its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }
+        if (target.half) { countPeriphery(frame, target, state, result); }
     }
     if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
         countPast(frame, result);

@@ -92,7 +92,7 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         const bool used = t < plan.targets.size();
         const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0), tiles = tilesOf(size_px);
         most_tiles = std::max(most_tiles, std::uint64_t{tiles.x} * tiles.y);
-        const auto hidden = used && t < hidden_tiles.size() ? hidden_tiles[t] : std::span<const std::uint8_t>{};
+        const auto hidden = used && t < plan.eyes ? hidden_tiles[t] : std::span<const std::uint8_t>{};
         assert(hidden.empty() || hidden.size() == std::size_t{tiles.x} * tiles.y);
         shown_[t].set(hidden, tiles);
         if (!used) { continue; }
@@ -119,6 +119,12 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     resize(context_, lists_.tile_ranges, "tile ranges",
            static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead)) * most_tiles * sizeof(gpu::uvec2));
     fitWarps(plan);
+    const auto in_two = std::ranges::find_if(plan.targets, [](const TargetPlan& target) { return target.half.has_value(); });
+    const glm::uvec2 in_two_px = in_two != plan.targets.end() ? in_two->eye.size_px : glm::uvec2(0);
+    if (periphery_.sizePx() != in_two_px) {
+        periphery_ = {};
+        periphery_ = PeripheryBuffers(context_, in_two_px);
+    }
 }
 
 std::uint32_t FrameRoom::mostLentPairs(const FramePlan& plan) const {

@@ -57,6 +57,7 @@ public:
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
+    [[nodiscard]] const PeripheryBuffers& periphery() const { return periphery_; }
     // Before the passes of a frame.
     void recordShown(Commands& commands);
     // Once what was recorded has run.
@@ -82,6 +83,7 @@ private:
     Buffer moments_;
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
     std::vector<ShownTiles> shown_;
+    PeripheryBuffers periphery_;  // of the eye that has one
     bool first_frame_ = true;
     bool room_ahead_fits_ = true;  // in the device's memory
 };

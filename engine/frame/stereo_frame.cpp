@@ -19,6 +19,7 @@ StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const Fr
       passes_(context, options.threads_per_cell),
       warp_passes_(context),
       past_passes_(context),
+      periphery_passes_(context),
       room_(context, options.first_capacity),
       flights_{Flight(context), Flight(context)} {
     show(scene);
@@ -37,6 +38,7 @@ void StereoFrame::rebuildKernels() {
     passes_.rebuildKernels();
     warp_passes_.rebuildKernels();
     past_passes_.rebuildKernels();
+    periphery_passes_.rebuildKernels();
 }
 
 void StereoFrame::takeKernels(StereoFrame& from) {
@@ -45,6 +47,7 @@ void StereoFrame::takeKernels(StereoFrame& from) {
     passes_.takeKernels(from.passes_);
     warp_passes_.takeKernels(from.warp_passes_);
     past_passes_.takeKernels(from.past_passes_);
+    periphery_passes_.takeKernels(from.periphery_passes_);
 }
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {

@@ -48,7 +48,7 @@ public:
     void takeKernels(StereoFrame& from);
     // How many it has, but those of sorting.
     [[nodiscard]] std::size_t kernelCount() const {
-        return passes_.kernelCount() + warp_passes_.kernelCount() + past_passes_.kernelCount();
+        return passes_.kernelCount() + warp_passes_.kernelCount() + past_passes_.kernelCount() + periphery_passes_.kernelCount();
     }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
@@ -92,7 +92,7 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, past_passes_, *scene_, room_}; }
+    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, past_passes_, periphery_passes_, *scene_, room_}; }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // Plans it without a past, whatever there is.
@@ -123,6 +123,7 @@ private:
     Passes passes_;
     WarpPasses warp_passes_;
     PastPasses past_passes_;
+    PeripheryPasses periphery_passes_;
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
     Pasts pasts_;                                           // that it leaves
