@@ -79,6 +79,7 @@ void runRender(const RenderOptions& options) {
     const StereoOptions& stereo = options.run.stereo;
     const Mode mode = stereo.mode;
     // Whatever can be known to fail is found out before the scene is loaded.
+    requirePeriphery(stereo);
     OutputFiles files(options.out);
     const CameraFiles camera_files = readCameraFiles(options.run.camera);
     const std::optional<HeadPath> path = options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));

@@ -240,10 +240,41 @@ TEST_CASE("eyesLookAtTheirLensesOrWhereTheyAreSaidTo") {
     const auto ahead = gazes({"--foveation", "15", "--gaze", "0,0,1"});
     CHECK(ahead[kLeft]->direction.x == doctest::Approx(std::sin(0.1)));
     CHECK(ahead[kRight]->direction.x == doctest::Approx(-std::sin(0.1)));
+    // The one eye of mono looks between where both look, or where it is told to.
+    const auto of_one = gazes({"--mode", "mono", "--foveation", "15"});
+    REQUIRE(of_one[0]);
+    CHECK_FALSE(of_one[1]);
+    CHECK(std::abs(of_one[0]->direction.x) < 1e-12);
+    CHECK(of_one[0]->direction.z > 1.0);
+    CHECK(gazes({"--mode", "mono", "--foveation", "15", "--gaze", "1,0,2"})[0]->direction == glm::dvec3(1, 0, 2));
     CHECK(parse<BenchOptions>({"bench", "a", "--out", "b", "--foveation", "1", "--gaze", "1,0,1"}).run.stereo.gaze == glm::dvec3(1, 0, 1));
     CHECK(parse<ViewOptions>({"view", "a", "--foveation", "20"}).run.stereo.foveation_deg == 20.0);
     CHECK_THROWS_AS(parse<ViewOptions>({"view", "a", "--gaze", "0,0,1"}), Error);
     CHECK_THROWS_AS(render({"--gaze", "0,0,0"}), Error);
+}
+
+TEST_CASE("half the resolution is for mono with foveation, references are left as they are, and no other mode has it yet") {
+    const auto refusal = [](std::vector<std::string> words) -> std::string {
+        const StereoOptions stereo = render(std::move(words)).stereo;
+        CHECK(frameSettings({}, stereo).half_periphery == stereo.half_periphery);
+        try {
+            requirePeriphery(stereo);
+        } catch (const Error& error) { return error.what(); }
+        return "";
+    };
+    CHECK_FALSE(render({}).stereo.half_periphery);
+    CHECK(render({"--periphery", "half"}).stereo.half_periphery);
+    CHECK(refusal({"--periphery", "full"}) == "");
+    CHECK(refusal({"--mode", "mono", "--periphery", "half", "--foveation", "20"}) == "");
+    CHECK(refusal({"--mode", "mono", "--periphery", "half"}).find("--foveation is 0") != std::string::npos);
+    for (const char* mode : {"two-pass", "shared", "reproject", "paper"}) {
+        CHECK(refusal({"--mode", mode, "--periphery", "half", "--foveation", "20"}) == "");
+    }
+    for (const char* mode : {"predicted", "alternate", "temporal"}) {
+        CHECK(refusal({"--mode", mode, "--periphery", "half", "--foveation", "20"}).find(mode) != std::string::npos);
+        CHECK(refusal({"--mode", mode, "--periphery", "full", "--foveation", "20"}) == "");
+    }
+    CHECK_THROWS_AS(parse<ViewOptions>({"view", "a", "--periphery", "half"}), Error);
 }
 
 TEST_CASE("splatsGoByDepthOrByDistance") {

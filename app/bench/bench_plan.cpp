@@ -156,6 +156,7 @@ BenchPlan planBench(const BenchOptions& options) {
     for (const Mode mode : modes) { plain.push_back(plainMethod(mode, options.run)); }
     plan.methods.insert(plan.methods.begin(), plain.begin(), plain.end());
     addReferences(plan, options.run);
+    for (const BenchMethod& method : plan.methods) { requirePeriphery(method.stereo); }
 
     if (!options.scenes.empty()) { plan.scenes = options.scenes; }
     if (plan.scenes.empty()) {

@@ -102,13 +102,21 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
         const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
         runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
                                         {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
+    } else if (plan.psnr && method.stereo.mode == Mode::kMono && method.stereo.half_periphery) {
+        const Image picture = frame->readPicture(0);
+        StereoOptions sharp = method.stereo;
+        sharp.half_periphery = false;
+        const Image own_full = frames.render(point.cameras, point.run.camera, sharp, true).frame->readPicture(0);
+        runner.quality = measureQuality(own_full, picture, {}, {},
+                                        {plan.ssim, plan.flip, point.cameras.middle.intrinsics.fx, plan.lpips ? &*plan.lpips : nullptr});
+        runner.quality.resize(1);  // no pixel comes from another eye
     }
     return runner;
 }
 
 // Whether they do with the same buffers. A frame of `predicted` also remembers of the one before what that asked for.
 bool needSame(const StereoOptions& a, const StereoOptions& b) {
-    if (a.mode != b.mode) { return false; }
+    if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
     if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
     return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == PixelDepth::kInverse) == (b.depth == PixelDepth::kInverse));
 }

@@ -58,12 +58,22 @@ Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const S
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo) {
     std::array<std::optional<Gaze>, 2> gazes;
     if (stereo.foveation_deg == 0.0) { return gazes; }
+    const double clear_rad = glm::radians(stereo.foveation_deg);
+    if (stereo.mode == Mode::kMono) {
+        // Seen through either lens: between the directions in which these are best.
+        glm::dvec3 middle(0.0);
+        for (std::size_t side = 0; side < 2; ++side) {
+            middle += cameras.eyes[side].world_from_camera.orientation * glm::normalize(cameras.lens_centres[side]);
+        }
+        gazes[0] = Gaze{stereo.gaze.value_or(glm::conjugate(cameras.middle.world_from_camera.orientation) * middle), clear_rad};
+        return gazes;
+    }
     for (std::size_t side = 0; side < 2; ++side) {
         // The point looked at is far away: both eyes turn alike.
         const glm::dquat eye_from_middle =
             glm::conjugate(cameras.eyes[side].world_from_camera.orientation) * cameras.middle.world_from_camera.orientation;
         const glm::dvec3 direction = stereo.gaze ? eye_from_middle * *stereo.gaze : cameras.lens_centres[side];
-        gazes[side] = Gaze{direction, glm::radians(stereo.foveation_deg)};
+        gazes[side] = Gaze{direction, clear_rad};
     }
     return gazes;
 }

@@ -35,7 +35,7 @@ struct Cameras {
 // Missing options come from the files, then from the scene. Throws Error if the points span no view.
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene);
 
-// By Side, for FrameSettings: the gazes of the options; nothing without foveation.
+// By Side, or of the one eye of `mono`, for FrameSettings: the gazes of the options; nothing without foveation.
 std::array<std::optional<Gaze>, 2> gazesOf(const Cameras& cameras, const StereoOptions& stereo);
 
 // The same eyes on a head that moved.

@@ -1,6 +1,7 @@
 // From the options to a frame's mode and settings.
 #include "app/options/modes.h"
 
+#include "engine/error.h"
 #include "engine/setup/values.h"
 
 #include <algorithm>
@@ -28,6 +29,13 @@ Mode readMode(const Setting& setting) {
     return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
 }
 
+void requirePeriphery(const StereoOptions& stereo) {
+    if (!stereo.half_periphery) { return; }
+    check(stereo.foveation_deg > 0.0, "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
+    check(stereo.mode != Mode::kPredicted && !hasPast(stereo.mode), "--periphery is half, must be full: {} has no other yet, mono has",
+          nameOf(stereo.mode));
+}
+
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual) {
     FrameSettings settings;
     settings.mode = stereo.mode;
@@ -47,6 +55,7 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.stereo.move_cost = stereo.move_cost;
     settings.stereo.hole_error = stereo.hole_error;
     settings.stereo.newcomer_error = stereo.newcomer_error;
+    settings.half_periphery = stereo.half_periphery;
     return settings;
 }
 

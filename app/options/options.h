@@ -55,6 +55,7 @@ struct StereoOptions {
     double hole_error = 1.0;
     double newcomer_error = 0.3;
     double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere
+    bool half_periphery = false;     // with foveation: half the resolution where the eyes would not see more
     std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: where the lenses are best
     bool operator==(const StereoOptions&) const = default;
 };
