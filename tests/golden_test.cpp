@@ -1,4 +1,5 @@
 // Pictures that must not change: the twin's of a few scenes.
+#include "engine/reference/periphery.h"
 #include "tests/frame_runs.h"
 #include "tests/golden_files.h"
 
@@ -44,6 +45,24 @@ TEST_CASE_FIXTURE(Gpu, "the golden pictures are what twin and device render") {
         test::checkGolden(golden.name, expected, twin, "twin", kLeastDb);
         test::checkGolden(golden.name, expected, test::renderMono(context(), view.scene, view.eye, settings).picture, "device", kLeastDb);
     }
+}
+
+TEST_CASE_FIXTURE(Gpu, "the golden picture of an eye that looks aside is what twin and device make of two pictures") {
+    const Golden golden{"atelier-aside", "builtin:atelier", 20000};
+    const ViewedScene view = viewOf(golden);
+    const Gaze gaze{{-3.0, 1.0, -2.0}, 0.0};
+    const auto made = reference::renderPeriphery(view.scene, view.eye, {gaze.direction, gaze.clear_rad}, {});
+    const Image twin = test::toImage(made.picture);
+    const Image expected = test::readGolden(golden.name, twin);
+    FrameSettings settings;
+    settings.mode = Mode::kMono;
+    settings.gazes[0] = gaze;
+    settings.half_periphery = true;
+    test::checkGolden(golden.name, expected, twin, "twin", kLeastDb);
+    test::checkGolden(golden.name, expected, test::renderMono(context(), view.scene, view.eye, settings).picture, "device", kLeastDb);
+    // And not the picture in full.
+    CHECK(compare(expected, readPicture(test::goldenStem(kGoldens[0].name).string() + ".png")).psnrDb() < kLeastDb);
+    CHECK(std::ranges::count(made.own_tiles, 0) > 20);
 }
 
 TEST_CASE("golden pictures differ from each other and from themselves shifted") {
