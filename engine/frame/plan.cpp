@@ -102,12 +102,16 @@ void planPeriphery(FramePlan& plan, const Gaze& gaze, ListPlan list) {
     coarse.eye = halfOf(sharp.eye);
     coarse.choice = TileChoice::kHalf;
     coarse.picture = half;
-    // Its last pixels may reach beyond the other's, so that it sees all that the other does.
-    list.eyes.first = list.eyes.order_eye = half;
     plan.square_boxes = false;
-    plan.lists.push_back(list);
-    plan.steps = {{Step::Kind::kHalfTiles, 0}, {Step::Kind::kList, 0},   {Step::Kind::kRender, half},
-                  {Step::Kind::kOwnTiles, 0},  {Step::Kind::kRender, 0}, {Step::Kind::kFill, 0}};
+    // Each has its own list: most splats touch tiles of one of them alone, and projecting costs more than culling.
+    list.of_chosen = true;
+    for (const int t : {0, half}) {
+        plan.targets[static_cast<std::size_t>(t)].list = t;
+        list.eyes.first = list.eyes.order_eye = list.eyes.list = t;
+        plan.lists.push_back(list);
+    }
+    plan.steps = {{Step::Kind::kHalfTiles, 0}, {Step::Kind::kList, 1},   {Step::Kind::kRender, half}, {Step::Kind::kOwnTiles, 0},
+                  {Step::Kind::kList, 0},      {Step::Kind::kRender, 0}, {Step::Kind::kFill, 0}};
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {

@@ -38,7 +38,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
         switch (step.kind) {
             case Step::Kind::kList: {
                 const ListPlan& list = plan.lists[static_cast<std::size_t>(step.index)];
-                const EyesOfList eyes = eyesOf(list);
+                const EyesOfList eyes = eyesOf(plan, list);
                 if (list.culls) { passes.recordCull(commands, scene, room.lists(), eyes, list.role); }
                 passes.recordOrder(commands, scene, room.lists(), eyes, list.role);
                 break;
@@ -134,11 +134,11 @@ PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) con
             .gaze = *target.gaze};
 }
 
-EyesOfList FrameRecorder::eyesOf(const ListPlan& list) const {
+EyesOfList FrameRecorder::eyesOf(const FramePlan& plan, const ListPlan& list) const {
     EyesOfList eyes = list.eyes;
     if (list.of_chosen) {
-        eyes.first_mask = room.warp(0).tileMask();
-        eyes.last_mask = room.warp(1).tileMask();
+        eyes.first_mask = chosenTiles(plan, eyes.first).mask;
+        eyes.last_mask = chosenTiles(plan, eyes.first + eyes.count - 1).mask;
     }
     return eyes;
 }

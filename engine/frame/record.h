@@ -29,7 +29,7 @@ private:
     void recordChoice(Commands& commands, const FramePlan& plan) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
-    [[nodiscard]] EyesOfList eyesOf(const ListPlan& list) const;
+    [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
     void recordPatches(Commands& commands, const FramePlan& plan) const;
     [[nodiscard]] TileMask chosenTiles(const FramePlan& plan, int index) const;
