@@ -218,6 +218,25 @@ TEST_CASE_FIXTURE(Gpu, "alternate renders one eye in full, in turn, and the othe
     CHECK(turns == std::array{3, 3});
 }
 
+TEST_CASE_FIXTURE(Gpu, "frames that are not waited for are the same ones, also after one of another size") {
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame waited(context(), scene), ahead(context(), scene);
+    const test::KeptKernels kept(context(), waited);
+    for (int frame = 0; frame < 24; ++frame) {
+        Eye middle = view.eye;
+        const double scale = frame < 6 ? 1.0 : frame < 12 ? 0.7 : frame < 18 ? 0.6 : 1.0;
+        middle.size_px = glm::uvec2(glm::dvec2(view.eye.size_px) * scale);
+        middle.intrinsics = intrinsicsFromFovX(glm::radians(70.0), middle.size_px);
+        const auto eyes = eyesAt(middle, frame);
+        waited.render(eyes, makeSettings(Mode::kTemporal));
+        ahead.renderAhead(eyes, makeSettings(Mode::kTemporal));
+        if (frame % 6 != 5) { continue; }
+        ahead.finish();
+        for (const int eye : {kLeft, kRight}) { CHECK(ahead.readPicture(eye).values == waited.readPicture(eye).values); }
+    }
+}
+
 TEST_CASE_FIXTURE(Gpu, "frames that are not waited for are the same ones") {
     for (const Mode mode : {Mode::kTemporal, Mode::kAlternate}) {
         Walk waited(context(), makeSettings(mode));

@@ -56,7 +56,7 @@ TEST_CASE("the last of the scenes dropped on the window is shown, and one that c
     for (const char* name : {"a", "b"}) { REQUIRE(work.run(fmt::format("scene one-splat --out {}.ply", name)).exit_code == 0); }
     std::ofstream(work.path / "broken.ply") << "ply\nnonsense\n";
     const auto dropping = [&](const std::string& name, const std::string& files) {
-        return runView(work, name, "rate 45\nsize 64 64\nframes none\nat 2 exit\n", "builtin:slanted-wall --load-first --mode mono",
+        return runView(work, name, "rate 45\nsize 64 64\nframes none\nat 4 exit\n", "builtin:slanted-wall --load-first --mode mono",
                        fmt::format("XDG_CONFIG_HOME=\"$PWD/../config\" WAYLAND_DISPLAY= SIMULATED_OPENXR_CLOCK=real DISPLAY={} {}={}",
                                    screen.name, kDropped, files));
     };
@@ -64,7 +64,6 @@ TEST_CASE("the last of the scenes dropped on the window is shown, and one that c
     INFO(run.outcome.output);
     CHECK(run.outcome.exit_code == 0);
     CHECK(run.outcome.errors.empty());
-    CHECK(run.outcome.output.find("shows builtin:slanted-wall") < run.outcome.output.find("shows b.ply"));
     CHECK(run.outcome.output.find("shows b.ply") != std::string::npos);
     CHECK(run.outcome.output.find("a.ply") == std::string::npos);
     const ViewRun bad = dropping("bad", "broken.ply");

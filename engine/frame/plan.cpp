@@ -26,14 +26,12 @@ void keepForWarp(Kept& source, const Warp& warp) {
 // Pictures that two eyes with a past take turns in: the pasts, one that is made meanwhile, and one more where sizes change.
 constexpr int kPastPictures = 4;
 
-// A picture that is nobody's past, nor `taken`.
-int freePicture(const Pasts& pasts, std::optional<int> taken = {}) {
-    for (int picture = 0; picture < kPastPictures; ++picture) {
-        const bool is_past = std::ranges::any_of(pasts.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
-        if (!is_past && picture != taken) { return picture; }
-    }
-    assert(false);
-    return 0;
+// One that is nobody's past, nor the spare one.
+int fourthPicture(const Pasts& pasts) {
+    int picture = 0;
+    while (picture == pasts.spare || picture == pasts.of_eyes[0]->picture || picture == pasts.of_eyes[1]->picture) { ++picture; }
+    assert(picture < kPastPictures);
+    return picture;
 }
 
 // `target` is made from `past`, and some of its tiles are chosen to be rendered.
@@ -46,7 +44,7 @@ void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& set
 // Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
 void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Pasts& pasts, const ListPlan& list) {
     const int order[2] = {plan.dominant, 1 - plan.dominant};
-    int picture = freePicture(pasts);
+    int picture = pasts.spare;
     for (const int e : order) {
         const auto eye = static_cast<std::size_t>(e);
         TargetPlan& target = plan.targets[eye];
@@ -54,7 +52,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         target.picture = picture;
         // Free once this target is made; another size needs memory of its own, since that is still read.
         const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
-        picture = fits ? target.past->picture : freePicture(pasts, picture);
+        picture = fits ? target.past->picture : fourthPicture(pasts);
         plan.steps.push_back({Step::Kind::kPast, e});
     }
     plan.budget = settings.stereo.budget;
@@ -82,7 +80,7 @@ void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
     rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
     warped.past = pasts.of_eyes[static_cast<std::size_t>(other)];
-    warped.picture = freePicture(pasts);
+    warped.picture = pasts.spare;
     warped.choice = TileChoice::kNone;
     warped.kept.past = false;
     plan.steps.push_back({Step::Kind::kList, 0});
@@ -141,6 +139,14 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
     for (std::size_t e = 0; e < plan.targets.size(); ++e) {
         const TargetPlan& target = plan.targets[e];
         if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
+    }
+    // What was a past is free, once this frame has read it.
+    const auto isFree = [&](int picture) {
+        return std::ranges::none_of(after.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
+    };
+    if (plan.spare_picture) { after.spare = *plan.spare_picture; }
+    for (std::size_t e = 0; e < before.of_eyes.size() && !isFree(after.spare); ++e) {
+        if (before.of_eyes[e]) { after.spare = before.of_eyes[e]->picture; }
     }
     after.turn = 1 - before.turn;
     return after;

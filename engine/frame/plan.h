@@ -34,9 +34,10 @@ struct Past {
     Eye eye;
     int picture = 0;  // of the room's
 };
-// By eye; and whose turn it is to be rendered in full (kAlternate).
+// By eye; the room's picture that is made next, which no frame under way reads; and whose turn it is to be rendered in full (kAlternate).
 struct Pasts {
     std::array<std::optional<Past>, 2> of_eyes = {};
+    int spare = 2;
     int turn = 0;
 };
 
