@@ -61,7 +61,7 @@ def main():
         path, _, wanted = path.partition(":")
         runs.append((title, list(points_of(path, wanted))))
     values = [v for _, points in runs for p in points for v in p[2:] if v is not None]
-    low, high = 5 * int(min(values) // 5), 5 * int(-(-max(values) // 5))
+    low, high = 5 * int(min(values) // 5), 5 * int(-(-(max(values) + 2) // 5))  # room for a line of text
     width = LEFT + len(runs) * (WIDTH + GAP)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{TOP + HEIGHT + 48}" font-family="sans-serif" font-size="12">',
            '<rect width="100%" height="100%" fill="white"/>',
