@@ -3,6 +3,8 @@
 
 #include "engine/passes/eye_view.h"
 
+#include <algorithm>
+
 namespace binosplat {
 
 void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
@@ -190,10 +192,10 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     if (planned.kept.past) {
         target.moving = target.picture->words.address<gpu::uint>();
         target.row_words = planned.eye.size_px.x;
-        target.lists_chosen = plan.lists[static_cast<std::size_t>(planned.list)].of_chosen;
     }
+    target.lists_chosen =
+        std::ranges::any_of(plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
     target.low_pass = viewOf(planned.eye, plan.near).low_pass;
-    if (planned.choice == TileChoice::kSharp || planned.choice == TileChoice::kHalf) { target.lists_chosen = true; }
     if (!planned.feeds) { return target; }
     const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);
     if (planned.kept.moving) {
