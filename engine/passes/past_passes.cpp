@@ -59,10 +59,13 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .blocks = in.warp.pastBlocks(),
         .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks),
         .background = in.background};
-    const WarpPastKernel kernel{
-        .half_colours = in.target.half_floats, .depth = in.target.depths.bytes() > 0, .hidden_tiles = in.shown.hideAny()};
     const glm::uvec2 size_px = in.target.size_px;
-    commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, 8 * gpu::kPastColumns), groupsOver(size_px.y, 8 * gpu::kPastRows));
+    const WarpPastKernel kernel{.half_colours = in.target.half_floats,
+                                .depth = in.target.depths.bytes() > 0,
+                                .hidden_tiles = in.shown.hideAny(),
+                                .whole_blocks = size_px.x % gpu::kPastColumns == 0};
+    constexpr gpu::uint kColumns = gpu::kPastColumns * gpu::kPastGroup * gpu::kPastRows / gpu::kTileSize;
+    commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, kColumns), groupsOver(size_px.y, gpu::kTileSize));
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
     const WarpPixelsKernel pixels{.half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));

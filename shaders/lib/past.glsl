@@ -5,6 +5,21 @@ const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
 bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
 
+// Eight bytes in one access, and sixteen in two, as addresses that are none: llvmpipe goes from lane to lane once for each number of a vector,
+// however wide it is. An integer of 64 bits would do as well, but not every device has these. GPUs join the two. What an address would point
+// to says how it is aligned itself.
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Eights { HalfColours at[]; };
+struct Sixteen {
+    FloatColours low;
+    HalfColours high;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Sixteens { Sixteen at[]; };
+
+void putSixteen(Sixteens sixteens, uint i, uvec4 words) {
+    sixteens.at[i].low = FloatColours(words.xy);
+    sixteens.at[i].high = HalfColours(words.zw);
+}
+
 // What the past shows at a place.
 struct Seen {
     uint word;  // lib/moving_pixel.glsl
@@ -45,7 +60,11 @@ bool isHidden(PastView view, uvec2 pixel) {
     return kHiddenTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
 }
 
-vec4 sourceAt(uint i) { return colourAt(pass.source, HalfColours(uvec2(pass.source)), i); }
+vec4 sourceAt(uint i) {
+    if (kHalfColours) { return unpackHalves(uvec2(Eights(uvec2(pass.source)).at[i])); }
+    Sixteens pixels = Sixteens(uvec2(pass.source));
+    return uintBitsToFloat(uvec4(uvec2(pixels.at[i].low), uvec2(pixels.at[i].high)));
+}
 
 // Of pixels inside the picture. A pixel's colour comes once its word is there.
 void putWord(PastView view, uvec2 pixel, uint word) {
@@ -54,7 +73,11 @@ void putWord(PastView view, uvec2 pixel, uint word) {
 void putPixel(PastView view, uvec2 pixel, vec4 colour) {
     const uint at = pixel.y * view.size_px.x + pixel.x;
     const vec4 shown = isHidden(view, pixel) ? vec4(pass.background, 0) : colour;
-    putColour(pass.target, HalfColours(uvec2(pass.target)), at, shown);
+    if (kHalfColours) {
+        Eights(uvec2(pass.target)).at[at] = HalfColours(packHalves(shown));
+    } else {
+        putSixteen(Sixteens(uvec2(pass.target)), at, floatBitsToUint(shown));
+    }
     if (kDepth) {
         const uint word = pass.target_words.at[at];
         const float inverse_depth = word == 0 ? 0 : inverseDepthOf(word);

@@ -152,7 +152,7 @@ BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_past: what a thread makes, in pixels: 9x13 of the source are read for 4x8. A workgroup makes 8x8 such blocks.
+// warp_past: what a thread makes, in pixels: 9x13 of the source are read for 4x8. A workgroup makes such blocks of a row of tiles.
 BINOSPLAT_CONSTANT uint kPastColumns = 4;
 BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;

@@ -1,4 +1,4 @@
-// warp_past: an eye's picture from the one that it showed before, and what each tile has gone wrong by so far. A workgroup makes 32x64 pixels, a
+// warp_past: an eye's picture from the one that it showed before, and what each tile has gone wrong by so far. A workgroup makes 128x16 pixels, a
 // thread a block of 4x8. Where a block's places in the past lie as its pixels do, shifted and a little turned, its thread goes over the source
 // pixels row by row and resamples first along the row, then along columns, so that each is read once. Other blocks, where depths differ or
 // the past ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
@@ -10,6 +10,7 @@
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kDepth = false;
 layout(constant_id = 2) const bool kHiddenTiles = false;  // a lens hides parts
+layout(constant_id = 3) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -21,9 +22,9 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 #include "lib/past.glsl"
 #include "lib/lagrange.glsl"
 
-const uvec2 kRegion = uvec2(kPastColumns, kPastRows) * 8;  // 8x8 blocks
+const uint kRegionBlocks = kPastGroup * kPastRows / kTileSize;  // across
+const uvec2 kRegion = uvec2(kPastColumns * kRegionBlocks, kTileSize);
 const uvec2 kRegionTiles = kRegion / kTileSize, kRegionCells = kRegion / kCellSize;
-const uint kRegionBlocks = 8;
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
@@ -36,14 +37,12 @@ struct BlockMoves {
     vec2 across, down;  // how that changes from column to column and from row to row
 };
 
-// A row of a block, in one store of 16 bytes where rows of the picture begin at multiples of them.
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WordQuads { uvec4 at[]; };
-
+// A row of a block, in stores of 16 bytes where it begins at a multiple of them.
 void putWords(PastView view, uvec2 first, uvec4 words) {
     if (first.y >= view.size_px.y) { return; }
-    if (view.size_px.x % kPastColumns == 0) {
+    if (kWholeBlocks) {
         const uint at = (first.y * view.size_px.x + first.x) / kPastColumns;
-        WordQuads(uvec2(pass.target_words)).at[at] = isHidden(view, first) ? uvec4(0) : words;
+        putSixteen(Sixteens(uvec2(pass.target_words)), at, isHidden(view, first) ? uvec4(0) : words);
         return;
     }
     [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
@@ -53,26 +52,28 @@ void putWords(PastView view, uvec2 first, uvec4 words) {
 
 void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
     if (first.y >= view.size_px.y) { return; }
-    if (kHalfColours && !kDepth && view.size_px.x % kPastColumns == 0) {
+    if (kWholeBlocks && kHalfColours && !kDepth) {
         const bool hidden = isHidden(view, first);
         const uint at = (first.y * view.size_px.x + first.x) / 2;
         [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {
             const vec4 left = hidden ? vec4(pass.background, 0) : colours[c], right = hidden ? vec4(pass.background, 0) : colours[c + 1];
-            WordQuads(uvec2(pass.target)).at[at + c / 2] = uvec4(packHalves(left), packHalves(right));
+            putSixteen(Sixteens(uvec2(pass.target)), at + c / 2, uvec4(packHalves(left), packHalves(right)));
         }
         return;
     }
     [[unroll]] for (uint c = 0; c < kPastColumns; ++c) {
-        if (first.x + c < view.size_px.x) { putPixel(view, first + uvec2(c, 0), colours[c]); }
+        if (kWholeBlocks || first.x + c < view.size_px.x) { putPixel(view, first + uvec2(c, 0), colours[c]); }
     }
 }
 
 // The squared error that one pixel of a block is expected to take on in this step.
 float lossAt(ivec2 at, ivec2 last, vec2 shares, vec2 uncertain_px) {
+    vec3 downs[kTaps];
+    [[unroll]] for (int k = 0; k < int(kTaps); ++k) { downs[k] = sourceAt(uint(clamp(at.y + k - 2, 0, last.y) * (last.x + 1) + at.x)).rgb; }
     vec3 lost_across = vec3(0), lost_down = vec3(0), change = vec3(0);
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
-        const vec3 across = sourceAt(uint(at.y * (last.x + 1) + clamp(at.x + k - 2, 0, last.x))).rgb;
-        const vec3 down = k == 2 ? across : sourceAt(uint(clamp(at.y + k - 2, 0, last.y) * (last.x + 1) + at.x)).rgb;
+        const vec3 across = k == 2 ? downs[k] : sourceAt(uint(at.y * (last.x + 1) + clamp(at.x + k - 2, 0, last.x))).rgb;
+        const vec3 down = downs[k];
         lost_across += kFifthDifference[k] * across;
         lost_down += kFifthDifference[k] * down;
         if (k == 1) { change -= 0.5 * (uncertain_px.x * across + uncertain_px.y * down); }
@@ -93,35 +94,38 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
         const float beside = float(c) - 0.5 * float(kColumns - 1);
         lagrangeWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
     }
-    vec4 sums[kTaps][kColumns];  // of the rows that the source rows so far go into, the next that is complete first
+    vec4 sums[kTaps][kColumns];  // of the rows that the source rows so far go into, the one that is complete first
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
         [[unroll]] for (int c = 0; c < kColumns; ++c) { sums[k][c] = vec4(0); }
     }
     int row = 1 - int(kTaps);  // of the block, that is complete once its last source row is there
     [[dont_unroll]] do {
-        // As far from the block's middle as the source row comes to lie.
-        const float from_middle = float(row + 3) - fract_y - 0.5 * float(kRows - 1);
-        const float move_x = moves.mean.x + from_middle * moves.down.x;
-        const float base_x = floor(move_x);
-        float weights_x[kTaps];
-        lagrangeWeights(move_x - base_x, weights_x);
-        const int y = clamp(int(first.y) + base_y + row + 3, 0, last.y), x = int(first.x) + int(base_x) - 2;
-        vec4 across[kColumns];
-        [[unroll]] for (int c = 0; c < kColumns; ++c) { across[c] = vec4(0); }
-        [[unroll]] for (int t = 0; t < kColumns + int(kTaps) - 1; ++t) {
-            const vec4 tap = sourceAt(uint(y * (last.x + 1) + clamp(x + t, 0, last.x)));
-            [[unroll]] for (int c = 0; c < kColumns; ++c) {
-                if (t >= c && t < c + int(kTaps)) { across[c] += weights_x[t - c] * tap; }
+        [[dont_unroll]] do {
+            // As far from the block's middle as the source row comes to lie.
+            const float from_middle = float(row + 3) - fract_y - 0.5 * float(kRows - 1);
+            const float move_x = moves.mean.x + from_middle * moves.down.x;
+            const float base_x = floor(move_x);
+            float weights_x[kTaps];
+            lagrangeWeights(move_x - base_x, weights_x);
+            const int y = clamp(int(first.y) + base_y + row + 3, 0, last.y);
+            const int begin = y * (last.x + 1), end = begin + last.x, x = begin + int(first.x) + int(base_x) - 2;
+            vec4 across[kColumns];
+            [[unroll]] for (int c = 0; c < kColumns; ++c) { across[c] = vec4(0); }
+            [[unroll]] for (int t = 0; t < kColumns + int(kTaps) - 1; ++t) {
+                const vec4 tap = sourceAt(uint(clamp(x + t, begin, end)));
+                [[unroll]] for (int c = 0; c < kColumns; ++c) {
+                    if (t >= c && t < c + int(kTaps)) { across[c] += weights_x[t - c] * tap; }
+                }
             }
-        }
+            [[unroll]] for (int c = 0; c < kColumns; ++c) {
+                [[unroll]] for (int k = 1; k < int(kTaps); ++k) { sums[k - 1][c] = sums[k][c] + weights_y[c][kTaps - k] * across[c]; }
+                sums[kTaps - 1][c] = weights_y[c][0] * across[c];
+            }
+            ++row;
+        } while (row <= 0);
         vec4 complete[kColumns];
-        [[unroll]] for (int c = 0; c < kColumns; ++c) {
-            complete[c] = max(sums[0][c] + weights_y[c][kTaps - 1] * across[c], vec4(0));
-            [[unroll]] for (int k = 1; k < int(kTaps); ++k) { sums[k - 1][c] = sums[k][c] + weights_y[c][kTaps - 1 - k] * across[c]; }
-            sums[kTaps - 1][c] = vec4(0);
-        }
-        if (row >= 0) { putPixels(view, first + uvec2(0, row), complete); }
-        ++row;
+        [[unroll]] for (int c = 0; c < kColumns; ++c) { complete[c] = max(sums[0][c], vec4(0)); }
+        putPixels(view, first + uvec2(0, row - 1), complete);
     } while (row < kRows);
 }
 
@@ -160,12 +164,17 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     float in_columns[kColumns], sum = 0, lower = 0;
     uint spread_bits = 0;
     [[unroll]] for (int c = 0; c < kColumns; ++c) { in_columns[c] = 0; }
+    uint there_words[kColumns][kRows];
+    [[unroll]] for (int c = 0; c < kColumns; ++c) {
+        [[unroll]] for (int r = 0; r < kRows; ++r) {
+            there_words[c][r] = pass.source_words.at[clamp(corner.y + r, 0, last.y) * (last.x + 1) + clamp(corner.x + c, 0, last.x)];
+        }
+    }
     [[unroll]] for (int r = 0; r < kRows; ++r) {
-        const int row = clamp(corner.y + r, 0, last.y) * (last.x + 1);
         float in_row = 0;
         uvec4 words;
         [[unroll]] for (int c = 0; c < kColumns; ++c) {
-            const uint word = pass.source_words.at[row + clamp(corner.x + c, 0, last.x)];
+            const uint word = there_words[c][r];
             const float there = inverseDepthOf(word), here = there / (depth_there + view.now_from_past.shift.z * there);
             valid = valid && word != 0;
             words[c] = movingPixel(here, kLanded, word & kSpreadBits);
