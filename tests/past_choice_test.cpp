@@ -95,6 +95,7 @@ Choice chooseOnDevice(Gpu& gpu, const std::vector<Tiles>& eyes, float budget, co
                                              .budget = buffers[0].counters.address<gpu::WarpCounters>(),
                                              .past_tiles = of.tiles.address<gpu::PastTile>(),
                                              .is_last = e + 1 == buffers.size() ? 1u : 0u,
+                                             .area = 1.0f,
                                              .gaze = gaze ? eyeGazeOf(*gaze, seen[e].intrinsics) : gpu::EyeGaze{}},
                               groups(of), 1);
         }

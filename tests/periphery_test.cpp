@@ -2,6 +2,7 @@
 #include "engine/passes/periphery.h"
 #include "engine/reference/periphery.h"
 #include "tests/gpu_fixture.h"
+#include "tests/past_stages.h"
 
 #include <doctest/doctest.h>
 
@@ -55,6 +56,21 @@ Tiles tilesOfMask(std::span<const gpu::uint> mask, const Eye& eye) {
     return marked;
 }
 
+// What a half-size picture knows of its pixels and tiles.
+std::vector<gpu::uint> makeWords(std::size_t count) {
+    std::vector<gpu::uint> words;
+    for (std::size_t i = 0; i < count; ++i) { words.push_back(static_cast<gpu::uint>(i % 5 == 0 ? 0 : 1000 + i)); }
+    return words;
+}
+std::vector<gpu::PastTile> makePastTiles(std::size_t count) {
+    std::vector<gpu::PastTile> tiles;
+    for (std::size_t t = 0; t < count; ++t) {
+        const float error = 0.001f * static_cast<float>(t % 9);
+        tiles.push_back({static_cast<gpu::uint>(10 * t), 3, 0.5f, {error, 2 * error, 3 * error, 4 * error}, {1, 2, 3, 4}});
+    }
+    return tiles;
+}
+
 // The passes over pictures that come from the host.
 class OnDevice {
 public:
@@ -75,6 +91,13 @@ public:
         target_ = {.colours = gpu.upload("colours", std::vector<gpu::uint>((halves ? 2 : 4) * pixelCount(eye), kUnwritten)),
                    .half_floats = halves,
                    .size_px = eye.size_px};
+        if (halves) {  // and later pictures are made from it
+            half_.words = gpu.upload("half words", std::vector<gpu::uint>(pixelCount(half_eye_), kUnwritten));
+            half_.tiles =
+                gpu.upload("half tiles", std::vector<gpu::PastTile>(tileCount(half_eye_), gpu::PastTile{kUnwritten, 0, 0.0f, {}, {}}));
+            target_.words = gpu.upload("words", std::vector<gpu::uint>(pixelCount(eye), kUnwritten));
+            target_.tiles = gpu.upload("tiles", std::vector<gpu::PastTile>(tileCount(eye), gpu::PastTile{kUnwritten, 0, 0.0f, {}, {}}));
+        }
         if (!half_depths.empty()) {
             half_.depths = gpu.upload("half depths", half_depths);
             target_.depths = gpu.upload("depths", std::vector<gpu::uint>(pixelCount(eye), kUnwritten));
@@ -84,8 +107,14 @@ public:
             shown_.record(commands);
             passes_.recordHalfChoice(commands, inputs());
             passes_.recordChoice(commands, inputs());
-            passes_.recordFill(commands, inputs());
         });
+        if (halves) {
+            nothing_known_ =
+                std::ranges::all_of(gpu.readBack<gpu::uint>(half_.words, pixelCount(half_eye_)), [](gpu::uint word) { return word == 0; });
+            gpu.upload(half_.words, makeWords(pixelCount(half_eye_)));
+            gpu.upload(half_.tiles, makePastTiles(tileCount(half_eye_)));
+        }
+        gpu.run([&](Commands& commands) { passes_.recordFill(commands, inputs()); });
         state_ = gpu.readBack<FrameState>(buffers_.state, 1).front();
         words_ = gpu.readBack<gpu::uint>(tiles_.buffer(), tiles_.buffer().bytes() / sizeof(gpu::uint));
     }
@@ -104,6 +133,11 @@ public:
         return colours;
     }
     [[nodiscard]] std::vector<float> depths() { return gpu_.readBack<float>(target_.depths, pixelCount(eye_)); }
+
+    [[nodiscard]] std::vector<gpu::uint> words() { return gpu_.readBack<gpu::uint>(target_.words, pixelCount(eye_)); }
+    [[nodiscard]] std::vector<gpu::PastTile> pastTiles() { return gpu_.readBack<gpu::PastTile>(target_.tiles, tileCount(eye_)); }
+    // Whether the words of the half-size picture had been cleared before it was there.
+    [[nodiscard]] bool wasCleared() const { return nothing_known_; }
 
     static constexpr gpu::uint kUnwritten = 0x3c003c00u;  // of half floats two ones
 
@@ -140,9 +174,52 @@ private:
     Picture half_, target_;
     FrameState state_{};
     std::vector<gpu::uint> words_;
+    bool nothing_known_ = false;
 };
 
 std::vector<glm::dvec4> inDoubles(const std::vector<glm::vec4>& colours) { return {colours.begin(), colours.end()}; }
+
+std::vector<glm::dvec4> inHalves(const std::vector<glm::vec4>& colours) {
+    std::vector<glm::dvec4> held;
+    for (const glm::vec4& c : colours) {
+        held.emplace_back(glm::unpackHalf2x16(glm::packHalf2x16({c.x, c.y})), glm::unpackHalf2x16(glm::packHalf2x16({c.z, c.w})));
+    }
+    return held;
+}
+
+// What the picture leaves to later ones is the twin's.
+void checkPast(OnDevice& device, const Eye& eye, const Eye& half, const std::vector<glm::dvec4>& colours, const Tiles& hidden,
+               const Tiles& own) {
+    CHECK(device.wasCleared());
+    const std::vector<gpu::uint> half_words = makeWords(pixelCount(half)), words = device.words();
+    const std::vector<gpu::PastTile> half_tiles = makePastTiles(tileCount(half)), tiles = device.pastTiles();
+    reference::Past twin{
+        eye, {}, std::vector<std::optional<reference::MovingPixel>>(pixelCount(eye)), std::vector<reference::PastTile>(tileCount(eye))};
+    reference::Past from{half, {}, {}, {}};
+    // The word itself stands for the depth.
+    for (const gpu::uint word : half_words) {
+        from.pixels.push_back(word == 0 ? std::nullopt : std::optional(reference::MovingPixel{static_cast<double>(word), 0}));
+    }
+    for (const gpu::PastTile& tile : half_tiles) { from.tiles.push_back(test::tileOf(tile)); }
+    reference::fillPast(twin, from, reference::expectLosses(colours, eye), own, hidden);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::size_t tile = i / eye.size_px.x / 16 * tilesOf(eye.size_px).x + i % eye.size_px.x / 16;
+        const double expected = own[tile] != 0 ? OnDevice::kUnwritten : twin.pixels[i] ? twin.pixels[i]->inverse_depth : 0.0;
+        REQUIRE(words[i] == static_cast<gpu::uint>(expected));
+    }
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        if (own[t] != 0) {  // cleared before it is rendered
+            REQUIRE(tiles[t].cost == 0);
+            continue;
+        }
+        REQUIRE(std::abs(static_cast<double>(tiles[t].cost) - static_cast<double>(twin.tiles[t].cost)) <= 1.0);
+        REQUIRE(tiles[t].age == 0);
+        for (int q = 0; q < 4; ++q) {
+            REQUIRE(static_cast<double>(tiles[t].errors[q]) ==
+                    doctest::Approx(twin.tiles[t].errors[static_cast<std::size_t>(q)]).epsilon(1e-3));
+        }
+    }
+}
 
 const std::vector<Gaze> kGazes{{{0.0, 0.0, 1.0}, 0.0}, {{0.0, 0.0, 1.0}, 0.35}, {{-3.0, 1.0, 4.0}, 0.1}, {{1.0, 0.0, 0.0}, 0.2}};
 const std::vector<glm::uvec2> kSizes{{1, 1}, {2, 3}, {16, 16}, {17, 33}, {31, 32}, {33, 15}, {531, 777}};
@@ -214,6 +291,7 @@ TEST_CASE_FIXTURE(Gpu, "tiles that are not rendered are filled as the twin fills
                 for (int c = 0; c < 4; ++c) { off = std::max(off, std::abs(static_cast<double>(made[i][c]) - whole.rgba[i][c])); }
                 off_depth = std::max(off_depth, std::abs(static_cast<double>(made_depths[i]) - whole.depth[i]));
             }
+            if (halves) { checkPast(device, eye, half, inHalves(colours), hidden, own); }
             CHECK(off < (halves ? 2e-3 : 1e-6));
             CHECK(off_depth < (halves ? 1e-2 : 1e-5));
         }

@@ -199,6 +199,7 @@ public:
                                   .budget = counters(),
                                   .past_tiles = {},
                                   .is_last = 1,
+                                  .area = 1.0f,
                                   .gaze = gaze ? eyeGazeOf(*gaze, eye.intrinsics) : gpu::EyeGaze{}};
         dispatch(PriceKernel{.foveated = gaze.has_value()}, pass, tileGroups());
     }

@@ -118,7 +118,9 @@ Options makeView(const Settings& given) {
     view.scene = wordOf(line, "SCENE");
     view.simulate = line.contains("simulate");
     if (line.contains("out") && !view.simulate) { throw Error(ExitCode::kUsage, "--out is given without --simulate"); }
-    view.run = readRun(line, {"view"}, withPast(), &view.tables);
+    RunOptions standard = withPast();
+    standard.stereo.half_periphery = true;
+    view.run = readRun(line, {"view"}, standard, &view.tables);
     readRows(viewRows(), line, view);
     return view;
 }

@@ -32,8 +32,6 @@ Mode readMode(const Setting& setting) {
 void requirePeriphery(const StereoOptions& stereo) {
     if (!stereo.half_periphery) { return; }
     check(stereo.foveation_deg > 0.0, "--periphery is half, but --foveation is 0, must be the angle within which resolution is full");
-    check(stereo.mode != Mode::kPredicted && !hasPast(stereo.mode), "--periphery is half, must be full: {} has no other yet, mono has",
-          nameOf(stereo.mode));
 }
 
 FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& stereo, Order usual) {

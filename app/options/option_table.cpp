@@ -118,8 +118,10 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"foveation", "stereo", kTried, "DEG",
           "predicted mode: angle around the gaze within which all errors count; beyond it, only those the eye can see; 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},
-        {{"periphery", "stereo", kPictures | kMethods, "KIND",
-          "mono mode, with --foveation: full resolution everywhere, or half of it beyond that angle where the eye would not see more"},
+        {{"periphery", "stereo", kTried, "KIND",
+          "mono, predicted, alternate and temporal modes, with --foveation: full resolution, or half of it where the eye would not see "
+          "more",
+          "full; with view half", /*required*/ false, /*by_command*/ true},
          field::named<kStereo, &StereoOptions::half_periphery>({"full", "half"})},
         {{"gaze", "stereo", kPictures, "x,y,z", "direction of the gaze, from the head: right, down, forward", "each lens's centre"},
          field::direction<kStereo, &StereoOptions::gaze>()},

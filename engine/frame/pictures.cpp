@@ -53,7 +53,11 @@ std::vector<std::uint32_t> StereoFrame::readTileKinds(int eye) {
 
 std::vector<std::uint32_t> StereoFrame::readTileKinds() {
     const std::optional<int> warped = plan_.warpedTarget();
-    return warped ? readTileKinds(*warped) : std::vector<std::uint32_t>{};
+    if (warped) { return readTileKinds(*warped); }
+    // Or that of the one eye that is made from the other.
+    const bool of_left = !plan_.targets[kLeft].past.has_value();
+    return plan_.eyes == 2 && of_left == plan_.targets[kRight].past.has_value() ? readTileKinds(of_left ? kRight : kLeft)
+                                                                                : std::vector<std::uint32_t>{};
 }
 
 std::vector<std::uint8_t> StereoFrame::readPixelClasses() {

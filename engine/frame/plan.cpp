@@ -41,9 +41,97 @@ void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& set
     target.gaze = settings.gazes[eye];
 }
 
+// Whether each eye has two pictures: it is wanted, and known where all of them look. The references are always in full.
+bool isInTwo(const FrameSettings& settings, std::size_t eyes) {
+    const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasPast(settings.mode);
+    const auto gazes = std::span(settings.gazes).first(eyes);
+    return settings.half_periphery && may && !settings.keep_moments &&
+           std::ranges::all_of(gazes, [](const auto& gaze) { return gaze.has_value(); });
+}
+
+// Each eye has a second target of half the size.
+void splitTargets(FramePlan& plan, const FrameSettings& settings) {
+    plan.square_boxes = false;
+    plan.targets.reserve(2 * plan.eyes);
+    for (std::size_t e = 0; e < plan.eyes; ++e) {
+        const int half = static_cast<int>(plan.targets.size());
+        plan.targets[e].gaze = settings.gazes[e];
+        TargetPlan coarse = plan.targets[e];
+        plan.targets[e].half = half;
+        coarse.eye = halfOf(coarse.eye);
+        coarse.list = half;
+        coarse.picture += kFirstHalfPicture;
+        if (coarse.past) { coarse.past = Past{halfOf(coarse.past->eye), coarse.past->picture + static_cast<int>(kFirstHalfPicture)}; }
+        plan.targets.push_back(coarse);
+    }
+}
+
+// The chosen tiles of a target. It has its own list: most splats touch tiles of one of an eye's two pictures alone, and projecting costs
+// more than culling.
+void renderChosen(FramePlan& plan, int target, ListPlan list) {
+    plan.targets[static_cast<std::size_t>(target)].list = target;
+    list.eyes.first = list.eyes.order_eye = list.eyes.list = target;
+    list.eyes.count = 1;
+    list.of_chosen = true;
+    list.role = plan.targets[static_cast<std::size_t>(target)].role;
+    plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
+    plan.lists.push_back(list);
+    plan.steps.push_back({Step::Kind::kRender, target});
+}
+
+// An eye in two pictures, of which the smaller comes first: what it holds says where it will do.
+void renderInTwo(FramePlan& plan, int eye, const ListPlan& list) {
+    TargetPlan& sharp = plan.targets[static_cast<std::size_t>(eye)];
+    sharp.choice = TileChoice::kSharp;
+    plan.targets[static_cast<std::size_t>(*sharp.half)].choice = TileChoice::kHalf;
+    plan.steps.push_back({Step::Kind::kHalfTiles, eye});
+    renderChosen(plan, *sharp.half, list);
+    plan.steps.push_back({Step::Kind::kOwnTiles, eye});
+    renderChosen(plan, eye, list);
+    plan.steps.push_back({Step::Kind::kFill, eye});
+}
+
+// The chosen tiles of two targets, the first in `order` first, from one list.
+void renderChosen(FramePlan& plan, std::array<int, 2> order, ListPlan list) {
+    const int first = std::min(order[0], order[1]);
+    TargetPlan &one = plan.targets[static_cast<std::size_t>(order[0])], &other = plan.targets[static_cast<std::size_t>(order[1])];
+    one.list = other.list = list.eyes.first = list.eyes.list = first;
+    list.eyes.count = 2;
+    list.eyes.order_eye = order[0];
+    list.of_chosen = true;
+    const auto makeList = [&](const ListPlan& made) {
+        plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
+        plan.lists.push_back(made);
+    };
+    // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
+    if (plan.shares_order && one.eye.size_px == other.eye.size_px) {
+        list.eyes.shares = 2;
+        makeList(list);
+        plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
+        return;
+    }
+    makeList(list);
+    plan.steps.push_back({Step::Kind::kRender, order[0]});
+    if (!plan.shares_order) { makeList({.eyes = {.order_eye = order[1], .list = first}, .role = other.role, .culls = false}); }
+    plan.steps.push_back({Step::Kind::kRender, order[1]});
+}
+
+// An eye's targets from their pasts, the smaller first if there are two: what it holds says where it will do.
+void makeInTwo(FramePlan& plan, int eye) {
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(eye)];
+    if (!target.half) {
+        plan.steps.push_back({Step::Kind::kPast, eye});
+        return;
+    }
+    for (const Step step : {Step{Step::Kind::kHalfTiles, eye}, Step{Step::Kind::kPast, *target.half}, Step{Step::Kind::kOwnTiles, eye},
+                            Step{Step::Kind::kPast, eye}}) {
+        plan.steps.push_back(step);
+    }
+}
+
 // Both eyes from their pasts; the tiles that are rendered again are chosen before anything is culled.
 void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<const Eye> eyes, const Pasts& pasts, const ListPlan& list) {
-    const int order[2] = {plan.dominant, 1 - plan.dominant};
+    const std::array order{plan.dominant, 1 - plan.dominant};
     int picture = pasts.spare;
     for (const int e : order) {
         const auto eye = static_cast<std::size_t>(e);
@@ -53,29 +141,20 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         // Free once this target is made; another size needs memory of its own, since that is still read.
         const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
         picture = fits ? target.past->picture : fourthPicture(pasts);
-        plan.steps.push_back({Step::Kind::kPast, e});
     }
+    const bool in_two = isInTwo(settings, eyes.size());
+    if (in_two) { splitTargets(plan, settings); }
+    for (const int e : order) { makeInTwo(plan, e); }
     plan.budget = settings.stereo.budget;
     plan.steps.push_back({Step::Kind::kChoose, 0});
-    plan.lists.push_back(list);
-    plan.lists.back().of_chosen = true;
-    plan.steps.push_back({Step::Kind::kList, 0});
-    // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
-    if (plan.shares_order && eyes[0].size_px == eyes[1].size_px) {
-        plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
-        plan.lists.back().eyes.shares = plan.shares();
-        return;
-    }
-    plan.steps.push_back({Step::Kind::kRender, order[0]});
-    if (!plan.shares_order) {
-        plan.steps.push_back({Step::Kind::kList, 1});
-        plan.lists.push_back({.eyes = {.order_eye = order[1], .list = 0}, .role = plan.targets[order[1]].role, .culls = false});
-    }
-    plan.steps.push_back({Step::Kind::kRender, order[1]});
+    renderChosen(plan, order, list);
+    if (!in_two) { return; }
+    renderChosen(plan, std::array{*plan.targets[order[0]].half, *plan.targets[order[1]].half}, list);
+    for (const int e : order) { plan.steps.push_back({Step::Kind::kFill, e}); }
 }
 
 // One eye in full, in turn, and the other from its past.
-void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
+void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& pasts, const ListPlan& list) {
     const int full = pasts.turn, other = 1 - full;
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
     rendered.picture = pasts.of_eyes[static_cast<std::size_t>(full)]->picture;
@@ -83,33 +162,44 @@ void planAlternate(FramePlan& plan, const Pasts& pasts, const ListPlan& list) {
     warped.picture = pasts.spare;
     warped.choice = TileChoice::kNone;
     warped.kept.past = false;
-    plan.steps.push_back({Step::Kind::kList, 0});
-    plan.lists.push_back(list);
-    plan.steps.push_back({Step::Kind::kRender, full});
-    plan.steps.push_back({Step::Kind::kPast, other});
+    if (isInTwo(settings, plan.eyes)) {
+        splitTargets(plan, settings);
+        renderInTwo(plan, full, list);
+    } else {
+        plan.steps.push_back({Step::Kind::kList, 0});
+        plan.lists.push_back(list);
+        plan.steps.push_back({Step::Kind::kRender, full});
+    }
+    makeInTwo(plan, other);
+    if (plan.targets[static_cast<std::size_t>(other)].half) { plan.steps.push_back({Step::Kind::kFill, other}); }
 }
 
-// The eye in two pictures, of which the smaller comes first: what it holds says where it will do.
-void planPeriphery(FramePlan& plan, const Gaze& gaze, ListPlan list) {
-    const int half = static_cast<int>(plan.targets.size());
-    plan.targets.push_back(plan.targets[0]);
-    TargetPlan &sharp = plan.targets[0], &coarse = plan.targets.back();
-    sharp.choice = TileChoice::kSharp;
-    sharp.gaze = gaze;
-    sharp.half = half;
-    coarse.eye = halfOf(sharp.eye);
-    coarse.choice = TileChoice::kHalf;
-    coarse.picture = half;
-    plan.square_boxes = false;
-    // Each has its own list: most splats touch tiles of one of them alone, and projecting costs more than culling.
-    list.of_chosen = true;
-    for (const int t : {0, half}) {
-        plan.targets[static_cast<std::size_t>(t)].list = t;
-        list.eyes.first = list.eyes.order_eye = list.eyes.list = t;
-        plan.lists.push_back(list);
+// Eyes in two pictures each, without a past: the first in full, and the other, where the mode allows, from it.
+void planPeriphery(FramePlan& plan, const FrameSettings& settings, const ListPlan& list) {
+    const int first = plan.dominant, second = 1 - first;
+    const bool from_other = plan.eyes == 2 && settings.mode != Mode::kAlternate;
+    for (TargetPlan& target : plan.targets) { target.kept.past = target.kept.past || from_other; }
+    splitTargets(plan, settings);
+    renderInTwo(plan, first, list);
+    if (plan.eyes == 1) { return; }
+    if (!from_other) {
+        renderInTwo(plan, second, list);
+        return;
     }
-    plan.steps = {{Step::Kind::kHalfTiles, 0}, {Step::Kind::kList, 1},   {Step::Kind::kRender, half}, {Step::Kind::kOwnTiles, 0},
-                  {Step::Kind::kList, 0},      {Step::Kind::kRender, 0}, {Step::Kind::kFill, 0}};
+    const auto makeFrom = [&](int source, int target) {
+        const TargetPlan& other = plan.targets[static_cast<std::size_t>(source)];
+        makeFromPast(plan.targets[static_cast<std::size_t>(target)], Past{other.eye, other.picture}, settings,
+                     static_cast<std::size_t>(second));
+    };
+    const int half = *plan.targets[static_cast<std::size_t>(second)].half;
+    makeFrom(first, second);
+    makeFrom(*plan.targets[static_cast<std::size_t>(first)].half, half);
+    makeInTwo(plan, second);
+    plan.budget = settings.stereo.budget;
+    plan.steps.push_back({Step::Kind::kChoose, 0});
+    renderChosen(plan, second, list);
+    renderChosen(plan, half, list);
+    plan.steps.push_back({Step::Kind::kFill, second});
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
@@ -126,7 +216,7 @@ int FramePlan::firstTarget() const {
 
 int FramePlan::shares() const {
     const bool at_once = std::ranges::find(steps, Step::Kind::kRenderAll, &Step::kind) != steps.end();
-    return at_once ? static_cast<int>(targets.size()) : 1;
+    return at_once ? static_cast<int>(eyes) : 1;
 }
 
 std::optional<int> FramePlan::warpedTarget() const {
@@ -136,7 +226,7 @@ std::optional<int> FramePlan::warpedTarget() const {
 
 Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
     Pasts after = before;
-    for (std::size_t e = 0; e < plan.targets.size(); ++e) {
+    for (std::size_t e = 0; e < plan.eyes; ++e) {
         const TargetPlan& target = plan.targets[e];
         if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
     }
@@ -201,7 +291,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     if (mode == Mode::kAlternate) {
         const int full = pasts.turn;
         planAlternate(
-            plan, pasts,
+            plan, settings, pasts,
             {.eyes = {.first = full, .count = 1, .order_eye = full, .list = full, .middle = middle}, .role = plan.targets[full].role});
         return plan;
     }
@@ -213,8 +303,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
         return plan;
     }
 
-    if (one_eye && settings.half_periphery && settings.gazes[0] && !settings.keep_moments) {
-        planPeriphery(plan, *settings.gazes[0], {.eyes = {.middle = middle}});
+    if (isInTwo(settings, eyes.size())) {
+        planPeriphery(plan, settings, both);
         return plan;
     }
     if (apart) {

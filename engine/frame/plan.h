@@ -12,6 +12,9 @@
 
 namespace binosplat {
 
+// Pictures of a room: those that eyes with a past take turns in, and as many of half the size.
+inline constexpr std::size_t kFramePictures = 8, kFirstHalfPicture = 4;
+
 // A list of visible splats, front to back.
 struct ListPlan {
     EyesOfList eyes;

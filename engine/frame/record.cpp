@@ -13,7 +13,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         const TargetPlan& target = plan.targets[t];
         state.views[t] = viewOf(target.eye, plan.near);
         if (target.past) {
-            state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near);
+            state.targets[t].past = pastViewOf(target.eye, target.past->eye, plan.near, glm::vec3(plan.background));
             state.targets[t].past_blocks = {.per_group = {.x = 0, .y = 1, .z = 1}, .count = 0};
             state.targets[t].warp = warpViewOf({}, target.eye.size_px, 0, {.choice = target.choice, .budget = plan.budget});
         }
@@ -67,7 +67,7 @@ void FrameRecorder::record(Commands& commands, const FramePlan& plan) const {
                 recordPicture(commands, plan, step.index);
                 break;
             case Step::Kind::kRenderAll:
-                recordPatches(commands, plan);
+                recordPatches(commands, plan, step.index);
                 break;
         }
     }
@@ -97,16 +97,22 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
 
 PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
+    const int eyes = static_cast<int>(plan.eyes);
+    const bool is_half = index >= eyes;
+    const auto some_tiles = is_half       ? room.periphery(index - eyes).ofHalf().list
+                            : target.half ? room.periphery(index).own().list
+                                          : gpu::DeviceAddress<gpu::uint>{};
     return {.buffers = room.lists(),
             .warp = room.warp(index),
             .index = index,
             .role = target.role,
             .source = room.picture(target.past->picture),
             .target = room.picture(target.picture),
-            .shown = room.shown(index),
-            .background = glm::vec3(plan.background),
+            .shown = room.shown(index).mask(),
+            .some_tiles = some_tiles,
             .lens = target.eye.intrinsics,
-            .gaze = target.gaze};
+            .gaze = target.gaze,
+            .area = static_cast<float>(1.0 / (target.eye.own_pixel_px * target.eye.own_pixel_px))};
 }
 
 void FrameRecorder::recordPast(Commands& commands, const FramePlan& plan, int index) const {
@@ -123,8 +129,9 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
 
 PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) const {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(index)];
+    const auto kindsOf = [&](int t) { return target.past ? room.warp(t).tileKinds() : gpu::DeviceAddress<gpu::uint>{}; };
     return {.buffers = room.lists(),
-            .tiles = room.periphery(),
+            .tiles = room.periphery(index),
             .index = index,
             .half_index = *target.half,
             .role = target.role,
@@ -133,7 +140,9 @@ PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) con
             .shown = room.shown(index),
             .background = glm::vec3(plan.background),
             .lens = target.eye.intrinsics,
-            .gaze = *target.gaze};
+            .gaze = *target.gaze,
+            .kinds = kindsOf(index),
+            .half_kinds = kindsOf(*target.half)};
 }
 
 EyesOfList FrameRecorder::eyesOf(const FramePlan& plan, const ListPlan& list) const {
@@ -158,19 +167,21 @@ void FrameRecorder::recordPicture(Commands& commands, const FramePlan& plan, int
 
 TileMask FrameRecorder::chosenTiles(const FramePlan& plan, int index) const {
     const TileChoice choice = plan.targets[static_cast<std::size_t>(index)].choice;
-    if (choice == TileChoice::kSharp) { return room.periphery().own(); }
-    if (choice == TileChoice::kHalf) { return room.periphery().ofHalf(); }
+    if (choice == TileChoice::kSharp) { return room.periphery(index).own(); }
+    if (choice == TileChoice::kHalf) { return room.periphery(index - static_cast<int>(plan.eyes)).ofHalf(); }
     const WarpBuffers& warp = room.warp(index);
     return {warp.tileMask(), warp.tileList(), warp.tilesWithPairs()};
 }
 
-void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan) const {
+void FrameRecorder::recordPatches(Commands& commands, const FramePlan& plan, int first) const {
     std::vector<Passes::Patch> patches;
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
+        if (plan.targets[static_cast<std::size_t>(t)].list != plan.targets[static_cast<std::size_t>(first)].list) { continue; }
+        const int share = static_cast<int>(patches.size());
         Passes::Patch& patch = patches.emplace_back(Passes::Patch{targetOf(plan, t), chosenTiles(plan, t)});
-        patch.target.share = t;
+        patch.target.share = share;
         patch.target.shares = plan.shares();
-        patch.target.pairs = room.lists().pairs.arrays(t, plan.shares());
+        patch.target.pairs = room.lists().pairs.arrays(share, plan.shares());
     }
     passes.recordTiles(commands, scene, room.lists(), patches, Role::kBoth);
 }

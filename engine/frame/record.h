@@ -31,7 +31,7 @@ private:
     [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;
     void recordPicture(Commands& commands, const FramePlan& plan, int index) const;
-    void recordPatches(Commands& commands, const FramePlan& plan) const;
+    void recordPatches(Commands& commands, const FramePlan& plan, int first) const;
     [[nodiscard]] TileMask chosenTiles(const FramePlan& plan, int index) const;
     [[nodiscard]] Target targetOf(const FramePlan& plan, int index) const;
 };

@@ -64,7 +64,8 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
         counters.bytes += buffers.bytes();
         work.full += state.warp_counters.picture_cost;
         work.patched += state.warp_counters.chosen_cost;
-        shown += buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
+        const bool in_two = frame.plan.targets.size() > frame.plan.eyes;
+        shown += in_two ? state.wanted_tiles.count : buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
     }
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
     if (work.full > 0) {
@@ -73,14 +74,22 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
     }
 }
 
-void countPeriphery(const FrameFacts& frame, const TargetPlan& target, const TargetState& state, FrameResult& result) {
+// Of all eyes together.
+void countPeriphery(const FrameFacts& frame, std::size_t eye, FrameResult& result) {
+    const TargetPlan& target = frame.plan.targets[eye];
     const auto half = static_cast<std::size_t>(*target.half);
-    const TargetState& half_state = frame.state.targets[half];
     const Picture& picture = frame.room.picture(frame.plan.targets[half].picture);
-    result.counters.periphery = {.tile_pairs = half_state.pairs.count,
-                                 .half_tiles = half_state.chosen_tiles.count,
-                                 .sharp_tiles = state.chosen_tiles.count,
-                                 .bytes = picture.colours.bytes() + picture.depths.bytes() + frame.room.periphery().buffer().bytes()};
+    const auto tilesOf = [&](std::size_t t) {
+        const TargetState& state = frame.state.targets[t];
+        return target.past ? state.wanted_tiles.count : state.chosen_tiles.count;
+    };
+    if (!result.counters.periphery) { result.counters.periphery.emplace(); }
+    FrameCounters::Periphery& its = *result.counters.periphery;
+    its.tile_pairs += frame.state.targets[half].pairs.count;
+    its.half_tiles += tilesOf(half);
+    its.sharp_tiles += tilesOf(eye);
+    its.bytes += picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes() +
+                 frame.room.periphery(static_cast<int>(eye)).buffer().bytes();
 }
 
 bool seesNothing(const FrameCounters& counters) {
@@ -120,7 +129,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
     const bool two = plan.eyes == 2, both_at_once = two && plan.targets[kLeft].list == plan.targets[kRight].list;
     leaveOut(frame.scene.shDegree() < kMaxShDegree, fmt::format("SH bands above {}: the scene has none", frame.scene.shDegree()));
     leaveOut(!moments, "moments of inverse depth: no stage of this mode reads them");
-    leaveOut(two && !plan.targets[static_cast<std::size_t>(1 - plan.firstTarget())].kept.depth,
+    leaveOut(two && !plan.targets[static_cast<std::size_t>(1 - plan.firstTarget() % 2)].kept.depth,
              "depth of the affiliated eye: nothing reads it");
     leaveOut(both_at_once, "culling for the affiliated eye alone: both eyes are culled at once");
     leaveOut(both_at_once && plan.shares_order,
@@ -169,7 +178,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
         its.pixels = std::uint64_t{size_px.x} * size_px.y;
         its.pixel_bytes = picture.colours.bytes() + picture.depths.bytes() + picture.words.bytes() + picture.tiles.bytes();
         if (target.warp) { countWarp(frame, t, result); }
-        if (target.half) { countPeriphery(frame, target, state, result); }
+        if (target.half) { countPeriphery(frame, t, result); }
     }
     if (std::ranges::any_of(frame.plan.targets, [](const TargetPlan& target) { return target.past.has_value(); })) {
         countPast(frame, result);

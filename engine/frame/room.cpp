@@ -87,7 +87,7 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
 
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
     std::uint64_t most_tiles = 0, moments_bytes = 0;
-    std::array<bool, kMostTargets> is_used{};
+    std::array<bool, kFramePictures> is_used{};
     for (std::size_t t = 0; t < shown_.size(); ++t) {
         const bool used = t < plan.targets.size();
         const glm::uvec2 size_px = used ? plan.targets[t].eye.size_px : glm::uvec2(0), tiles = tilesOf(size_px);
@@ -101,29 +101,37 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         // A past stays as it is.
         if (plan.targets[t].past) { is_used[static_cast<std::size_t>(plan.targets[t].past->picture)] = true; }
     }
-    if (plan.spare_picture) { is_used[static_cast<std::size_t>(*plan.spare_picture)] = true; }
+    const bool in_two = plan.targets.size() > plan.eyes;
+    if (plan.spare_picture) {
+        is_used[static_cast<std::size_t>(*plan.spare_picture)] = true;
+        is_used[static_cast<std::size_t>(*plan.spare_picture) + kFirstHalfPicture] = in_two;
+    }
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
     // A past of both eyes has room for what either keeps, since they change places.
-    for (const TargetPlan& target : plan.targets) {
+    for (std::size_t t = 0; t < plan.targets.size(); ++t) {
+        const TargetPlan& target = plan.targets[t];
         Kept kept = target.kept;
         if (plan.keeps_past) {
             kept.past = true;
             for (const TargetPlan& other : plan.targets) { kept.depth = kept.depth || other.kept.depth; }
         }
-        if (plan.spare_picture) { fitPicture(pictures_[static_cast<std::size_t>(*plan.spare_picture)], target.eye.size_px, kept); }
+        if (plan.spare_picture) {
+            const std::size_t spare = static_cast<std::size_t>(*plan.spare_picture) + (t < plan.eyes ? 0 : kFirstHalfPicture);
+            fitPicture(pictures_[spare], target.eye.size_px, kept);
+        }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
     resize(context_, moments_, "inverse depth moments", moments_bytes);
     resize(context_, lists_.tile_ranges, "tile ranges",
            static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead)) * most_tiles * sizeof(gpu::uvec2));
     fitWarps(plan);
-    const auto in_two = std::ranges::find_if(plan.targets, [](const TargetPlan& target) { return target.half.has_value(); });
-    const glm::uvec2 in_two_px = in_two != plan.targets.end() ? in_two->eye.size_px : glm::uvec2(0);
-    if (periphery_.sizePx() != in_two_px) {
-        periphery_ = {};
-        periphery_ = PeripheryBuffers(context_, in_two_px);
+    for (std::size_t e = 0; e < peripheries_.size(); ++e) {
+        const glm::uvec2 size_px = e < plan.eyes && plan.targets[e].half ? plan.targets[e].eye.size_px : glm::uvec2(0);
+        if (peripheries_[e].sizePx() == size_px) { continue; }
+        peripheries_[e] = {};
+        peripheries_[e] = PeripheryBuffers(context_, size_px);
     }
 }
 

@@ -57,7 +57,8 @@ public:
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
-    [[nodiscard]] const PeripheryBuffers& periphery() const { return periphery_; }
+    // Of the eye's two pictures.
+    [[nodiscard]] const PeripheryBuffers& periphery(int eye) const { return peripheries_[static_cast<std::size_t>(eye)]; }
     // Before the passes of a frame.
     void recordShown(Commands& commands);
     // Once what was recorded has run.
@@ -79,11 +80,11 @@ private:
     const GpuScene* scene_ = nullptr;
     FrameCapacity first_capacity_;
     FrameBuffers lists_;
-    std::array<Picture, kMostTargets> pictures_;
+    std::array<Picture, kFramePictures> pictures_;
     Buffer moments_;
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
     std::vector<ShownTiles> shown_;
-    PeripheryBuffers periphery_;  // of the eye that has one
+    std::array<PeripheryBuffers, 2> peripheries_;  // by eye
     bool first_frame_ = true;
     bool room_ahead_fits_ = true;  // in the device's memory
 };

@@ -211,7 +211,7 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
 }
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
-    if (!plan_.targets[0].past && !plan_.targets.back().past) { return; }
+    if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); })) { return; }
     // What the past was made of is written over already.
     plan_ = planFrame(settings, eyes_, true);
     room_.fitPictures(plan_, settings.hidden_tiles);

@@ -28,6 +28,7 @@ struct TargetState {
     gpu::PastBlockList past_blocks;
     gpu::ListState chosen_tiles;    // likewise: those that are rendered
     gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
+    gpu::ListState wanted_tiles;    // of one of an eye's two pictures from their pasts: those that are not made from the other
 };
 
 // What the device is given at the start of a frame, and what it reports at the end.

@@ -20,7 +20,7 @@ auto viewOf(const PastInputs& in) {
 
 }  // namespace
 
-gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near) {
+gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background) {
     const EyeRelation relation = relate(past, now);
     return {.past_from_now = relation.source_from_target,
             .now_from_past = relation.target_from_source,
@@ -28,7 +28,8 @@ gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near) {
             .size_tiles = tilesOf(now.size_px),
             .past_size_px = past.size_px,
             .past_size_tiles = tilesOf(past.size_px),
-            .nearest = static_cast<float>(1.0 / near)};
+            .nearest = static_cast<float>(1.0 / near),
+            .background = background};
 }
 
 KernelTable pastKernels() {
@@ -40,7 +41,6 @@ KernelTable pastKernels() {
 }
 
 void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
-    in.shown.recordKinds(commands, in.warp.tiles(), WarpBuffers::tileKindsOffset());
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
     const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
     const gpu::WarpPastPass pass{
@@ -55,19 +55,27 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .tile_kinds = in.warp.tileKinds(),
         .tile_mask = in.warp.tileMask(),
         .price_bins = in.warp.bins(),
-        .shown_mask = in.shown.mask(),
+        .shown_mask = in.shown,
+        .tile_list = in.some_tiles,
+        .listed_tiles = listAt(in, offsetof(TargetState, wanted_tiles)),
         .blocks = in.warp.pastBlocks(),
-        .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks),
-        .background = in.background};
+        .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks)};
     const glm::uvec2 size_px = in.target.size_px;
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
                                 .depth = in.target.depths.bytes() > 0,
-                                .hidden_tiles = in.shown.hideAny(),
+                                .hidden_tiles = in.shown.value != 0,
+                                .some_tiles = in.some_tiles.value != 0,
                                 .whole_blocks = size_px.x % gpu::kPastColumns == 0};
-    constexpr gpu::uint kColumns = gpu::kPastColumns * gpu::kPastGroup * gpu::kPastRows / gpu::kTileSize;
-    commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, kColumns), groupsOver(size_px.y, gpu::kTileSize));
+    if (in.some_tiles.value != 0) {
+        const std::uint64_t wanted = FrameBuffers::targetField(in.index, offsetof(TargetState, wanted_tiles));
+        commands.dispatchIndirect(kernels_.get(kernel), pass, in.buffers.state, wanted + offsetof(gpu::ListState, per_item));
+    } else {
+        commands.dispatch(kernels_.get(kernel), pass, groupsOver(size_px.x, gpu::kPastTiles * gpu::kTileSize),
+                          groupsOver(size_px.y, gpu::kTileSize));
+    }
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
-    const WarpPixelsKernel pixels{.half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles};
+    const WarpPixelsKernel pixels{
+        .half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles, .some_tiles = kernel.some_tiles};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 
@@ -86,6 +94,7 @@ void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> ey
                                   .budget = countersOf(first),
                                   .past_tiles = in.target.tiles.address<gpu::PastTile>(),
                                   .is_last = &in == &eyes.back() ? 1u : 0u,
+                                  .area = in.area,
                                   .gaze = in.gaze ? eyeGazeOf(*in.gaze, in.lens) : gpu::EyeGaze{}};
         commands.dispatch(kernels_.get(PriceKernel{.foveated = in.gaze.has_value(), .past = true}), pass,
                           groupsOver(in.warp.tileCount(), gpu::kWarpGroup));

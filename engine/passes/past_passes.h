@@ -21,14 +21,16 @@ struct PastInputs {
     Role role;
     const Picture& source;
     const Picture& target;
-    const ShownTiles& shown;
-    glm::vec3 background;
+    gpu::DeviceAddress<gpu::uint> shown;  // mask of the tiles that the lens shows; null: all
+    // Where only some tiles are made: those, and how many (TargetState::wanted_tiles); the kinds of all are there then.
+    gpu::DeviceAddress<gpu::uint> some_tiles;
     const Intrinsics& lens;
     std::optional<Gaze> gaze;  // empty: all tiles are seen alike
+    float area = 1.0f;         // of a pixel, in those of the eye's own picture
 };
 
 // How the eye `now` and the one whose picture is its past look to the device. `near`: nothing is seen before this, in scene units.
-gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near);
+gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm::vec3& background);
 
 KernelTable pastKernels();
 

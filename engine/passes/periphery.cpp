@@ -19,12 +19,15 @@ std::uint64_t tileCount(glm::uvec2 size_px) {
 std::uint64_t wordsOf(glm::uvec2 size_px) { return WarpBuffers::maskWords(size_px) + 2 * tileCount(size_px); }
 
 gpu::PeripheryPass passOf(const PeripheryInputs& in, const TileMask& tiles, int index) {
+    const std::size_t list = in.fromPasts() ? offsetof(TargetState, wanted_tiles) : offsetof(TargetState, chosen_tiles);
     return {.colours = in.half.colours.address<gpu::vec4>(),
             .half_colours = in.half.colours.address<gpu::uvec2>(),
             .shown_mask = in.shown.mask(),
             .tile_list = tiles.list,
             .tile_mask = tiles.mask,
-            .chosen_tiles = in.buffers.state.address<gpu::ListState>(FrameBuffers::targetField(index, offsetof(TargetState, chosen_tiles))),
+            .tile_kinds = index == in.index ? in.kinds : in.half_kinds,
+            .tile_losses = in.tiles.losses(),
+            .chosen_tiles = in.buffers.state.address<gpu::ListState>(FrameBuffers::targetField(index, list)),
             .size_px = in.tiles.sizePx(),
             .gaze = eyeGazeOf(in.gaze, in.lens)};
 }
@@ -41,10 +44,15 @@ Eye halfOf(const Eye& eye) {
 
 PeripheryBuffers::PeripheryBuffers(const Context& context, glm::uvec2 size_px) : size_px_(size_px) {
     if (size_px.x == 0) { return; }
-    words_ = Buffer(context, "tiles of a periphery", (wordsOf(size_px) + wordsOf(halfOf(size_px))) * sizeof(gpu::uint));
+    words_ =
+        Buffer(context, "tiles of a periphery", (wordsOf(size_px) + wordsOf(halfOf(size_px)) + tileCount(size_px)) * sizeof(gpu::uint));
 }
 
 TileMask PeripheryBuffers::ofHalf() const { return tilesAt(wordsOf(size_px_), halfOf(size_px_)); }
+
+gpu::DeviceAddress<gpu::uint> PeripheryBuffers::losses() const {
+    return words_.address<gpu::uint>((wordsOf(size_px_) + wordsOf(halfOf(size_px_))) * sizeof(gpu::uint));
+}
 
 TileMask PeripheryBuffers::tilesAt(std::uint64_t first_word, glm::uvec2 size_px) const {
     const auto mask = words_.address<gpu::uint>(first_word * sizeof(gpu::uint));
@@ -61,6 +69,14 @@ KernelTable peripheryKernels() {
 void PeripheryPasses::recordHalfChoice(Commands& commands, const PeripheryInputs& in) {
     commands.beginPass({in.role, PeripheryKernel::kStage, PeripheryKernel::kShader});
     commands.fillZero(in.tiles.buffer());
+    if (in.half.words.bytes() > 0) {  // nothing is known of what is not made
+        std::vector<const Buffer*> unknown{&in.half.words, &in.half.tiles};
+        if (!in.fromPasts()) { unknown.push_back(&in.target.tiles); }
+        for (const Buffer* buffer : unknown) {
+            commands.beside();
+            commands.fillZero(*buffer);
+        }
+    }
     commands.dispatch(kernels_.get(PeripheryKernel{.of_half = 1}), passOf(in, in.tiles.ofHalf(), in.half_index),
                       groupsOver(tileCount(halfOf(in.tiles.sizePx())), gpu::kWarpGroup));
 }
@@ -81,11 +97,17 @@ void PeripheryPasses::recordFill(Commands& commands, const PeripheryInputs& in) 
                                       .depths = in.target.depths.address<float>(),
                                       .tile_mask = in.tiles.own().mask,
                                       .shown_mask = in.shown.mask(),
+                                      .source_words = in.half.words.address<gpu::uint>(),
+                                      .words = in.target.words.address<gpu::uint>(),
+                                      .source_tiles = in.half.tiles.address<gpu::PastTile>(),
+                                      .tiles = in.target.tiles.address<gpu::PastTile>(),
+                                      .tile_losses = in.tiles.losses(),
                                       .background = in.background,
                                       .size_px = in.tiles.sizePx()};
     const glm::uvec2 tiles = tilesOf(in.tiles.sizePx());
-    commands.dispatch(kernels_.get(FillPeripheryKernel{.depth = in.target.depths.bytes() > 0, .half_colours = in.target.half_floats}), pass,
-                      groupsOver(tiles.x, gpu::kFillTiles), tiles.y);
+    const FillPeripheryKernel kernel{
+        .depth = in.target.depths.bytes() > 0, .half_colours = in.target.half_floats, .past = in.target.words.bytes() > 0};
+    commands.dispatch(kernels_.get(kernel), pass, groupsOver(tiles.x, gpu::kFillTiles), tiles.y);
 }
 
 }  // namespace binosplat

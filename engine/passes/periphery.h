@@ -25,6 +25,8 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] TileMask own() const { return tilesAt(0, size_px_); }
     [[nodiscard]] TileMask ofHalf() const;
+    // Of the eye's own tiles, what half the size is expected to lose.
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> losses() const;
     [[nodiscard]] const Buffer& buffer() const { return words_; }
 
 private:
@@ -46,6 +48,9 @@ struct PeripheryInputs {
     glm::vec3 background;
     const Intrinsics& lens;
     const Gaze& gaze;
+    // Where both pictures are made from their pasts, and of the tiles here some are chosen later: by tile, what kTileHidden stands for.
+    gpu::DeviceAddress<gpu::uint> kinds = {}, half_kinds = {};
+    [[nodiscard]] bool fromPasts() const { return kinds.value != 0; }
 };
 
 KernelTable peripheryKernels();
@@ -58,7 +63,7 @@ public:
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     void takeKernels(PeripheryPasses& from) { kernels_.take(from.kernels_); }
 
-    // In this order, with the two pictures' tiles rendered after the first and after the second.
+    // In this order, with the half-size picture made after the first and the other one after the second.
     void recordHalfChoice(Commands& commands, const PeripheryInputs& in);
     void recordChoice(Commands& commands, const PeripheryInputs& in);
     void recordFill(Commands& commands, const PeripheryInputs& in);

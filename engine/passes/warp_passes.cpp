@@ -277,6 +277,7 @@ void WarpRecorder::price() {
                               .budget = counters(),
                               .past_tiles = {},
                               .is_last = 1,
+                              .area = 1.0f,
                               .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }

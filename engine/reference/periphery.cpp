@@ -95,9 +95,9 @@ std::vector<std::uint8_t> findHalfTiles(const Eye& eye, const Gaze& gaze, std::s
     return needed;
 }
 
-std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze) {
+std::vector<double> expectLosses(std::span<const glm::dvec4> half, const Eye& eye) {
     constexpr double kLoss = 0.3, kMost = 4.0;
-    std::vector<double> losses = findSharesThere(eye, gaze);
+    std::vector<double> losses;
     const glm::ivec2 tiles = gridOf(eye), size(halfOf(eye).size_px);
     const auto at = [&](int x, int y) {
         return glm::dvec3(half[static_cast<std::size_t>(std::clamp(y, 0, size.y - 1) * size.x + std::clamp(x, 0, size.x - 1))]);
@@ -111,8 +111,15 @@ std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye
                 squares += std::min(glm::dot(across, across) + glm::dot(down, down), kMost);
             }
         }
-        losses[static_cast<std::size_t>(tile)] *= kLoss * squares;
+        losses.push_back(kLoss * squares);
     }
+    return losses;
+}
+
+std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze) {
+    std::vector<double> losses = expectLosses(half, eye);
+    const std::vector<double> shares = findSharesThere(eye, gaze);
+    for (std::size_t t = 0; t < losses.size(); ++t) { losses[t] *= shares[t]; }
     return losses;
 }
 
@@ -151,6 +158,31 @@ void fillPeriphery(Picture& picture, const Picture& half, std::span<const std::u
             const double depth = sampleAt(std::span<const double>(half.depth), half_size, place, linear);
             picture.depth[i] = alpha > 0.0 ? pixel.a * depth / alpha : 0.0;
         }
+    }
+}
+
+void fillPast(Past& picture, const Past& half, std::span<const double> losses, std::span<const std::uint8_t> own_tiles,
+              std::span<const std::uint8_t> hidden) {
+    constexpr double kOwnCost = 0.6;
+    const glm::ivec2 tiles = gridOf(picture.eye), half_tiles = gridOf(half.eye), size(picture.eye.size_px);
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            const auto tile = static_cast<std::size_t>(y / kTile * tiles.x + x / kTile);
+            if (own_tiles[tile] != 0) { continue; }
+            const auto sample = static_cast<std::size_t>(y / 2 * static_cast<int>(half.eye.size_px.x) + x / 2);
+            picture.pixels[static_cast<std::size_t>(y * size.x + x)] = isHidden(hidden, tile) ? std::nullopt : half.pixels[sample];
+        }
+    }
+    for (int tile = 0; tile < tiles.x * tiles.y; ++tile) {
+        const auto t = static_cast<std::size_t>(tile);
+        if (own_tiles[t] != 0) { continue; }
+        picture.tiles[t] = {};
+        if (isHidden(hidden, t)) { continue; }
+        const int x = tile % tiles.x, y = tile / tiles.x;
+        const PastTile& from = half.tiles[static_cast<std::size_t>(y / 2 * half_tiles.x + x / 2)];
+        picture.tiles[t].cost = static_cast<std::uint64_t>(kOwnCost * static_cast<double>(from.cost));
+        picture.tiles[t].errors.fill(std::sqrt(losses[t] / (3.0 * kTile * kTile)) +
+                                     from.errors[static_cast<std::size_t>(2 * (y % 2) + x % 2)]);
     }
 }
 

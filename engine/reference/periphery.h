@@ -2,6 +2,7 @@
 // are listed by rows; `hidden` has a byte a tile, 1 where nobody sees it; empty: all are seen.
 #pragma once
 
+#include "engine/reference/past.h"
 #include "engine/reference/reference.h"
 #include "engine/reference/stereo.h"
 
@@ -17,8 +18,9 @@ std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze);
 std::vector<std::uint8_t> findBeyond(const Eye& eye, const Gaze& gaze);
 // Likewise periphery, first: the tiles of the half-size picture that hold a sample which some tile beyond is made from, if that is seen.
 std::vector<std::uint8_t> findHalfTiles(const Eye& eye, const Gaze& gaze, std::span<const std::uint8_t> hidden = {});
-// Likewise periphery, second: what the eye is expected to see of each tile's loss, as a squared error summed over its pixels and their
-// channels: 0.3 of its samples' second differences along both axes, squared and summed (at most 4 a sample), times the seen share.
+// Likewise periphery, second: each tile's loss, as a squared error summed over its pixels and their channels: 0.3 of its samples' second
+// differences along both axes, squared and summed (at most 4 a sample). What the eye is expected to see of it: that times the seen share.
+std::vector<double> expectLosses(std::span<const glm::dvec4> half, const Eye& eye);
 std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze);
 // And so the tiles that are rendered at their own size: those not beyond, and those in which a hundredth would be seen in each pixel.
 std::vector<std::uint8_t> findOwnTiles(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze,
@@ -28,6 +30,11 @@ std::vector<std::uint8_t> findOwnTiles(std::span<const glm::dvec4> half, const E
 // times the depth D/A of the half-size picture between four samples, linearly of both. Hidden ones become background.
 void fillPeriphery(Picture& picture, const Picture& half, std::span<const std::uint8_t> own_tiles,
                    std::span<const std::uint8_t> hidden = {}, const glm::dvec3& background = glm::dvec3(0.0));
+
+// Likewise fill_periphery, of a picture that later ones are made from: a pixel is as far away as its sample. Rendering a tile takes 0.6 of
+// what the half-size picture's tile takes where it lies; it lacks what that lacks there, and its own loss. `losses`: of expectLosses.
+void fillPast(Past& picture, const Past& half, std::span<const double> losses, std::span<const std::uint8_t> own_tiles,
+              std::span<const std::uint8_t> hidden = {});
 
 // Both pictures and what becomes of them.
 struct PeripheryPictures {

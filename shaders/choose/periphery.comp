@@ -62,20 +62,25 @@ uint detailOfRow(ivec2 at, ivec2 last) {
     return uint(sum * kErrorSteps);
 }
 
+bool isFromPast() { return any(notEqual(uvec2(pass.tile_kinds), uvec2(0))); }
+
 // By every thread.
-void listTile(bool chosen, uint tile, uvec2 size_tiles) {
+void listTile(bool exists, bool chosen, uint tile, uvec2 size_tiles) {
     const uvec4 lanes = subgroupBallot(chosen);
     const uint count = subgroupBallotBitCount(lanes);
     uint place = 0;
     if (subgroupElect() && count > 0) { place = atomicAdd(pass.chosen_tiles.at[0].needed, count); }
     place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(lanes);
+    if (isFromPast() && exists) { pass.tile_kinds.at[tile] = chosen ? 0 : kTileHidden; }
     if (chosen) {
         pass.tile_list.at[place] = tile;
         const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);
         atomicOr(pass.tile_mask.at[at.y * maskWords(size_tiles) + at.x / 32], 1u << (at.x & 31));
     }
     if (!isLastGroup(pass.chosen_tiles) || gl_LocalInvocationIndex != 0) { return; }
-    pass.chosen_tiles.at[0] = makeList(atomicOr(pass.chosen_tiles.at[0].needed, 0), size_tiles.x * size_tiles.y);
+    ListState list = makeList(atomicOr(pass.chosen_tiles.at[0].needed, 0), size_tiles.x * size_tiles.y);
+    if (isFromPast()) { list.per_item = dispatchOver(max(list.count, 1), kPastTiles); }  // warp_past, which has more to do than its tiles
+    pass.chosen_tiles.at[0] = list;
 }
 
 void main() {
@@ -84,7 +89,7 @@ void main() {
         const uvec2 half_tiles = (half_px + kTileSize - 1) / kTileSize;
         const uint tile = gl_WorkGroupID.x * kWarpGroup + gl_LocalInvocationIndex;
         const bool exists = tile < half_tiles.x * half_tiles.y;
-        listTile(exists && isNeeded(uvec2(tile % half_tiles.x, tile / half_tiles.x), size_tiles), tile, half_tiles);
+        listTile(exists, exists && isNeeded(uvec2(tile % half_tiles.x, tile / half_tiles.x), size_tiles), tile, half_tiles);
         return;
     }
     // kHalfTileRows threads a tile.
@@ -97,6 +102,7 @@ void main() {
     barrier();
     if (may_be_half) { atomicAdd(details[in_group], detailOfRow(ivec2(at * (kTileSize / 2) + uvec2(0, row)), ivec2(half_px) - 1)); }
     barrier();
-    const float seen = seenShareThere(pass.gaze, at) * kHalfLoss * float(details[in_group]);
-    listTile(row == 0 && shown && !(may_be_half && seen < kLeastSeenError * kErrorSteps), tile, size_tiles);
+    const float lost = kHalfLoss * float(details[in_group]), seen = seenShareThere(pass.gaze, at) * lost;
+    if (row == 0 && may_be_half) { pass.tile_losses.at[tile] = uint(lost); }
+    listTile(row == 0 && tile < size_tiles.x * size_tiles.y, row == 0 && shown && !(may_be_half && seen < kLeastSeenError * kErrorSteps), tile, size_tiles);
 }

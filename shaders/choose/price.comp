@@ -49,17 +49,18 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     }
     // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
+    const float worth = pass.area * float(error);
     const float share = kFoveated ? seenShare(pass.gaze, uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];
-    const uint bin = binOf(float(error) / float(cost));
+    const uint bin = binOf(worth / float(cost));
     // The list has errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen.
     atomicAdd(pass.price_bins.at[bin], cost);
     if (!kFoveated) { return bin << 22 | cost; }
     const float seen = share * float(error);
     const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
-    const uint seen_bin = binOf(seen / float(cost));
+    const uint seen_bin = binOf(share * worth / float(cost));
     return unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;
 }
 

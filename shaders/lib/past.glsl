@@ -1,5 +1,5 @@
 // What making a picture from a past one takes, block by block or pixel by pixel. For shaders that say what kind of pictures: kHalfColours, kDepth,
-// kHiddenTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
+// kHiddenTiles, kSomeTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
@@ -57,7 +57,7 @@ vec2 uncertainMove(vec2 disparity_px, float spread) {
 }
 
 bool isHidden(PastView view, uvec2 pixel) {
-    return kHiddenTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
+    return kHiddenTiles && !kSomeTiles && !isInMask(pass.shown_mask, view.size_tiles, pixel / kTileSize);
 }
 
 vec4 sourceAt(uint i) {
@@ -72,7 +72,7 @@ void putWord(PastView view, uvec2 pixel, uint word) {
 }
 void putPixel(PastView view, uvec2 pixel, vec4 colour) {
     const uint at = pixel.y * view.size_px.x + pixel.x;
-    const vec4 shown = isHidden(view, pixel) ? vec4(pass.background, 0) : colour;
+    const vec4 shown = isHidden(view, pixel) ? vec4(view.background, 0) : colour;
     if (kHalfColours) {
         Eights(uvec2(pass.target)).at[at] = HalfColours(packHalves(shown));
     } else {

@@ -11,6 +11,7 @@ layout(local_size_x = kTileSize / 2, local_size_y = kFillTiles) in;
 layout(push_constant, scalar) uniform Push { FillPeripheryPass pass; };
 layout(constant_id = 0) const bool kDepth = false;
 layout(constant_id = 1) const bool kHalfColours = false;
+layout(constant_id = 2) const bool kPast = false;  // later pictures are made from this one
 
 #include "lib/picture.glsl"
 
@@ -48,6 +49,30 @@ void putPixel(uvec2 pixel, vec4 cubic, vec2 linear, bool hidden) {
     if (kDepth) { pass.depths.at[k] = !hidden && linear.y > 0 ? colour.a * linear.x / linear.y : 0; }
 }
 
+// What later pictures must know: how far away the sample is, of each of its pixels.
+void putWords(ivec2 at, ivec2 last, bool hidden) {
+    const uint word = hidden ? 0 : pass.source_words.at[at.y * (last.x + 1) + at.x];
+    [[unroll]] for (uint i = 0; i < 4; ++i) {
+        const uvec2 pixel = uvec2(2 * at) + uvec2(i & 1, i >> 1);
+        if (all(lessThan(pixel, pass.size_px))) { pass.words.at[pixel.y * pass.size_px.x + pixel.x] = word; }
+    }
+}
+
+// And of the tile: what rendering it would take, which a quarter of the tile that it is made from tells, and what it lacks, which is what half
+// the size loses and what that tile lacks itself.
+void putTile(uvec2 tile, uvec2 size_tiles, bool hidden) {
+    const uvec2 half_tiles = ((pass.size_px + 1) / 2 + kTileSize - 1) / kTileSize;
+    const PastTile from = pass.source_tiles.at[tile.y / 2 * half_tiles.x + tile.x / 2];
+    const uint at = tile.y * size_tiles.x + tile.x, quarter = 2 * (tile.y & 1) + (tile.x & 1);
+    const float lost = sqrt(float(pass.tile_losses.at[at]) / (kErrorSteps * 3 * kTileSize * kTileSize));
+    PastTile its = PastTile(0, 0, 0, vec4(0), uvec4(0));
+    if (!hidden) {
+        its.cost = uint(kOwnCost * float(from.cost));
+        its.errors = vec4(lost + from.errors[quarter]);
+    }
+    pass.tiles.at[at] = its;
+}
+
 vec4 cubicDown(vec4 a, vec4 b, vec4 c, vec4 d) { return kCubic.x * a + kCubic.y * b + kCubic.z * c + kCubic.w * d; }
 vec2 linearDown(vec2 far, vec2 near) { return 0.25 * far + 0.75 * near; }
 
@@ -58,6 +83,7 @@ void main() {
     const bool hidden = any(notEqual(uvec2(pass.shown_mask), uvec2(0))) && !isInMask(pass.shown_mask, size_tiles, tile);
     const ivec2 last = ivec2((pass.size_px + 1) / 2) - 1;
     ivec2 at = ivec2(tile * (kTileSize / 2)) + ivec2(gl_LocalInvocationID.x, 0);
+    if (kPast && gl_LocalInvocationID.x == 0) { putTile(tile, size_tiles, hidden); }
     if (at.x > last.x) { return; }
     // Rows from two above the sample to one below it.
     Across a = sampleAcross(at - ivec2(0, 2), last), b = sampleAcross(at - ivec2(0, 1), last), c = sampleAcross(at, last);
@@ -70,6 +96,7 @@ void main() {
         putPixel(pixel + uvec2(1, 0), cubicDown(a.behind, b.behind, c.behind, d.behind), linearDown(b.linear_behind, c.linear_behind), hidden);
         putPixel(pixel + uvec2(0, 1), cubicDown(e.before, d.before, c.before, b.before), linearDown(d.linear_before, c.linear_before), hidden);
         putPixel(pixel + uvec2(1, 1), cubicDown(e.behind, d.behind, c.behind, b.behind), linearDown(d.linear_behind, c.linear_behind), hidden);
+        if (kPast) { putWords(at, last, hidden); }
         a = b;
         b = c;
         c = d;

@@ -130,6 +130,8 @@ BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
 // A tile that is made from a picture of half the size is expected to have lost this part of what the second differences of its 8x8 samples
 // there have, squared and summed over both axes and all channels. Of 2DGS scenes as headsets show them: docs/tried.md.
 BINOSPLAT_CONSTANT float kHalfLoss = 0.3f;
+// What rendering a tile takes, of what a tile of half the size takes where it lies: four of them have two and a half times its pairs.
+BINOSPLAT_CONSTANT float kOwnCost = 0.6f;
 // Threads that look over a tile in it, each a row of its 8x8 samples.
 BINOSPLAT_CONSTANT uint kHalfTileRows = kTileSize / 2;
 // Tiles beside each other that a workgroup of fill_periphery fills.
@@ -156,6 +158,7 @@ BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 BINOSPLAT_CONSTANT uint kPastColumns = 4;
 BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;
+BINOSPLAT_CONSTANT uint kPastTiles = kPastGroup * kPastColumns * kPastRows / (kTileSize * kTileSize);
 // So far around a block depths are looked at: in a frame a head moves what is near by less than that beside what is far.
 BINOSPLAT_CONSTANT uint kPastBorder = 2;
 // Farther away it is looked for what stands in front, where the near plane moves that far: along the way that it would come, in such steps.

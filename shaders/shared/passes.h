@@ -187,13 +187,14 @@ struct WarpPastPass {
     Uints target_words;   // out
     Floats depths;        // out where asked for: D
     PastTiles tiles;      // out
-    Uints tile_kinds;     // out: 0, except where it is kTileHidden
+    Uints tile_kinds;     // out: 0, or kTileHidden
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
     Uints shown_mask;     // where parts are hidden: the others; otherwise null
-    PastBlocks blocks;    // from warp_past to warp_pixels: the blocks whose pixels are made one by one
+    Uints tile_list;      // where only some tiles are made: those; the kinds of all are there then
+    ListStates listed_tiles;
+    PastBlocks blocks;  // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
-    vec3 background;
 };
 
 // newcomers: predicted: splats that only the target sees, by the tiles they stand in.
@@ -236,6 +237,7 @@ struct PricePass {
     WarpCounterss budget;  // whose budget it is: its own, or one for both eyes
     PastTiles past_tiles;  // where there is a past, in place of tile_errors and tile_costs, which is then written
     uint is_last;          // 1: no other picture shares the budget after this one
+    float area;            // of a pixel, in those of the eye's own picture: what an error in it is worth
     EyeGaze gaze;          // where it is known where the target looks
 };
 
@@ -258,9 +260,11 @@ struct SelectPass {
 struct PeripheryPass {
     FloatColours colours;  // of the half-size picture, once it is there: one of the two
     HalfColours half_colours;
-    Uints shown_mask;         // where the eye has hidden tiles: the others; otherwise null
-    Uints tile_list;          // out, in no order: of the half-size picture or of the eye's
-    Uints tile_mask;          // in: zeros; out
+    Uints shown_mask;   // where the eye has hidden tiles: the others; otherwise null
+    Uints tile_list;    // out, in no order: of the half-size picture or of the eye's
+    Uints tile_mask;    // in: zeros; out
+    Uints tile_kinds;   // out where the picture is made from a past: kTileHidden of the tiles that are not needed
+    Uints tile_losses;  // out, of the eye's tiles beyond the clear angle: what half the size is expected to lose there, in kErrorSteps
     ListStates chosen_tiles;  // counts workgroups; out
     uvec2 size_px;            // of the eye's picture
     EyeGaze gaze;
@@ -276,7 +280,13 @@ struct FillPeripheryPass {
     Floats depths;     // out where wanted
     Uints tile_mask;   // those that are there
     Uints shown_mask;  // as in PeripheryPass
-    vec3 background;   // of tiles that are hidden
+    // Where later pictures are made from this one: what they must know of it.
+    Uints source_words;
+    Uints words;  // out
+    PastTiles source_tiles;
+    PastTiles tiles;  // out
+    Uints tile_losses;
+    vec3 background;  // of tiles that are hidden
     uvec2 size_px;
 };
 

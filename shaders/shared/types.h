@@ -136,7 +136,8 @@ struct PastView {
     uvec2 size_tiles;
     uvec2 past_size_px;
     uvec2 past_size_tiles;
-    float nearest;  // inverse depth of the near plane
+    float nearest;    // inverse depth of the near plane
+    vec3 background;  // of what is hidden
 };
 BINOSPLAT_ARRAY_OF(PastView, PastViews);
 

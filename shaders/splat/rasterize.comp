@@ -194,7 +194,8 @@ void leaveTile(uint tile, uint cost, float error) {
     }
     if (gl_LocalInvocationIndex != 0) { return; }
     const float amplitude = kMasked ? sqrt(float(squares) / (kErrorSteps * 3 * kTileSize * kTileSize)) : 0;
-    const float growth = kMasked ? amplitude / float(max(pass.past_tiles.at[tile].age, 1)) : 0;
+    const uint age = kMasked ? pass.past_tiles.at[tile].age : 0;  // 0: nothing was there
+    const float growth = age > 0 ? amplitude / float(age) : 0;
     pass.past_tiles.at[tile] = PastTile(cost, 0, growth, vec4(0), uvec4(0));
 }
 

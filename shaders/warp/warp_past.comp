@@ -10,7 +10,8 @@
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kDepth = false;
 layout(constant_id = 2) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 3) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
+layout(constant_id = 3) const bool kSomeTiles = false;    // those of a list alone
+layout(constant_id = 4) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -22,9 +23,8 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 #include "lib/past.glsl"
 #include "lib/lagrange.glsl"
 
-const uint kRegionBlocks = kPastGroup * kPastRows / kTileSize;  // across
-const uvec2 kRegion = uvec2(kPastColumns * kRegionBlocks, kTileSize);
-const uvec2 kRegionTiles = kRegion / kTileSize, kRegionCells = kRegion / kCellSize;
+const uint kTileBlocks = kTileSize / kPastColumns, kRegionBlocks = kPastTiles * kTileBlocks;  // across
+const uvec2 kRegionCells = uvec2(kPastTiles, 1) * (kTileSize / kCellSize);
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
@@ -56,7 +56,7 @@ void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
         const bool hidden = isHidden(view, first);
         const uint at = (first.y * view.size_px.x + first.x) / 2;
         [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {
-            const vec4 left = hidden ? vec4(pass.background, 0) : colours[c], right = hidden ? vec4(pass.background, 0) : colours[c + 1];
+            const vec4 left = hidden ? vec4(view.background, 0) : colours[c], right = hidden ? vec4(view.background, 0) : colours[c + 1];
             putSixteen(Sixteens(uvec2(pass.target)), at + c / 2, uvec4(packHalves(left), packHalves(right)));
         }
         return;
@@ -217,13 +217,22 @@ uint pixelGroups(uint blocks) {
     return min(pixels / kGroupSize + uint(pixels % kGroupSize != 0), kMaxGroupsX);
 }
 
+// The tiles that a workgroup makes: those beside each other, or as many of the list. Outside the picture where there are no more.
+uvec2 tileOfRegion(PastView view, uint i) {
+    if (!kSomeTiles) { return uvec2(gl_WorkGroupID.x * kPastTiles + i, gl_WorkGroupID.y); }
+    const uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastTiles + i;
+    if (place >= pass.listed_tiles.at[0].count) { return view.size_tiles; }
+    const uint tile = pass.tile_list.at[place];
+    return uvec2(tile % view.size_tiles.x, tile / view.size_tiles.x);
+}
+
 void main() {
     const PastView view = pass.view.at[0];
     const ivec2 last = ivec2(view.past_size_px) - 1;
     const uint thread = gl_LocalInvocationIndex;
-    const uvec2 region = gl_WorkGroupID.xy * kRegion;
     const uvec2 block = uvec2(thread % kRegionBlocks, thread / kRegionBlocks);
-    const uvec2 first = region + block * kBlock;
+    const uvec2 own_tile = tileOfRegion(view, block.x / kTileBlocks);
+    const uvec2 first = own_tile * kTileSize + uvec2(block.x % kTileBlocks, block.y) * kBlock;
     const uvec2 in_cells = block * kBlock / kCellSize;
     const uint cell = in_cells.y * kRegionCells.x + in_cells.x;
 
@@ -276,8 +285,8 @@ void main() {
     }
     barrier();
     if (is_listed) { pass.blocks.at[listed_first + in_list] = PastBlock(first.y / kBlock.y << 16 | first.x / kBlock.x, depths); }
-    if (thread >= kRegionTiles.x * kRegionTiles.y) { return; }
-    const uvec2 its_tile = uvec2(thread % kRegionTiles.x, thread / kRegionTiles.x), tile = gl_WorkGroupID.xy * kRegionTiles + its_tile;
+    if (thread >= kPastTiles) { return; }
+    const uvec2 tile = tileOfRegion(view, thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
     // What rendering the tile takes and how fast it goes wrong are those of where its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
@@ -286,12 +295,11 @@ void main() {
     const PastTile before = pass.source_tiles.at[from.y * view.past_size_tiles.x + from.x];
     PastTile now = PastTile(before.cost, before.age + 1, before.growth, vec4(0), uvec4(0));
     [[unroll]] for (uint q = 0; q < 4; ++q) {
-        const uvec2 at = its_tile * (kTileSize / kCellSize) + uvec2(q & 1, q >> 1);
-        const uint its_cell = at.y * kRegionCells.x + at.x;
+        const uint its_cell = (q >> 1) * kRegionCells.x + thread * (kTileSize / kCellSize) + (q & 1);
         now.errors[q] = uintBitsToFloat(cell_carried[its_cell]);
         now.grown[q] = cell_grown[its_cell];
     }
     const uint at = tile.y * view.size_tiles.x + tile.x;
     pass.tiles.at[at] = now;
-    if (!kHiddenTiles || pass.tile_kinds.at[at] != kTileHidden) { pass.tile_kinds.at[at] = 0; }  // nobody has written it yet where none is hidden
+    if (!kSomeTiles) { pass.tile_kinds.at[at] = isHidden(view, tile * kTileSize) ? kTileHidden : 0; }
 }

@@ -44,7 +44,7 @@ void makeKernelsOf(StereoFrame& small, const FrameSettings& settings, std::span<
     FrameSettings other = settings;
     if (settings.mode == Mode::kPaper) {
         other.stereo.center_rois = !settings.stereo.center_rois;
-    } else if (settings.mode == Mode::kPredicted || settings.mode == Mode::kTemporal) {
+    } else if (settings.mode == Mode::kPredicted || hasPast(settings.mode)) {
         other.gazes = {Gaze{}, Gaze{}};
     } else if (settings.mode == Mode::kShared) {
         other.order = settings.order == Order::kDepth ? Order::kDistance : Order::kDepth;
