@@ -144,7 +144,7 @@ void checkChoice(Gpu& gpu, std::vector<Tiles> eyes, float budget, const std::vec
     CAPTURE(eyes.size());
     const Choice got = chooseOnDevice(gpu, eyes, budget, seen, gaze);
     std::vector<std::vector<TileKind>> kinds;
-    std::vector<std::vector<std::optional<std::uint32_t>>> prices, whole_prices;
+    std::vector<std::vector<std::optional<std::uint32_t>>> prices;
     std::vector<std::vector<std::uint64_t>> costs;
     std::uint64_t picture_cost = 0;
     for (std::size_t e = 0; e < eyes.size(); ++e) {
@@ -173,16 +173,13 @@ void checkChoice(Gpu& gpu, std::vector<Tiles> eyes, float budget, const std::vec
             if (isOnBorder(errors[t], static_cast<double>(std::max<std::uint64_t>(costs[e][t], 1)))) { return; }
         }
         CHECK(other == 0);
-        whole_prices.push_back(reference::price(kinds[e], errors, costs[e]));
-        prices.push_back(whole_prices[e]);
-        if (gaze) {
-            prices[e] =
-                reference::price(kinds[e], errors, costs[e], reference::findSeenShares(seen[e], {gaze->direction, gaze->clear_rad}));
-        }
+        prices.push_back(
+            gaze ? reference::price(kinds[e], errors, costs[e], reference::findSeenShares(seen[e], {gaze->direction, gaze->clear_rad}))
+                 : reference::price(kinds[e], errors, costs[e]));
     }
     CHECK(got.counters[0].picture_cost == picture_cost);
     std::vector<reference::PricedTiles> priced;
-    for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({kinds[e], prices[e], costs[e], whole_prices[e]}); }
+    for (std::size_t e = 0; e < eyes.size(); ++e) { priced.push_back({kinds[e], prices[e], costs[e]}); }
     reference::selectTogether(priced, static_cast<std::uint64_t>(budget * static_cast<float>(picture_cost)));
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const std::vector<gpu::uint> expected = test::kindsOf(kinds[e]);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 TEST_SUITE_BEGIN("past_frames");
@@ -135,6 +136,39 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget, in both eyes
         CHECK(result.counters.commands <= 42);
         if (frame % 6 == 0) { CHECK(walk.psnr() > 36.0); }
     }
+}
+
+TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the budget is spent there") {
+    // Of the left third of both pictures.
+    const auto errorOf = [](Walk& walk) {
+        const auto shown = walk.shown(), full = walk.full();
+        double error = 0.0;
+        for (std::size_t e = 0; e < 2; ++e) {
+            const glm::uvec2 size_px = shown[e].size_px;
+            for (std::size_t i = 0; i < shown[e].pixelCount(); ++i) {
+                for (std::size_t c = 0; 3 * (i % size_px.x) < size_px.x && c < 3; ++c) {
+                    error += std::pow(static_cast<double>(shown[e].values[4 * i + c]) - static_cast<double>(full[e].values[4 * i + c]), 2);
+                }
+            }
+        }
+        return error;
+    };
+    FrameSettings looks = makeSettings(Mode::kTemporal);
+    looks.gazes = {Gaze{{-0.8, 0.0, 1.0}, 0.0}, Gaze{{-0.8, 0.0, 1.0}, 0.0}};
+    Walk seen(context(), looks), alike(context(), makeSettings(Mode::kTemporal));
+    double seen_error = 0.0, alike_error = 0.0;
+    for (int frame = 0; frame <= 18; ++frame) {
+        const FrameResult result = seen.go(frame);
+        alike.go(frame);
+        if (frame < 6) { continue; }
+        CHECK(result.work_rendered > 0.15);
+        CHECK(result.work_rendered < 0.22);
+        if (frame % 6 != 0) { continue; }
+        seen_error += errorOf(seen);
+        alike_error += errorOf(alike);
+    }
+    MESSAGE("of the error there is left " << seen_error / alike_error);
+    CHECK(seen_error < 0.7 * alike_error);
 }
 
 TEST_CASE_FIXTURE(Gpu, "more budget is a better picture, and all of it is the full render") {

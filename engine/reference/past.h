@@ -70,7 +70,6 @@ struct PricedTiles {
     std::vector<TileKind>& kinds;
     std::span<const std::optional<std::uint32_t>> prices;
     std::span<const std::uint64_t> costs;
-    std::span<const std::optional<std::uint32_t>> whole_prices = {};  // as of select()
 };
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost);
 

@@ -46,11 +46,10 @@ void select(std::vector<TileKind>& kinds, std::span<const std::optional<std::uin
 }
 
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost) {
-    const auto wholeOf = [](const PricedTiles& tiles) { return tiles.whole_prices.empty() ? tiles.prices : tiles.whole_prices; };
     std::map<std::uint32_t, std::uint64_t, std::greater<>> cost_of_price;
     for (const PricedTiles& picture : pictures) {
         for (std::size_t t = 0; t < picture.prices.size(); ++t) {
-            if (const auto& whole = wholeOf(picture)[t]) { cost_of_price[*whole] += picture.costs[t]; }
+            if (const auto& price = picture.prices[t]) { cost_of_price[*price] += picture.costs[t]; }
         }
     }
     const auto [last, left] = findEnd(cost_of_price, budget_cost);
@@ -60,7 +59,6 @@ void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_
             const auto& price = picture.prices[t];
             if (!price || (last && *price < *last)) { continue; }
             if (last && *price == *last) {
-                if (*wholeOf(picture)[t] != *last) { continue; }  // as in select()
                 if (spent >= left) { continue; }
                 spent += picture.costs[t];
             }

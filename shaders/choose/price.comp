@@ -54,14 +54,14 @@ uint priceOf(uint tile, uvec2 size_tiles) {
     if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];
-    const uint bin = binOf(worth / float(cost));
-    // The list has errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen.
-    atomicAdd(pass.price_bins.at[bin], cost);
-    if (!kFoveated) { return bin << 22 | cost; }
     const float seen = share * float(error);
-    const bool unnoticed = share < 1 && seen < kLeastSeenError * kErrorSteps;
-    const uint seen_bin = binOf(share * worth / float(cost));
-    return unnoticed ? 0 : seen_bin << 22 | (seen_bin < bin ? kSeenInPart : 0) | cost;
+    const bool unnoticed = kFoveated && share < 1 && seen < kLeastSeenError * kErrorSteps;
+    const uint bin = binOf(worth / float(cost)), seen_bin = binOf(share * worth / float(cost));
+    // The list has errors as if all were seen whole, so that what a pair must be worth does not fall with what is not seen. Not so where there
+    // is a past: what is not rendered for that grows from frame to frame, and would leave nothing to what is seen.
+    const uint listed_bin = kPast ? seen_bin : bin;
+    if (!kPast || !unnoticed) { atomicAdd(pass.price_bins.at[listed_bin], cost); }
+    return unnoticed ? 0 : seen_bin << 22 | (seen_bin < listed_bin ? kSeenInPart : 0) | cost;
 }
 
 // Greatest bins first: a thread holds kBinsPerThread of them.
