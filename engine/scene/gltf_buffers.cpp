@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/gltf_parser.h"
+#include "engine/scene/scene_files.h"
 
 #include <algorithm>
 #include <charconv>
@@ -65,6 +66,7 @@ GltfBuffer openGltfUri(const InputFile& file, const std::string& uri, const std:
                         name->find_first_of(std::string_view("\\:\0", 3)) == std::string::npos &&
                         std::find(path.begin(), path.end(), "..") == path.end();
     check(within, "{}: uri is '{}', expected a path within the folder of the file", place, uri.substr(0, 200));
+    if (file.others() != nullptr) { return GltfBuffer(file.others()->open(path.lexically_normal().generic_string())); }
     return GltfBuffer(std::make_unique<InputFile>((fs::path(file.name()).parent_path() / path).string()));
 }
 

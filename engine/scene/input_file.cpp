@@ -18,17 +18,23 @@ namespace {
 constexpr std::size_t kMostBufferBytes = std::size_t{1} << 20, kLeastBufferBytes = 4096;
 }
 
-InputFile::InputFile(const std::string& path) : name_(path) {
+InputFile::InputFile(const std::string& path) : name_(path) { open(path); }
+
+InputFile::InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others) : name_(std::move(name)), others_(&others) {
+    open(path);
+}
+
+void InputFile::open(const std::filesystem::path& path) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
-    check(status.type() != std::filesystem::file_type::not_found, "{}: no such file", path);
-    check(!error, "{}: cannot be read: {}", path, error.message());
-    check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", path);
+    check(status.type() != std::filesystem::file_type::not_found, "{}: no such file", name_);
+    check(!error, "{}: cannot be read: {}", name_, error.message());
+    check(status.type() != std::filesystem::file_type::directory, "{}: is a directory, expected a file", name_);
     check(status.type() == std::filesystem::file_type::regular, "{}: is not a regular file (a pipe or a device), expected a file on disk",
-          path);
+          name_);
     std::string reason;
     file_ = openRegularFile(path, reason);
-    check(file_ != nullptr, "{}: cannot be opened: {}", path, reason);
+    check(file_ != nullptr, "{}: cannot be opened: {}", name_, reason);
     opened_ = stamp();
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);
     if (sizeBytes() < kLongestLfsPointer) {
@@ -108,6 +114,21 @@ void InputFile::skip(std::uint64_t count) {
         const std::size_t got = readBlock(static_cast<std::size_t>(std::min<std::uint64_t>(count, buffer_.size()))).size();
         check(got > 0, "{}: ends at byte {}, {} more were expected", name_, position_bytes_, count);
         count -= got;
+    }
+}
+
+std::vector<std::byte> InputFile::readWhole(std::uint64_t most_bytes) {
+    check(sizeBytes() <= most_bytes, "{}: is {} bytes long, expected at most {}", name_, sizeBytes(), most_bytes);
+    std::vector<std::byte> bytes;
+    bytes.reserve(sizeBytes());
+    for (;;) {
+        const std::span<const std::byte> block = readBlock(std::size_t{1} << 16);
+        if (block.empty()) {
+            requireUnchanged();
+            return bytes;
+        }
+        check(bytes.size() + block.size() <= most_bytes, "{}: grows while it is read", name_);
+        bytes.insert(bytes.end(), block.begin(), block.end());
     }
 }
 

@@ -5,19 +5,27 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace binosplat {
+
+class SceneFiles;
 
 class InputFile {
 public:
     // Throws Error if `path` is missing, a directory, not a regular file, not readable or a Git LFS pointer.
     explicit InputFile(const std::string& path);
+    // A file that messages call `name`; its scene's other files are had from `others`, which outlive it.
+    InputFile(const std::filesystem::path& path, std::string name, SceneFiles& others);
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    // Null: they lie beside it, on the disk.
+    [[nodiscard]] SceneFiles* others() const { return others_; }
     [[nodiscard]] std::uint64_t sizeBytes() const { return opened_.size_bytes; }
     [[nodiscard]] std::uint64_t positionBytes() const { return position_bytes_; }
     [[nodiscard]] std::uint64_t bytesLeft() const { return sizeBytes() > position_bytes_ ? sizeBytes() - position_bytes_ : 0; }
@@ -43,11 +51,19 @@ public:
     // Moves on by `count` bytes, which must be there.
     void skip(std::uint64_t count);
 
+    // All of it, before anything was read. Throws Error for more than `most_bytes`.
+    [[nodiscard]] std::vector<std::byte> readWhole(std::uint64_t most_bytes);
+
+    // The open file, for a library; nothing can be read here afterwards.
+    [[nodiscard]] File release() { return std::move(file_); }
+
 private:
+    void open(const std::filesystem::path& path);
     [[nodiscard]] FileStamp stamp() const;
     void fillTo(std::size_t count);  // at least `count` unread bytes in the buffer, or all that is left
 
     std::string name_;
+    SceneFiles* others_ = nullptr;
     File file_;
     FileStamp opened_;
     std::uint64_t position_bytes_ = 0;

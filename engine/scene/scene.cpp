@@ -205,4 +205,13 @@ Scene loadScene(const std::string& source, std::uint64_t builtin_splats, LoadNot
     } catch (const std::bad_alloc&) { fail("{}: needs more memory than this machine gives", source); }
 }
 
+Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress, const LevelChoice& level) {
+    notes = {};
+    const std::string name = file->name();
+    try {
+        Source opened{name, std::move(file), level};
+        return loadFrom(opened, notes, progress);
+    } catch (const std::bad_alloc&) { fail("{}: needs more memory than this machine gives", name); }
+}
+
 }  // namespace binosplat

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +52,7 @@ struct LoadNotes {
     std::vector<std::uint64_t> level_splats;  // of each level of detail, the finest first; empty: a scene without levels
     std::uint32_t level = 0;                  // the one that was loaded
     std::uint64_t environment_splats = 0;     // loaded with every level
+    std::string stale;                        // why a scene from the web may not be the latest; empty: it is
     std::vector<std::string> lines;           // one sentence each, for the user
 };
 
@@ -69,6 +71,10 @@ using Progress = std::function<void(double)>;
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
+
+// The same of a file that is open, wherever its scene's other files are.
+class InputFile;
+Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress = {}, const LevelChoice& level = {});
 
 // Leaves out the bands of colours above `sh_degree`, and says so in `notes` if there are any.
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);

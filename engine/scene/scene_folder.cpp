@@ -1,6 +1,7 @@
 // Looking through a folder's names.
 #include "engine/scene/scene_folder.h"
 
+#include "engine/scene/address.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/streamed_sog.h"
 
@@ -48,6 +49,7 @@ std::optional<TrainingOutput> findTrainingOutput(const fs::path& folder) {
 }
 
 fs::path findCameraFile(const fs::path& scene) {
+    if (isAddress(scene.string())) { return {}; }
     std::error_code error;
     fs::path whole = fs::absolute(scene, error).lexically_normal();
     if (error) { return {}; }

@@ -1,9 +1,10 @@
-// A directory through InputFile, an archive through libzip, which also makes one.
+// A directory through InputFile or SceneFiles, an archive through libzip, which also makes one.
 #include "engine/scene/sog_files.h"
 
 #include "engine/error.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -14,6 +15,8 @@
 namespace binosplat {
 
 namespace {
+
+constexpr const char* kMetaName = "meta.json";
 
 void requirePlainName(const std::string& place, const std::string& name) {
     const bool plain = !name.empty() && name != "." && name != ".." && name.size() < 256 &&
@@ -27,19 +30,7 @@ public:
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
         requirePlainName(place("meta.json"), name);
-        InputFile file(place(name));
-        check(file.sizeBytes() <= max_bytes, "{}: is {} bytes long, expected at most {}", file.name(), file.sizeBytes(), max_bytes);
-        std::vector<std::byte> bytes;
-        bytes.reserve(file.sizeBytes());
-        for (;;) {
-            const std::span<const std::byte> block = file.readBlock(std::size_t{1} << 16);
-            if (block.empty()) {
-                file.requireUnchanged();
-                return bytes;
-            }
-            check(bytes.size() + block.size() <= max_bytes, "{}: grows while it is read", file.name());
-            bytes.insert(bytes.end(), block.begin(), block.end());
-        }
+        return InputFile(place(name)).readWhole(max_bytes);
     }
     std::uint64_t sizeBytes(const std::string& name) const override {
         requirePlainName(place("meta.json"), name);
@@ -49,6 +40,33 @@ public:
 
 private:
     std::string folder_;
+};
+
+class ElsewhereFiles final : public SogFiles {
+public:
+    ElsewhereFiles(SceneFiles& files, std::string meta) : files_(files), meta_(std::move(meta)) {}
+
+    std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
+        return files_.open(whole(name), max_bytes)->readWhole(max_bytes);
+    }
+    std::uint64_t sizeBytes(const std::string& name) const override { return files_.open(whole(name))->sizeBytes(); }
+    void expect(const std::vector<std::string>& names, std::uint64_t max_bytes) override {
+        std::vector<std::string> all;
+        for (const std::string& name : names) { all.push_back(whole(name)); }
+        files_.expect(all, max_bytes);
+    }
+    std::string place(const std::string& name) const override { return files_.place(name == kMetaName ? meta_ : folder() + name); }
+
+private:
+    // meta.json may have another name there.
+    std::string whole(const std::string& name) const {
+        requirePlainName(place(kMetaName), name);
+        return name == kMetaName ? meta_ : folder() + name;
+    }
+    std::string folder() const { return meta_.substr(0, meta_.rfind('/') + 1); }  // with its slash
+
+    SceneFiles& files_;
+    std::string meta_;
 };
 
 #ifdef BINOSPLAT_SOG
@@ -66,7 +84,11 @@ constexpr zip_uint16_t kFirstDosDate = 1 << 5 | 1;  // 1 January 1980
 
 class BundleFiles final : public SogFiles {
 public:
-    BundleFiles(std::string path, std::uint64_t size_bytes) : path_(std::move(path)), size_bytes_(size_bytes) { findPrefix(); }
+    using Open = std::function<std::unique_ptr<InputFile>()>;
+    BundleFiles(std::string path, std::uint64_t size_bytes, Open open)
+        : path_(std::move(path)), size_bytes_(size_bytes), open_(std::move(open)) {
+        findPrefix();
+    }
 
     std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) override {
         const zip_stat_t entry = find(name);
@@ -95,11 +117,14 @@ public:
 private:
     zip_t* archive() const {
         if (archive_ != nullptr) { return archive_.get(); }
-        int code = 0;
-        archive_.reset(zip_open(path_.c_str(), ZIP_RDONLY, &code));
+        zip_error_t error;
+        zip_error_init(&error);
+        File file = open_()->release();
+        zip_source_t* source = zip_source_filep_create(file.get(), 0, -1, &error);
+        if (source != nullptr) { (void)file.release(); }  // closed with the source
+        archive_.reset(source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr);
         if (archive_ == nullptr) {
-            zip_error_t error;
-            zip_error_init_with_code(&error, code);
+            if (source != nullptr) { zip_source_free(source); }
             const std::string reason = zip_error_strerror(&error);
             zip_error_fini(&error);
             fail("{}: not a whole zip archive ({}), expected a .sog bundle", path_, reason);
@@ -136,6 +161,7 @@ private:
 
     std::string path_, prefix_;
     std::uint64_t size_bytes_;
+    Open open_;
     mutable std::unique_ptr<zip_t, ArchiveCloser> archive_;
 };
 
@@ -145,9 +171,21 @@ private:
 
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder) { return std::make_unique<FolderFiles>(folder); }
 
+std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& meta) {
+    return std::make_unique<ElsewhereFiles>(files, meta);
+}
+
 #ifdef BINOSPLAT_SOG
 
-std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { return std::make_unique<BundleFiles>(file.name(), file.sizeBytes()); }
+std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) {
+    if (file.others() != nullptr) { return openSogBundle(*file.others(), ""); }
+    return std::make_unique<BundleFiles>(file.name(), file.sizeBytes(), [path = file.name()] { return std::make_unique<InputFile>(path); });
+}
+
+std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {
+    const std::uint64_t size_bytes = files.open(bundle)->sizeBytes();
+    return std::make_unique<BundleFiles>(files.place(bundle), size_bytes, [&files, bundle] { return files.open(bundle); });
+}
 
 std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const std::string& place) {
     const auto require = [&](bool done) { check(done, "{}: libzip cannot make the archive", place); };
@@ -184,6 +222,10 @@ std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>& files, const
 #else
 
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file) { fail("{}: cannot be read, this build is without libzip", file.name()); }
+
+std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle) {
+    fail("{}: cannot be read, this build is without libzip", files.place(bundle));
+}
 
 std::vector<std::byte> packSogBundle(const std::vector<NamedBytes>&, const std::string& place) {
     fail("{}: cannot be written, this build is without libzip", place);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "engine/scene/input_file.h"
+#include "engine/scene/scene_files.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +19,8 @@ public:
     [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
     // Of a file that could be read. Throws Error as `read` does.
     [[nodiscard]] virtual std::uint64_t sizeBytes(const std::string& name) const = 0;
+    // They will be read soon.
+    virtual void expect(const std::vector<std::string>&, std::uint64_t) {}
     // Gives back what is held open between reads: a scene may have thousands of chunks.
     virtual void close() {}
     // How messages call a file: path and name.
@@ -24,9 +28,12 @@ public:
 };
 
 std::unique_ptr<SogFiles> openSogFolder(const std::string& folder);
+// Those beside `meta`, a meta.json among `files`, which outlive it.
+std::unique_ptr<SogFiles> openSogFolder(SceneFiles& files, const std::string& meta);
 
 // Only in a build with SOG. Throws Error if `file` is no zip archive or holds no meta.json.
 std::unique_ptr<SogFiles> openSogBundle(const InputFile& file);
+std::unique_ptr<SogFiles> openSogBundle(SceneFiles& files, const std::string& bundle);
 
 struct NamedBytes {
     std::string name;

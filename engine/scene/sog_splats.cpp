@@ -145,12 +145,17 @@ SogSplats::SogSplats(std::unique_ptr<SogFiles> files) : files_(std::move(files))
     }
 }
 
+std::vector<std::string> SogSplats::pictures() const {
+    std::vector<std::string> names{meta_.means_files[0], meta_.means_files[1], meta_.scales_file, meta_.quats_file, meta_.sh0_file};
+    if (meta_.palette) { names.insert(names.end(), {meta_.palette->centroids_file, meta_.palette->labels_file}); }
+    return names;
+}
+
+void SogSplats::expect() const { files_->expect(pictures(), kMaxPictureBytes); }
+
 void SogSplats::requirePlausibleCount() const {
     std::uint64_t total_bytes = 0;
-    for (const std::string& name : {meta_.means_files[0], meta_.means_files[1], meta_.scales_file, meta_.quats_file, meta_.sh0_file}) {
-        total_bytes += files_->sizeBytes(name);
-    }
-    if (meta_.palette) { total_bytes += files_->sizeBytes(meta_.palette->centroids_file) + files_->sizeBytes(meta_.palette->labels_file); }
+    for (const std::string& name : pictures()) { total_bytes += files_->sizeBytes(name); }
     check(count() <= mostPixels(total_bytes), "{}: count: is {}, expected fewer than 256 for each of the {} bytes of its pictures",
           files_->place("meta.json"), count(), total_bytes);
     files_->close();

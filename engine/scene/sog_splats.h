@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace binosplat {
 
@@ -28,6 +29,8 @@ public:
     [[nodiscard]] bool antialiased() const { return meta_.antialiased; }
     [[nodiscard]] bool discs() const { return meta_.discs; }
     [[nodiscard]] int shDegree() const { return meta_.palette ? meta_.palette->sh_degree : 0; }
+    // Its pictures will be asked for soon.
+    void expect() const;
     // Throws Error where a picture is missing or all are too small for so many splats: room for them can be reserved.
     void requirePlausibleCount() const;
 
@@ -36,6 +39,8 @@ public:
     void append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder, const Progress& progress) const;
 
 private:
+    [[nodiscard]] std::vector<std::string> pictures() const;
+
     std::unique_ptr<SogFiles> files_;
     SogMeta meta_;
 };

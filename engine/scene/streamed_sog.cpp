@@ -39,12 +39,13 @@ struct Streamed {
     fs::path folder;
     std::string place;
     LodMeta meta;
+    SceneFiles* elsewhere = nullptr;  // not in `folder`
 };
 
 Streamed readLodMeta(const fs::path& folder, const std::string& name) {
     const std::unique_ptr<SogFiles> files = openSogFolder(folder.string());
     const std::string place = files->place(name);
-    return {folder, place, parseLodMeta(files->read(name, kMaxLodMetaBytes), place)};
+    return {folder, place, parseLodMeta(files->read(name, kMaxLodMetaBytes), place), nullptr};
 }
 
 // Opens chunks of one scene: each lies within its folder, whatever links lead to, and is opened once.
@@ -53,6 +54,7 @@ public:
     explicit ChunkOpener(const Streamed& scene) : scene_(scene) {}
 
     SogSplats open(const std::string& path, const std::string& key) {
+        if (scene_.elsewhere != nullptr) { return openElsewhere(path); }
         const std::string place = scene_.place + ": " + key;
         const fs::path file = scene_.folder / path;
         std::error_code error;
@@ -70,6 +72,12 @@ public:
     }
 
 private:
+    // Its pictures are asked for when the level is chosen.
+    SogSplats openElsewhere(const std::string& path) const {
+        SceneFiles& files = *scene_.elsewhere;
+        return SogSplats(fs::path(path).extension() == ".sog" ? openSogBundle(files, path) : openSogFolder(files, path));
+    }
+
     const Streamed& scene_;
     std::set<fs::path> opened_;
 };
@@ -82,6 +90,12 @@ Level openLevel(const Streamed& scene, std::size_t index) {
         for (const SplatRange range : ranges) { level.splats += range.count; }
         level.chunks.push_back({std::move(splats), std::move(ranges)});
     };
+    if (scene.elsewhere != nullptr) {
+        std::vector<std::string> names;
+        for (const auto& [file, ranges] : scene.meta.levels[index].chunks) { names.push_back(scene.meta.files[file]); }
+        if (!scene.meta.environment.empty()) { names.push_back(scene.meta.environment); }
+        scene.elsewhere->expect(names);
+    }
     ChunkOpener opener(scene);
     for (const auto& [file, ranges] : scene.meta.levels[index].chunks) {
         const std::string& path = scene.meta.files[file];
@@ -107,6 +121,10 @@ Level chooseLevel(const Streamed& scene, const LevelChoice& choice) {
         return openLevel(scene, *choice.level);
     }
     for (std::size_t index = 0;; ++index) {
+        // Not even without harmonics: nothing of it need be fetched.
+        const bool is_hopeless =
+            scene.elsewhere != nullptr && index + 1 < levels && choice.fits && !choice.fits(scene.meta.levels[index].splats, 0);
+        if (is_hopeless) { continue; }
         Level level = openLevel(scene, index);
         const bool fits = !choice.fits || choice.fits(level.splats, level.sh_degree);
         level.reason = !fits ? ", as none fits the memory limit" : index > 0 ? ", the finest that fits the memory limit" : "";
@@ -130,6 +148,10 @@ Scene readStreamedSog(const std::string& source, const Streamed& scene, const Le
                       const Progress& progress) {
     if (progress) { progress(0.0); }
     Level level = chooseLevel(scene, choice);
+    if (scene.elsewhere != nullptr) {
+        for (const Chunk& chunk : level.chunks) { chunk.splats.expect(); }
+        for (const Chunk& chunk : level.chunks) { chunk.splats.requirePlausibleCount(); }
+    }
     // One builder for all: room for every splat once, and of the chunks no more than one chunk's pictures at a time.
     SceneBuilder builder(source, level.splats, level.sh_degree, true);
     std::uint64_t done = 0;
@@ -174,6 +196,10 @@ Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice
 
 Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {
     requireSogDecoder(file.name());
+    if (file.others() != nullptr) {
+        const Streamed scene{{}, file.name(), parseLodMeta(file.readWhole(kMaxLodMetaBytes), file.name()), file.others()};
+        return readStreamedSog(file.name(), scene, choice, notes, progress);
+    }
     const fs::path path(file.name());
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     return readStreamedSog(file.name(), readLodMeta(folder, path.filename().string()), choice, notes, progress);
