@@ -18,6 +18,7 @@ ROOMS = {
     "engine/setup": "engine xr/simulated/files",
     "engine/picture": "engine shaders/shared",
     "engine/scene": "engine engine/picture",
+    "engine/web": "engine engine/scene",
     "engine/reference": "engine engine/scene",
     "engine/gpu": "engine engine/scene shaders shaders/shared",
     "engine/passes": "engine engine/gpu shaders/shared",

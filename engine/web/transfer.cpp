@@ -1,0 +1,256 @@
+// What is asked of curl, and what its verdicts mean.
+#include "engine/web/transfer.h"
+
+#include "engine/scene/address.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <new>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr long kMostRedirects = 5;
+constexpr long kBufferBytes = 1 << 18;
+constexpr std::uint64_t kLongestErrorPage = 1 << 16;
+// Less than this while a server's patience lasts is nothing.
+constexpr std::uint64_t kLeastBytes = 1024;
+constexpr std::size_t kLongestVersion = 256;
+
+bool isPlain(const std::string& text) {
+    return text.size() <= kLongestVersion && std::ranges::all_of(text, [](unsigned char letter) { return std::isprint(letter) != 0; });
+}
+
+// Another attempt may find the server in a better state.
+bool isBusy(long status) {
+    constexpr std::array kBusy{408l, 429l, 500l, 502l, 503l, 504l};
+    return std::ranges::find(kBusy, status) != kBusy.end();
+}
+
+bool isCut(CURLcode code) {
+    constexpr std::array kCut{CURLE_PARTIAL_FILE, CURLE_RECV_ERROR,   CURLE_SEND_ERROR,         CURLE_GOT_NOTHING,
+                              CURLE_HTTP2,        CURLE_HTTP2_STREAM, CURLE_OPERATION_TIMEDOUT, CURLE_SSL_CONNECT_ERROR};
+    return std::ranges::find(kCut, code) != kCut.end();
+}
+
+bool isNoServer(CURLcode code) {
+    return code == CURLE_COULDNT_RESOLVE_HOST || code == CURLE_COULDNT_RESOLVE_PROXY || code == CURLE_COULDNT_CONNECT;
+}
+
+std::string explainStatus(long status) {
+    if (status == 404 || status == 410) {
+        return fmt::format("is not there (the server answers {}), expected the address of a scene file", status);
+    }
+    if (status == 401 || status == 403) {
+        return fmt::format("may not be read (the server answers {}), expected an address that anybody may read", status);
+    }
+    return fmt::format("cannot be had (the server answers {}), expected the address of a scene file", status);
+}
+
+}  // namespace
+
+Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTally& tally, FetchRequest request)
+    : cache_(cache), settings_(settings), tally_(tally), request_(std::move(request)), easy_(curl_easy_init()) {
+    if (easy_ == nullptr) { throw std::bad_alloc(); }
+    const auto addHeader = [&](const char* name, const std::string& value) {
+        if (value.empty() || !isPlain(value)) { return; }
+        curl_slist* longer = curl_slist_append(headers_.get(), fmt::format("{}: {}", name, value).c_str());
+        if (longer == nullptr) { throw std::bad_alloc(); }
+        (void)headers_.release();
+        headers_.reset(longer);
+    };
+    addHeader("If-None-Match", request_.version.etag);
+    addHeader("If-Modified-Since", request_.version.last_modified);
+    const auto set = [&](CURLoption option, auto value) { curl_easy_setopt(easy_.get(), option, value); };
+    // A file of this machine is never followed to, nor is a secure address to an insecure one.
+    const bool is_secure = request_.address.substr(0, 5).find_first_of("sS") != std::string::npos;
+    set(CURLOPT_URL, request_.address.c_str());
+    set(CURLOPT_PROTOCOLS_STR, "http,https");
+    set(CURLOPT_REDIR_PROTOCOLS_STR, is_secure ? "https" : "http,https");
+    set(CURLOPT_FOLLOWLOCATION, 1l);
+    set(CURLOPT_MAXREDIRS, kMostRedirects);
+    set(CURLOPT_DISALLOW_USERNAME_IN_URL, 1l);
+    set(CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
+    set(CURLOPT_PIPEWAIT, 1l);
+    set(CURLOPT_NOSIGNAL, 1l);
+    set(CURLOPT_BUFFERSIZE, kBufferBytes);
+    set(CURLOPT_USERAGENT, "binosplat");
+    set(CURLOPT_HTTPHEADER, headers_.get());
+    if (const std::string trusted = environment("SSL_CERT_FILE"); !trusted.empty()) { set(CURLOPT_CAINFO, trusted.c_str()); }
+    set(CURLOPT_ERRORBUFFER, error_.data());
+    set(CURLOPT_WRITEFUNCTION, &Transfer::writeBody);
+    set(CURLOPT_WRITEDATA, static_cast<void*>(this));
+    set(CURLOPT_PRIVATE, static_cast<void*>(this));
+    ++tally_.asked;
+}
+
+void Transfer::start() {
+    ++attempts_;
+    error_[0] = '\0';
+    watched_since_ = Clock::now();
+    watched_bytes_ = got_bytes_;
+}
+
+bool Transfer::isStalled() {
+    const Clock::time_point now = Clock::now();
+    if (now - watched_since_ < settings_.patience) { return false; }
+    if (got_bytes_ - watched_bytes_ < kLeastBytes) { return true; }
+    watched_since_ = now;
+    watched_bytes_ = got_bytes_;
+    return false;
+}
+
+std::size_t Transfer::writeBody(char* data, std::size_t size, std::size_t count, void* transfer) {
+    return static_cast<Transfer*>(transfer)->take(data, size * count);
+}
+
+// Other than `bytes` stops the transfer. Nothing is thrown through curl.
+std::size_t Transfer::take(const char* data, std::size_t bytes) {
+    got_bytes_ += bytes;
+    if (status() != 200) { return got_bytes_ <= kLongestErrorPage ? bytes : 0; }
+    try {
+        if (file_ == nullptr && !beginBody()) { return 0; }
+    } catch (const std::exception& error) {
+        refused_ = fmt::format("cannot be kept ({})", error.what());
+        return 0;
+    }
+    tally_.got_bytes += bytes;
+    if (file_->sizeBytes() + bytes > request_.most_bytes) {
+        refused_ = fmt::format("is longer than {} bytes, which is the most that is taken", request_.most_bytes);
+        return 0;
+    }
+    if (!file_->write(data, bytes)) {
+        refused_ = "cannot be kept: there is no room on the disk of the cache; make some";
+        return 0;
+    }
+    return bytes;
+}
+
+bool Transfer::beginBody() {
+    curl_off_t said = -1;
+    curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &said);
+    file_ = cache_.begin(request_.address);
+    if (file_ == nullptr) {
+        refused_ = "cannot be kept: no file can be made in the folder of the cache";
+        return false;
+    }
+    if (said < 0) { return true; }
+    const auto expected = static_cast<std::uint64_t>(said);
+    if (expected > request_.most_bytes) {
+        refused_ = fmt::format("is {} bytes long, expected at most {}", expected, request_.most_bytes);
+    } else if (expected > file_->roomBytes()) {
+        refused_ = fmt::format("is {} bytes long, but the disk of the cache has room for {}; make some", expected, file_->roomBytes());
+    }
+    if (!refused_.empty()) { return false; }
+    is_sized_ = true;
+    expected_bytes_ = expected;
+    tally_.expected_bytes += expected;
+    ++tally_.sized;
+    return true;
+}
+
+void Transfer::forgetBody() {
+    if (file_ != nullptr) { tally_.got_bytes -= got_bytes_; }
+    if (std::exchange(is_sized_, false)) {
+        tally_.expected_bytes -= expected_bytes_;
+        --tally_.sized;
+    }
+    file_.reset();
+    got_bytes_ = expected_bytes_ = 0;
+}
+
+long Transfer::status() const {
+    long status = 0;
+    curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
+    return status;
+}
+
+std::string Transfer::header(const char* name) const {
+    curl_header* found = nullptr;
+    return curl_easy_header(easy_.get(), name, 0, CURLH_HEADER, -1, &found) == CURLHE_OK ? found->value : "";
+}
+
+bool Transfer::saysLength() const {
+    long http = 0;
+    curl_off_t length = -1;
+    curl_easy_getinfo(easy_.get(), CURLINFO_HTTP_VERSION, &http);
+    curl_easy_getinfo(easy_.get(), CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
+    return length >= 0 || http >= CURL_HTTP_VERSION_2_0 || !header("Transfer-Encoding").empty();
+}
+
+// Nothing if the server does not say where the file ends: one that was cut off would be taken for whole for ever.
+FileVersion Transfer::versionSent() const {
+    if (!saysLength()) { return {}; }
+    FileVersion version{header("ETag"), header("Last-Modified")};
+    if (!isPlain(version.etag)) { version.etag.clear(); }
+    if (!isPlain(version.last_modified)) { version.last_modified.clear(); }
+    return version;
+}
+
+bool Transfer::finish(CURLcode code, bool is_stalled) {
+    std::optional<Fetched> verdict = judge(code, is_stalled);
+    if (!verdict) {
+        forgetBody();
+        return false;
+    }
+    if (!is_sized_) { ++tally_.sized; }
+    if (verdict->kind != Fetched::Kind::kNew) { file_.reset(); }
+    promise_.set_value(std::move(*verdict));
+    return true;
+}
+
+std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
+    using Kind = Fetched::Kind;
+    const long answer = status();
+    // What curl takes for a whole answer ended before it began.
+    if (code == CURLE_OK && answer == 200 && file_ == nullptr && !saysLength()) { code = CURLE_GOT_NOTHING; }
+    if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
+    if (!is_stalled && code == CURLE_OK && answer == 200) {
+        if (file_ == nullptr && !beginBody()) { return Fetched{Kind::kRefused, refused_}; }  // of an empty file
+        return Fetched{Kind::kNew, "", std::move(file_), versionSent()};
+    }
+    if (!is_stalled && code == CURLE_OK && answer == 304 && headers_ != nullptr) { return Fetched{Kind::kUnchanged, ""}; }
+
+    const bool is_answer = !is_stalled && (code == CURLE_OK || code == CURLE_WRITE_ERROR);
+    const std::string reason = describe(code, is_stalled);
+    if (is_answer ? isBusy(answer) : is_stalled || isCut(code)) {
+        curl_off_t asked_s = 0;
+        if (is_answer) { curl_easy_getinfo(easy_.get(), CURLINFO_RETRY_AFTER, &asked_s); }
+        const bool is_too_long = asked_s > std::chrono::duration_cast<std::chrono::seconds>(settings_.most_pause).count();
+        if (is_too_long) { return Fetched{Kind::kUnreachable, fmt::format("the server asks to wait {} s; try again then", asked_s)}; }
+        const auto own = settings_.first_pause * (1 << std::min(attempts_ - 1, 10));
+        const auto pause = std::max<std::chrono::milliseconds>(own, std::chrono::seconds(asked_s));
+        due_ = Clock::now() + std::min(pause, settings_.most_pause);
+        if (attempts_ < settings_.attempts) { return std::nullopt; }
+        return Fetched{Kind::kUnreachable, fmt::format("{}, after {} attempts; try again later", reason, attempts_)};
+    }
+    return Fetched{!is_answer && isNoServer(code) ? Kind::kUnreachable : Kind::kRefused, reason};
+}
+
+std::string Transfer::describe(CURLcode code, bool is_stalled) const {
+    const char* const detail = error_[0] != '\0' ? error_.data() : curl_easy_strerror(code);
+    if (is_stalled) { return fmt::format("the server has fallen silent after {} bytes", got_bytes_); }
+    if (code == CURLE_OK || code == CURLE_WRITE_ERROR) {
+        return isBusy(status()) ? fmt::format("the server cannot serve it (it answers {})", status()) : explainStatus(status());
+    }
+    if (isNoServer(code)) { return fmt::format("cannot be reached ({}); look at the network and at the address", detail); }
+    if (code == CURLE_PARTIAL_FILE || (isCut(code) && got_bytes_ > 0)) {
+        return fmt::format("was cut off after {}{} bytes", got_bytes_, expected_bytes_ > 0 ? fmt::format(" of {}", expected_bytes_) : "");
+    }
+    if (isCut(code)) { return fmt::format("the server hangs up ({})", detail); }
+    if (code == CURLE_UNSUPPORTED_PROTOCOL && status() / 100 == 3) {
+        return "redirects to an address that may not be followed, expected one of http or https, and of https after https";
+    }
+    if (code == CURLE_TOO_MANY_REDIRECTS) { return fmt::format("redirects more than {} times, expected a file", kMostRedirects); }
+    if (code == CURLE_PEER_FAILED_VERIFICATION) {
+        return fmt::format("the server's certificate is not valid ({}), so that it may be another server; expected a valid one", detail);
+    }
+    return fmt::format("cannot be had ({}), expected the address of a scene file", detail);
+}
+
+}  // namespace binosplat

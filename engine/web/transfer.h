@@ -1,0 +1,85 @@
+// One request to a server, as often as it takes.
+#pragma once
+
+#include "engine/web/fetcher.h"
+
+#include <curl/curl.h>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace binosplat {
+
+struct EasyCloser {
+    void operator()(CURL* easy) const { curl_easy_cleanup(easy); }
+};
+struct MultiCloser {
+    void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
+};
+struct ListCloser {
+    void operator()(curl_slist* list) const { curl_slist_free_all(list); }
+};
+
+// Bytes that came and bytes to come, of all transfers together.
+struct FetchTally {
+    std::atomic<std::uint64_t> got_bytes = 0, expected_bytes = 0;
+    std::atomic<std::size_t> asked = 0, sized = 0;  // files, and those of known length
+};
+
+// Stays where it is: curl has its address.
+class Transfer {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    Transfer(const WebCache& cache, const FetchSettings& settings, FetchTally& tally, FetchRequest request);
+    Transfer(const Transfer&) = delete;
+    Transfer& operator=(const Transfer&) = delete;
+
+    [[nodiscard]] CURL* handle() const { return easy_.get(); }
+    [[nodiscard]] std::future<Fetched> future() { return promise_.get_future(); }
+    [[nodiscard]] Clock::time_point due() const { return due_; }  // not before that
+
+    // Before it is given to curl.
+    void start();
+    // True if too little came for too long.
+    [[nodiscard]] bool isStalled();
+    // With curl's verdict, or as stalled. True if it is over; otherwise it is to be started again when it is due.
+    [[nodiscard]] bool finish(CURLcode code, bool is_stalled = false);
+
+private:
+    static std::size_t writeBody(char* data, std::size_t size, std::size_t count, void* transfer);
+    std::size_t take(const char* data, std::size_t bytes);
+    // False, with the reason, if the body is not to be had.
+    [[nodiscard]] bool beginBody();
+    [[nodiscard]] long status() const;
+    [[nodiscard]] std::string header(const char* name) const;
+    // How long the body is, or where it ends.
+    [[nodiscard]] bool saysLength() const;
+    [[nodiscard]] FileVersion versionSent() const;
+    // None: another attempt may do.
+    [[nodiscard]] std::optional<Fetched> judge(CURLcode code, bool is_stalled);
+    [[nodiscard]] std::string describe(CURLcode code, bool is_stalled) const;
+    void forgetBody();
+
+    const WebCache& cache_;
+    const FetchSettings& settings_;
+    FetchTally& tally_;
+    FetchRequest request_;
+    std::promise<Fetched> promise_;
+    std::unique_ptr<CURL, EasyCloser> easy_;
+    std::unique_ptr<curl_slist, ListCloser> headers_;
+    std::array<char, CURL_ERROR_SIZE> error_{};
+
+    int attempts_ = 0;
+    Clock::time_point due_{}, watched_since_{};
+    std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
+    bool is_sized_ = false;  // the server has said how long it is
+    std::unique_ptr<IncomingFile> file_;
+    std::string refused_;  // why the body was not taken
+    std::string last_;     // what was wrong the last time
+};
+
+}  // namespace binosplat

@@ -1,0 +1,81 @@
+// The files of a scene on the web: what is kept of them and has not changed there, and otherwise what the server sends.
+#pragma once
+
+#include "engine/scene/scene.h"
+#include "engine/scene/scene_files.h"
+#include "engine/web/address.h"
+#include "engine/web/fetcher.h"
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct WebSettings {
+    std::filesystem::path cache_folder;  // empty: nothing is kept beyond the run
+    std::uint64_t cache_bytes = std::uint64_t{4} << 30;
+    FetchSettings fetch;
+};
+
+// Where scenes from the web are kept: web/ in the program's folder in the user's folder of caches; empty if there is none.
+std::filesystem::path webCacheFolder();
+
+// For one thread. Files of the cache stay while it lives, unless another program needs the room; then they are fetched again.
+class WebFiles final : public SceneFiles {
+public:
+    // `waiting` is called now and then where a file is waited for, with the share done of all that was asked for; it may throw. Throws
+    // Error if `address` is none, in a build without network, and if the cache cannot be written.
+    WebFiles(const std::string& address, const WebSettings& settings, Progress waiting = {});
+    WebFiles(const WebFiles&) = delete;
+    WebFiles& operator=(const WebFiles&) = delete;
+    ~WebFiles() override;
+
+    std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes = kAnyLength) override;
+    void expect(const std::vector<std::string>& names, std::uint64_t most_bytes = kAnyLength) override;
+    std::string place(const std::string& name) const override { return addressOf(address_, name); }
+
+    // A sentence if a server did not answer and copies were taken for its files; else empty.
+    [[nodiscard]] const std::string& stale() const { return stale_; }
+
+private:
+    void ask(const std::string& address, std::uint64_t most_bytes);
+    // Until there is a copy in the cache, or not. Throws Error if there is none.
+    void settle(const std::string& address);
+
+    // Gone with it.
+    class OwnFolder {
+    public:
+        explicit OwnFolder(const std::filesystem::path& chosen);
+        OwnFolder(const OwnFolder&) = delete;
+        OwnFolder& operator=(const OwnFolder&) = delete;
+        ~OwnFolder();
+        [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+    private:
+        std::filesystem::path path_;
+        bool is_temporary_;
+    };
+
+    Address address_;
+    Progress waiting_;
+    std::uint64_t cache_bytes_;
+    OwnFolder folder_;
+    WebCache cache_;
+    std::map<std::string, std::future<Fetched>> asked_;
+    std::set<std::string> settled_;
+    std::string stale_;
+    bool is_unreachable_ = false;  // what is kept is taken as it is
+    Fetcher fetcher_;              // first to go
+};
+
+// Loads `source`, which is an address or whatever loadScene takes.
+Scene loadSceneFromAnywhere(const std::string& source, std::uint64_t builtin_splats, LoadNotes& notes, const Progress& progress,
+                            const LevelChoice& level, const WebSettings& settings);
+
+}  // namespace binosplat

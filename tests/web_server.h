@@ -1,0 +1,172 @@
+// A small HTTP server on the loopback address, as good or as bad as a test wants it.
+#pragma once
+
+#include "engine/error.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <list>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace binosplat::test {
+
+struct WebRequest {
+    std::string path;                            // with what follows a question mark
+    std::map<std::string, std::string> headers;  // by names in small letters
+    std::size_t number = 0;                      // how many came before
+};
+
+// What a server does with one request: `bytes` go out as they are; then the connection stays open, is closed, or is left to wait until
+// the client closes it.
+struct WebAnswer {
+    std::string bytes;
+    enum class Then { kGoOn, kClose, kHang } then = Then::kGoOn;
+};
+
+inline WebAnswer answer(const std::string& status, const std::string& headers = "", const std::string& body = "") {
+    return {fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\n{}\r\n{}", status, body.size(), headers, body)};
+}
+
+class WebServer {
+public:
+    using Handler = std::function<WebAnswer(const WebRequest&)>;
+
+    // Each connection has a thread of its own, which calls `handle`.
+    explicit WebServer(Handler handle) : handle_(std::move(handle)), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t length = sizeof(address);
+        const bool listens = ::bind(listener_, reinterpret_cast<const sockaddr*>(&address), length) == 0 && ::listen(listener_, 64) == 0 &&
+                             ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &length) == 0;
+        check(listens, "a test's server cannot listen on the loopback address");
+        port_ = ntohs(address.sin_port);
+        acceptor_ = std::thread([this] { acceptAll(); });
+    }
+    // Serves files by their paths, "/a/b.ply"; others are not there.
+    explicit WebServer(std::map<std::string, std::string> files)
+        : WebServer([held = std::move(files)](const WebRequest& request) {
+              const auto found = held.find(request.path);
+              return found != held.end() ? answer("200 OK", "", found->second) : answer("404 Not Found", "", "no such page");
+          }) {}
+    WebServer(const WebServer&) = delete;
+    WebServer& operator=(const WebServer&) = delete;
+    ~WebServer() { stop(); }
+
+    [[nodiscard]] std::string at(const std::string& path) const { return fmt::format("http://127.0.0.1:{}{}", port_, path); }
+    // The paths that were asked for, in that order.
+    [[nodiscard]] std::vector<std::string> asked() const {
+        const std::lock_guard lock(mutex_);
+        return asked_;
+    }
+    [[nodiscard]] std::size_t connectionCount() const {
+        const std::lock_guard lock(mutex_);
+        return connections_.size();
+    }
+
+    // From now on nobody listens there; what is under way goes on. Also for a handler.
+    void refuse() { ::shutdown(listener_, SHUT_RDWR); }
+
+    // Ends everything.
+    void stop() {
+        if (!std::exchange(listens_, false)) { return; }
+        refuse();
+        acceptor_.join();
+        ::close(listener_);
+        {
+            const std::lock_guard lock(mutex_);
+            for (const Connection& connection : connections_) { ::shutdown(connection.socket, SHUT_RDWR); }
+        }
+        for (Connection& connection : connections_) {
+            connection.thread.join();
+            ::close(connection.socket);
+        }
+    }
+
+private:
+    struct Connection {
+        int socket;
+        std::thread thread;
+    };
+
+    void acceptAll() {
+        for (;;) {
+            const int client = ::accept(listener_, nullptr, nullptr);
+            if (client < 0) { return; }
+            const std::lock_guard lock(mutex_);
+            connections_.push_back({client, std::thread([this, client] { serve(client); })});
+        }
+    }
+
+    void serve(int client) {
+        std::string bytes;
+        while (auto request = readRequest(client, bytes)) {
+            {
+                const std::lock_guard lock(mutex_);
+                request->number = asked_.size();
+                asked_.push_back(request->path);
+            }
+            const WebAnswer given = handle_(*request);
+            for (std::size_t sent = 0; sent < given.bytes.size();) {
+                const ssize_t got = ::send(client, given.bytes.data() + sent, given.bytes.size() - sent, MSG_NOSIGNAL);
+                if (got <= 0) { return; }
+                sent += static_cast<std::size_t>(got);
+            }
+            if (given.then == WebAnswer::Then::kClose) { break; }
+            if (given.then == WebAnswer::Then::kHang) {
+                char nothing = 0;
+                (void)::recv(client, &nothing, 1, 0);  // returns when the client or the test gives up
+                break;
+            }
+        }
+        ::shutdown(client, SHUT_RDWR);
+    }
+
+    static std::optional<WebRequest> readRequest(int client, std::string& bytes) {
+        std::size_t end = 0;
+        while ((end = bytes.find("\r\n\r\n")) == std::string::npos) {
+            char block[4096];
+            const ssize_t got = ::recv(client, block, sizeof(block), 0);
+            if (got <= 0) { return std::nullopt; }
+            bytes.append(block, static_cast<std::size_t>(got));
+        }
+        const std::string head = bytes.substr(0, end + 2);
+        bytes.erase(0, end + 4);
+        WebRequest request;
+        const std::size_t from = head.find(' ') + 1;
+        request.path = head.substr(from, head.find(' ', from) - from);
+        for (std::size_t line = head.find("\r\n") + 2; line < head.size();) {
+            const std::size_t stop = head.find("\r\n", line), colon = head.find(": ", line);
+            if (colon < stop) {
+                std::string name = head.substr(line, colon - line);
+                std::ranges::transform(name, name.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+                request.headers[name] = head.substr(colon + 2, stop - colon - 2);
+            }
+            line = stop + 2;
+        }
+        return request;
+    }
+
+    Handler handle_;
+    int listener_, port_ = 0;
+    bool listens_ = true;
+    mutable std::mutex mutex_;
+    std::vector<std::string> asked_;
+    std::list<Connection> connections_;
+    std::thread acceptor_;
+};
+
+}  // namespace binosplat::test
