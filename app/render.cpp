@@ -6,6 +6,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
 #include "app/options/modes.h"
+#include "app/progress.h"
 #include "app/render_path.h"
 #include "app/report/report.h"
 #include "engine/error.h"

@@ -8,6 +8,7 @@
 #include "app/options/device_options.h"
 #include "app/progress.h"
 #include "engine/error.h"
+#include "engine/scene/address.h"
 #include "engine/setup/output_files.h"
 
 #include <algorithm>
@@ -110,7 +111,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
 
 void requireScenes(const BenchPlan& plan) {
     for (const std::string& source : plan.scenes) {
-        const bool there = isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source);
+        const bool there = isAddress(source) || (isBuiltin(source) ? builtinView(source).has_value() : std::filesystem::exists(source));
         check(there, "{}: no such scene", source);
     }
 }

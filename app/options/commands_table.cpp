@@ -175,7 +175,7 @@ constexpr const char* kCompareFooter =
 }  // namespace
 
 std::span<const Command> commands() {
-    const Word scene{"SCENE", "file, directory or builtin:NAME"};
+    const Word scene{"SCENE", "file, directory, builtin:NAME, or http or https address"};
     static const std::vector<Command> rows{
         {"render",
          kRender,
@@ -186,7 +186,7 @@ std::span<const Command> commands() {
         {"bench",
          kBench,
          "Measure modes over scenes, splat counts and picture sizes",
-         {{"SCENE", "files, directories or builtin:NAME (default: those of the config)", /*required*/ false, /*many*/ true}},
+         {{"SCENE", "files, directories, builtin:NAME, or addresses (default: those of the config)", /*required*/ false, /*many*/ true}},
          with(describe(benchRows()), kConfig),
          makeBench},
         {"view", kView, "Show a scene in an OpenXR headset", {scene}, with(describe(viewRows()), kConfig), makeView},

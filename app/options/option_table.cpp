@@ -135,6 +135,8 @@ std::span<const OptionRow<RunOptions>> runRows() {
          field::flag<kLoad, &LoadOptions::flatten>()},
         {{"antialiased", "scene", kScenes, "", "dim small 3D Gaussians, for scenes trained with antialiasing", "the file's"},
          field::flag<kLoad, &LoadOptions::antialiased>()},
+        {{"cache-limit", "scene", kScenes, "MIB", "disk space for scenes from http and https addresses, which are kept for the next time"},
+         field::count<kLoad, &LoadOptions::cache_limit_mib>(0, kMaxMemoryMib)},
         {{"metres-per-unit", "scene", kWearer, "M", "metres in one scene unit"}, field::positive<&RunOptions::metres_per_unit>()},
 
         // Run.

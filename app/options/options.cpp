@@ -6,6 +6,7 @@
 #include "app/options/option_table.h"
 #include "app/version.h"
 #include "engine/error.h"
+#include "engine/scene/address.h"
 
 #include <CLI/CLI.hpp>
 
@@ -94,7 +95,7 @@ std::vector<std::string> withCommand(std::vector<std::string> words) {
     const std::string word = words.empty() ? "-" : words.front();
     if (word.starts_with('-') || std::ranges::find(commands(), word, &Command::name) != commands().end()) { return words; }
     std::error_code unknown;
-    if (word.starts_with("builtin:") || std::filesystem::exists(word, unknown)) {
+    if (word.starts_with("builtin:") || isAddress(word) || std::filesystem::exists(word, unknown)) {
         words.insert(words.begin(), "view");
         return words;
     }

@@ -67,6 +67,7 @@ struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
     std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
+    std::uint64_t cache_limit_mib = 4096;    // of the disk, for scenes from the web
     bool antialiased = false;                // with opacities that the low-pass dims, also where the file does not say so
     bool operator==(const LoadOptions&) const = default;
 };

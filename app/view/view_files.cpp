@@ -4,6 +4,7 @@
 #include "app/options/option_layers.h"
 #include "engine/error.h"
 #include "engine/platform.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 
@@ -51,7 +52,7 @@ fs::path viewFolder() {
 fs::path viewSettingsFile(const std::string& scene) {
     if (isBuiltin(scene)) { return configFolder() / (scene.substr(std::string("builtin:").size()) + ".view.toml"); }
     std::error_code ignored;
-    fs::path place = fs::weakly_canonical(scene, ignored);
+    fs::path place = isAddress(scene) ? fs::path(scene) : fs::weakly_canonical(scene, ignored);
     if (!place.has_filename()) { place = place.parent_path(); }
     const std::uintmax_t bytes = fs::is_regular_file(place, ignored) ? fs::file_size(place, ignored) : 0;
     const std::string tail = fmt::format("-{:016x}.view.toml", fingerprint(fmt::format("{}:{}", place.string(), bytes)));

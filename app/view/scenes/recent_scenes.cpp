@@ -3,6 +3,7 @@
 
 #include "app/view/view_files.h"
 #include "engine/error.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/setup/output_files.h"
 #include "engine/setup/text_file.h"
@@ -63,7 +64,7 @@ void toggleFavourite(const std::string& scene) {
 
 void rememberScene(const std::string& scene) {
     std::error_code error;
-    const std::string whole = isBuiltin(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
+    const std::string whole = isBuiltin(scene) || isAddress(scene) ? scene : fs::absolute(scene, error).lexically_normal().string();
     check(!error, "{}: cannot be added to the recent scenes: the working directory no longer exists", scene);
     if (whole.find('\n') != std::string::npos) { return; }  // it would be two
     const std::vector<std::string> before = recentScenes(), after = withLatest(before, whole);

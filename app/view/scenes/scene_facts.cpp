@@ -2,6 +2,7 @@
 #include "app/view/scenes/scene_facts.h"
 
 #include "engine/gpu/gpu_scene.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/standpoint.h"
 
@@ -66,7 +67,8 @@ SceneFacts factsOf(const Scene& scene, const LoadNotes& notes, const std::string
     facts.sh_degree = scene.sh_degree;
     facts.sh_degree_in_file = notes.sh_degree_in_file;
     facts.device_bytes = scene.size() * deviceBytesPerSplat(scene.sh_degree, scene.isGaussian3d());
-    if (!isBuiltin(source)) { facts.file_bytes = bytesOnDisk(source); }
+    facts.is_from_web = isAddress(source);
+    if (!isBuiltin(source) && !facts.is_from_web) { facts.file_bytes = bytesOnDisk(source); }
     facts.size_units = coreSize(scene);
     return facts;
 }
@@ -80,7 +82,9 @@ std::vector<std::pair<std::string, std::string>> describeFacts(const SceneFacts&
             {"Kind", facts.kind},
             {"Colours (SH)", colours},
             {"In memory", inMib(facts.device_bytes)},
-            {"File", facts.file_bytes == 0 ? "made by the program" : inMib(facts.file_bytes)},
+            {"File", facts.is_from_web       ? "from the web"
+                     : facts.file_bytes == 0 ? "made by the program"
+                                             : inMib(facts.file_bytes)},
             {"Scale", fmt::format("{:.3g} metres a scene unit", metres_per_unit)}};
 }
 

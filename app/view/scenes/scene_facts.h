@@ -16,7 +16,8 @@ struct SceneFacts {
     int sh_degree = 0, sh_degree_in_file = 0;
     std::uint64_t device_bytes = 0;
     double size_units = 0.0;       // see coreSize
-    std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program
+    std::uint64_t file_bytes = 0;  // of a folder all that lies in it; 0: made by the program, or from the web
+    bool is_from_web = false;
 };
 
 // Of a scene as it was loaded from `source`.

@@ -6,6 +6,7 @@
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/view_scenes.h"
 #include "engine/platform.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
@@ -46,7 +47,9 @@ fs::path wholePath(const fs::path& place) {
 
 }  // namespace
 
-std::string folderOf(const std::string& scene) { return isBuiltin(scene) ? kBuiltinFolder : wholePath(scene).parent_path().string(); }
+std::string folderOf(const std::string& scene) {
+    return isBuiltin(scene) || isAddress(scene) ? kBuiltinFolder : wholePath(scene).parent_path().string();
+}
 
 SceneList listFolder(const std::string& folder) {
     if (folder == kBuiltinFolder) { return listBuiltinScenes(); }
@@ -86,8 +89,8 @@ void describeScenes(SceneList& list) {
 SceneList listScenes(const std::string& title, const std::vector<std::string>& scenes) {
     SceneList list{title, {}, {}, {}};
     for (const std::string& scene : scenes) {
-        const bool builtin = isBuiltin(scene);
-        list.entries.push_back({builtin ? scene : wholePath(scene).filename().string(), scene, false, builtin ? "" : troubleOf(scene)});
+        const bool on_disk = !isBuiltin(scene) && !isAddress(scene);
+        list.entries.push_back({on_disk ? wholePath(scene).filename().string() : scene, scene, false, on_disk ? troubleOf(scene) : ""});
     }
     return list;
 }

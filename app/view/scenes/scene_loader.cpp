@@ -6,6 +6,7 @@
 #include "app/view/scenes/scene_up.h"
 #include "app/view/view_files.h"
 #include "engine/error.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 
 #include <utility>
@@ -22,7 +23,7 @@ struct Cancelled {};
 }  // namespace
 
 std::string placeOf(const std::string& scene) {
-    if (isBuiltin(scene)) { return scene; }
+    if (isBuiltin(scene) || isAddress(scene)) { return scene; }
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::weakly_canonical(scene, error);
     return error ? scene : whole.string();
@@ -57,9 +58,8 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
             if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
             progress_ = kReadingShare * share;
         };
-        Scene scene = loadScene(scene_, 0, &notes, reading, levelChoice(options.load, options.memory_limit_mib));
+        Scene scene = loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
         reading(1.0);
-        drawAs(options.load, scene, notes);
         const View start = startView(scene, options.camera, options.metres_per_unit);
         SceneFacts facts = factsOf(scene, notes, scene_);
         const glm::dvec3 up = upOfScene(scene, scene_, start.up);

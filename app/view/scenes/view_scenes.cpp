@@ -2,6 +2,7 @@
 #include "app/view/scenes/view_scenes.h"
 
 #include "app/view/scenes/natural_order.h"
+#include "engine/scene/address.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
 
@@ -35,6 +36,8 @@ std::vector<std::string> scenesBeside(const std::string& scene) {
     std::vector<std::string> scenes;
     if (isBuiltin(scene)) {
         for (const BuiltinInfo& info : listBuiltins()) { scenes.push_back("builtin:" + std::string(info.name)); }
+    } else if (isAddress(scene)) {
+        scenes.push_back(scene);  // no server says what lies beside it
     } else {
         fs::path place = scene;
         if (!place.has_filename()) { place = place.parent_path(); }
@@ -54,7 +57,7 @@ std::vector<std::string> scenesBeside(const std::string& scene) {
 std::string sceneBeside(const std::string& scene, int step) {
     const std::vector<std::string> scenes = scenesBeside(scene);
     std::filesystem::path place = scene;
-    if (!isBuiltin(scene) && !place.has_filename()) { place = place.parent_path(); }
+    if (!isBuiltin(scene) && !isAddress(scene) && !place.has_filename()) { place = place.parent_path(); }
     const auto found = std::ranges::find(scenes, place.string());
     const auto count = static_cast<std::ptrdiff_t>(scenes.size());
     if (count == 0) { return scene; }
