@@ -23,8 +23,8 @@ XrResult checkResult(XrResult result, const char* call) {
     const std::string_view text(call);
     const std::string message = fmt::format("OpenXR: {} failed: {}", text.substr(0, text.find('(')), nameOf(result));
     // The second one of a headset that was unplugged since it was found.
-    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_SYSTEM_INVALID) { throw Lost(ExitCode::kNoDevice, message); }
-    if (result == XR_ERROR_INSTANCE_LOST) { throw InstanceLost(ExitCode::kNoDevice, message); }
+    if (result == XR_ERROR_SESSION_LOST || result == XR_ERROR_SYSTEM_INVALID) { throw Lost(message); }
+    if (result == XR_ERROR_INSTANCE_LOST) { throw InstanceLost(message); }
     if (result == XR_ERROR_OUT_OF_MEMORY) {
         throw Error(ExitCode::kBadInput, message + ", not enough memory for this scene and picture size");
     }

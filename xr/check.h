@@ -5,18 +5,22 @@
 
 #include <openxr/openxr.h>
 
+#include <stdexcept>
+#include <string>
+
 namespace binosplat::xr {
 
-// The session is gone, or the headset; the runtime may give another one.
-class Lost : public Error {
+// The session is gone, or the headset; the runtime may give another one. Neither this nor InstanceLost is an Error: what goes on without
+// something that failed must not go on here.
+class Lost : public std::runtime_error {
 public:
-    using Error::Error;
+    using std::runtime_error::runtime_error;
 };
 
 // The whole runtime is gone, and with it the Vulkan device.
-class InstanceLost : public Error {
+class InstanceLost : public std::runtime_error {
 public:
-    using Error::Error;
+    using std::runtime_error::runtime_error;
 };
 
 // "XR_ERROR_SESSION_LOST", or the number of a result that this build does not know.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/geometry.h"
-#include "xr/session.h"
+#include "xr/extensions/visibility_mask.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,8 +1,9 @@
 // The two controllers, of any kind, and the gaze.
 #pragma once
 
-#include "engine/geometry.h"
-#include "xr/hand_tracking.h"
+#include "xr/actions.h"
+#include "xr/extensions/eye_gaze.h"
+#include "xr/extensions/hand_tracking.h"
 
 #include <array>
 #include <optional>
@@ -44,41 +45,26 @@ public:
     explicit Input(const Session& session);
     Input(const Input&) = delete;
     Input& operator=(const Input&) = delete;
-    ~Input();
 
     // Both hands, [kLeft] and [kRight], at the open frame's display time; at rest while another program has the input.
     [[nodiscard]] std::array<Hand, 2> read();
     // The gaze as of the last read(): a direction in the room (our axes). Empty if the headset does not track it reliably, or this
     // program may not see it.
-    [[nodiscard]] std::optional<glm::dvec3> gaze();
+    [[nodiscard]] std::optional<glm::dvec3> gaze() { return gaze_.find(); }
     // A short buzz in a hand, where its controller can.
     void pulse(int hand);
 
 private:
-    void attachActions();
-    // One per hand, or one in all.
-    [[nodiscard]] XrAction makeAction(const char* name, const char* description, XrActionType type, bool by_hand = true);
     void suggestBindings() const;
-    [[nodiscard]] XrResult suggest(const std::string& profile, const std::vector<XrActionSuggestedBinding>& bindings) const;
-    // Before the actions are attached, and after it.
-    void makeGazeAction();
-    void makeGazeSpace();
-    // Empty: there is none.
-    [[nodiscard]] std::optional<double> readNumber(XrAction action, XrPath hand) const;
-    [[nodiscard]] std::optional<bool> readButton(XrAction action, XrPath hand) const;
-    [[nodiscard]] glm::dvec2 readStick(XrPath hand) const;
-    // Empty unless the location has all of `needed`.
-    [[nodiscard]] std::optional<Pose> locate(XrAction action, XrPath hand, XrSpace space, XrSpaceLocationFlags needed) const;
+    void readHand(std::size_t h, Hand& hand);
 
     const Session& session_;
     HandTracking tracking_;
-    XrActionSet set_ = XR_NULL_HANDLE;
-    XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, trigger_ = XR_NULL_HANDLE, squeeze_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
-             stick_click_ = XR_NULL_HANDLE, stick_press_ = XR_NULL_HANDLE, menu_ = XR_NULL_HANDLE, haptic_ = XR_NULL_HANDLE;
-    XrAction gaze_ = XR_NULL_HANDLE;  // null: not requested, or not available
-    XrSpace gaze_space_ = XR_NULL_HANDLE;
-    std::array<XrPath, 2> hands_{};
-    std::array<XrSpace, 2> aim_spaces_{}, grip_spaces_{};
+    Actions actions_;
+    std::array<XrPath, 2> hands_;
+    XrAction aim_, grip_, trigger_, squeeze_, stick_, stick_click_, stick_press_, menu_, haptic_;
+    EyeGaze gaze_;
+    std::array<OwnedSpace, 2> aim_spaces_, grip_spaces_;
     std::array<Hold, 2> clicks_, grabs_, menus_, presses_;
     bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()

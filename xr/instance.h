@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/context.h"
+#include "xr/own.h"
 #include "xr/troubles.h"
 
 #include <glm/glm.hpp>
@@ -10,9 +11,11 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
+#include <string_view>
 
 namespace binosplat::xr {
+
+inline constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
 
 // The runtime exists but fails to start (XR_ERROR_RUNTIME_FAILURE); it may have printed the reason itself.
 class RuntimeFailed : public Error {
@@ -30,8 +33,7 @@ struct InstanceOptions {
 
 class Instance {
 public:
-    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses XR_KHR_composition_layer_depth, XR_KHR_visibility_mask, XR_EXT_local_floor,
-    // XR_FB_display_refresh_rate, XR_EXT_hand_tracking, on request XR_EXT_eye_gaze_interaction, and those of controllers, if available.
+    // Asks for API 1.0 and XR_KHR_vulkan_enable2; uses those of extensions/ and of controllers (bindings.h) where they are available.
     // Throws Error (exit code 3, one line with what was looked for) if there is no runtime or no headset, and rethrows from
     // `wait_for_headset`.
     explicit Instance(const InstanceOptions& options = {});
@@ -41,22 +43,18 @@ public:
     bool findHeadset(const Context& context);
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
-    ~Instance();
 
-    [[nodiscard]] XrInstance handle() const { return instance_; }
+    [[nodiscard]] XrInstance handle() const { return instance_.get(); }
     [[nodiscard]] XrSystemId system() const { return system_; }
     // "Monado: Rift S", for people.
     [[nodiscard]] const std::string& description() const { return description_; }
-    [[nodiscard]] bool takesDepth() const { return takes_depth_; }
-    [[nodiscard]] bool hasVisibilityMask() const { return has_visibility_mask_; }
-    [[nodiscard]] bool hasLocalFloor() const { return has_local_floor_; }
-    [[nodiscard]] bool hasRefreshRates() const { return has_refresh_rates_; }
-    // It has XR_EXT_hand_tracking, and this headset finds hands.
+    // The runtime has it, and it was wanted: it is enabled.
+    [[nodiscard]] bool hasExtension(std::string_view name) const { return extensions_.contains(name); }
+    [[nodiscard]] bool takesDepth() const { return hasExtension(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME); }
+    // The extension is enabled, and this headset finds hands.
     [[nodiscard]] bool tracksHands() const { return tracks_hands_; }
-    // It has XR_EXT_eye_gaze_interaction, this headset tracks the gaze, and that was requested.
+    // The extension is enabled, and this headset tracks the gaze.
     [[nodiscard]] bool tracksEyes() const { return tracks_eyes_; }
-    // Of those that controllers need.
-    [[nodiscard]] bool hasExtension(const std::string& name) const { return controller_extensions_.contains(name); }
     // The recommended pixels of an eye, the larger of both, since the methods need eyes of one size; and the maximum.
     [[nodiscard]] glm::uvec2 recommendedSizePx() const { return recommended_size_px_; }
     [[nodiscard]] glm::uvec2 maxSizePx() const { return max_size_px_; }
@@ -67,17 +65,16 @@ public:
     }
     [[nodiscard]] bool canSeeThrough() const { return see_through_.has_value(); }
 
-    // The instance and the device that Context opens must be this runtime's. Valid as long as the instance.
-    [[nodiscard]] DeviceMaker deviceMaker() const;
-
     [[nodiscard]] XrPath path(const char* text) const;
+    // Of the present headset: fills an extension's struct, XrSystem...Properties, which has its type.
+    void readProperties(void* of_extension) const;
     // The optional features that this headset is used without.
     [[nodiscard]] Troubles& troubles() const { return troubles_; }
     // A function of an extension. Throws Error if the runtime lists the extension but lacks the function.
     template <typename Function>
     [[nodiscard]] Function function(const char* name) const {
         PFN_xrVoidFunction found = nullptr;
-        checkResult(xrGetInstanceProcAddr(instance_, name, &found), name);
+        checkResult(xrGetInstanceProcAddr(handle(), name, &found), name);
         return reinterpret_cast<Function>(found);
     }
 
@@ -87,17 +84,13 @@ private:
     // The features of the headset of system_.
     void readSystem();
     void readViews();
-    // The runtime's requirements of Vulkan, for each headset.
-    [[nodiscard]] XrVersion leastVulkan() const;
-    [[nodiscard]] VkPhysicalDevice graphicsDevice(VkInstance vulkan_instance) const;
+    void readBlendModes();
 
-    XrInstance instance_ = XR_NULL_HANDLE;
+    OwnedInstance instance_;
     XrSystemId system_ = XR_NULL_SYSTEM_ID;
     std::string runtime_name_, description_;
-    bool knows_hands_ = false, knows_eyes_ = false;  // the runtime, with some headset or other
-    bool takes_depth_ = false, has_visibility_mask_ = false, has_local_floor_ = false, has_refresh_rates_ = false, tracks_hands_ = false,
-         tracks_eyes_ = false;
-    std::set<std::string> controller_extensions_;
+    std::set<std::string, std::less<>> extensions_;
+    bool tracks_hands_ = false, tracks_eyes_ = false;
     glm::uvec2 recommended_size_px_{0, 0}, max_size_px_{0, 0};
     XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
     std::optional<XrEnvironmentBlendMode> see_through_;

@@ -2,8 +2,7 @@
 #include "xr/layers.h"
 
 #include "xr/convert.h"
-
-#include <limits>
+#include "xr/extensions/depth_layer.h"
 
 namespace binosplat::xr {
 
@@ -12,14 +11,7 @@ void Layers::addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) {
         eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov,
                     eyes[e].colour->subImage(eyes[e].part_px)};
         if (eyes[e].depth == nullptr) { continue; }
-        // Reversed and without an end: 0 is infinitely far, 1 is the near plane.
-        depths_[e] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
-                      nullptr,
-                      eyes[e].depth->subImage(eyes[e].part_px),
-                      0.0f,
-                      1.0f,
-                      std::numeric_limits<float>::infinity(),
-                      static_cast<float>(eyes[e].near_m)};
+        depths_[e] = depthInfo(eyes[e].depth->subImage(eyes[e].part_px), eyes[e].near_m);
         eyes_[e].next = &depths_[e];
     }
     const XrCompositionLayerFlags flags = see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;

@@ -1,13 +1,18 @@
-// One session in the headset: the state machine, the pace of frames, and the poses of the eyes.
+// One session in the headset: the state machine, and the pace of frames.
 #pragma once
 
-#include "engine/geometry.h"
+#include "engine/gpu/context.h"
 #include "xr/display_pace.h"
+#include "xr/extensions/refresh_rate.h"
+#include "xr/extensions/visibility_mask.h"
+#include "xr/floor.h"
 #include "xr/instance.h"
+#include "xr/spaces.h"
 
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace binosplat::xr {
@@ -20,25 +25,12 @@ enum class FrameOutcome {
     kExit,    // the runtime or the user wants to end: leave; whyEnded() says which
 };
 
-// An eye at the predicted display time.
-struct EyeView {
-    XrPosef pose;
-    XrFovf fov;
-};
-
-// A part of an eye's picture that the lenses never show: triangles in the plane z = -1 of the eye (OpenXR axes).
-struct HiddenMesh {
-    std::vector<XrVector2f> vertices;
-    std::vector<std::uint32_t> indices;
-};
-
 class Session {
 public:
-    // `context` must have been opened with the instance's deviceMaker(); both outlive the session.
+    // `context` must have been opened with deviceMaker(instance); both outlive the session.
     Session(const Instance& instance, const Context& context);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
-    ~Session();
 
     // Takes the runtime's events, waits for the next frame and opens it. Throws Lost if the session is lost or about to be, InstanceLost
     // if the runtime is.
@@ -59,59 +51,47 @@ public:
     [[nodiscard]] double periodMs() const;
     // See DisplayPace.
     [[nodiscard]] double lostPeriods() const { return pace_.lostPeriods(); }
-    // The refresh rates that this headset offers, in its order; empty if it offers no choice.
-    [[nodiscard]] std::vector<double> refreshRates() const;
-    // Requests a refresh rate, unless it was the last one requested; 0: the runtime's choice. Returns a sentence for people if that
-    // fails, otherwise empty. The period follows when the runtime reports it.
-    std::string askForRate(double rate_hz);
-    // The poses of the eyes in space(); empty if the headset's orientation is unknown. While its position is unknown, the last known one
-    // is used.
-    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes();
+    // See RefreshRate. The period follows a request when the runtime reports it.
+    [[nodiscard]] std::vector<double> refreshRates() const { return refresh_rate_.list(); }
+    std::string askForRate(double rate_hz) { return refresh_rate_.request(rate_hz); }
 
-    // The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
-    // Places it for the open frame and those after it, the first time that the head's pose is known, again when the runtime recentred
-    // its space, and when `demanded`. Returns true if it did.
-    bool settle(bool demanded);
-    // The distance of the floor below the room's origin, in metres; empty if the runtime does not know it.
-    [[nodiscard]] std::optional<double> floorBelowMetres();
+    // See Spaces and Floor; for the open frame.
+    bool settle(bool demanded) { return spaces_.settle(displayTime(), demanded); }
+    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() { return spaces_.locateEyes(displayTime()); }
+    [[nodiscard]] std::optional<double> floorBelowMetres() { return floor_.belowMetres(space(), displayTime()); }
+    [[nodiscard]] XrSpace space() const { return spaces_.room(); }
+    [[nodiscard]] XrSpace headSpace() const { return spaces_.head(); }
 
     // The number of times that this program has gained the input.
     [[nodiscard]] int timesFocused() const { return times_focused_; }
     [[nodiscard]] const std::string& whyEnded() const { return why_ended_; }
 
-    [[nodiscard]] XrSession handle() const { return session_; }
+    [[nodiscard]] XrSession handle() const { return session_.get(); }
     [[nodiscard]] const Instance& instance() const { return instance_; }
     [[nodiscard]] const Context& context() const { return context_; }
-    // The room: see settle(). Before that, LOCAL.
-    [[nodiscard]] XrSpace space() const { return space_; }
-    // The space that moves with the head.
-    [[nodiscard]] XrSpace headSpace() const { return head_; }
-    // Read at the start and again whenever the runtime reports a change; empty without XR_KHR_visibility_mask.
-    [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_; }
-    // A new number whenever they were read.
-    [[nodiscard]] int hiddenMeshVersion() const { return hidden_mesh_version_; }
+    [[nodiscard]] const std::array<HiddenMesh, 2>& hiddenMeshes() const { return hidden_meshes_.meshes(); }
+    [[nodiscard]] int hiddenMeshVersion() const { return hidden_meshes_.version(); }
 
 private:
-    // Of xrLocateViews, with what is known of it.
-    struct Located {
-        std::array<EyeView, 2> eyes;
-        bool turn_known = false, place_known = false;
+    // With all that is made of it.
+    struct DestroyLocked {
+        const Context* context;
+        void operator()(XrSession session) const;
     };
-    [[nodiscard]] Located locate(XrSpace space) const;
-    [[nodiscard]] XrSpace makeSpace(XrReferenceSpaceType type, const XrPosef& pose) const;
-    // The display's; 0 if the runtime does not report it.
-    [[nodiscard]] XrDuration askForPeriod() const;
-    void findFloor();
+    using Handle = Owned<XrSession, DestroyLocked>;
+
+    [[nodiscard]] static Handle create(const Instance& instance, const Context& context);
     void pollEvents();
     void changeState(XrSessionState state);
     void end(const std::string& why);
-    void readHiddenMesh(int eye);
 
     const Instance& instance_;
     const Context& context_;
-    XrSession session_ = XR_NULL_HANDLE;
-    XrSpace local_ = XR_NULL_HANDLE, space_ = XR_NULL_HANDLE, head_ = XR_NULL_HANDLE;
-    XrSpace floor_ = XR_NULL_HANDLE;  // on the floor, somewhere; null: the runtime has none
+    Handle session_;
+    Spaces spaces_;
+    Floor floor_;
+    HiddenMeshes hidden_meshes_;
+    RefreshRate refresh_rate_;
     int times_focused_ = 0;
     XrFrameState frame_state_ = structure<XrFrameState>(XR_TYPE_FRAME_STATE);
     XrTime last_display_time_ = 0;
@@ -119,14 +99,8 @@ private:
     DisplayPace pace_;
     XrDuration told_period_ = 0, told_for_ = 0;  // the display's period from the runtime, and the stated period at the time of the request
     double busy_from_seconds_ = 0.0;             // of this thread, since the frame began
-    double asked_rate_hz_ = 0.0;
     bool running_ = false, ended_ = false;
-    bool turn_settled_ = false, place_settled_ = false;
-    std::optional<XrTime> recentred_from_;  // the runtime's own recentring
-    XrVector3f last_place_{};               // of the head in space(), as it was last known
     std::string why_ended_;
-    std::array<HiddenMesh, 2> hidden_meshes_;
-    int hidden_mesh_version_ = 0;
     XrEnvironmentBlendMode blend_mode_;
 };
 

@@ -49,53 +49,40 @@ Swapchain::Swapchain(const Session& session, const std::string& name, glm::uvec2
     info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
     info.width = size_px.x;
     info.height = size_px.y;
+    XrSwapchain made = XR_NULL_HANDLE;
     if (use == ImageUse::kFar && Commands::canMakeMips(session.context(), format)) {
         info.mipCount = levels_ = static_cast<std::uint32_t>(std::bit_width(std::max(size_px.x, size_px.y)));
         // Not every runtime has such images.
-        if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &swapchain_))) { info.mipCount = levels_ = 1; }
+        if (XR_FAILED(xrCreateSwapchain(session.handle(), &info, &made))) { info.mipCount = levels_ = 1; }
     }
-    if (levels_ == 1) { BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &swapchain_)); }
+    if (levels_ == 1) { BINOSPLAT_XR(xrCreateSwapchain(session.handle(), &info, &made)); }
+    swapchain_ = {made, {&session.context()}};
     std::uint32_t count = 0;
-    BINOSPLAT_XR(xrEnumerateSwapchainImages(swapchain_, 0, &count, nullptr));
+    BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), 0, &count, nullptr));
     std::vector<XrSwapchainImageVulkan2KHR> images(count, {XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR, nullptr, VK_NULL_HANDLE});
-    BINOSPLAT_XR(xrEnumerateSwapchainImages(swapchain_, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
+    BINOSPLAT_XR(xrEnumerateSwapchainImages(handle(), count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())));
     for (const XrSwapchainImageVulkan2KHR& image : images) { images_.emplace_back(image.image); }
     check(!images_.empty(), "OpenXR: the swapchain of {} has no images", name);
 }
 
-Swapchain& Swapchain::operator=(Swapchain&& other) noexcept {
-    destroy();
-    session_ = std::exchange(other.session_, nullptr);
-    swapchain_ = std::exchange(other.swapchain_, XrSwapchain(XR_NULL_HANDLE));
-    images_ = std::exchange(other.images_, {});
-    size_px_ = other.size_px_;
-    format_ = other.format_;
-    levels_ = other.levels_;
-    acquired_ = other.acquired_;
-    return *this;
-}
-
-void Swapchain::destroy() {
-    if (swapchain_ == XR_NULL_HANDLE) { return; }
-    const std::lock_guard lock(session_->context().queueMutex());
-    // A frame may still be on its way into the images.
+void Swapchain::DestroyIdle::operator()(XrSwapchain swapchain) const {
+    const std::lock_guard lock(context->queueMutex());
     try {
-        session_->context().queue().waitIdle();
+        context->queue().waitIdle();
     } catch (const vk::SystemError&) {}  // a device that is lost has none under way
-    xrDestroySwapchain(swapchain_);
-    swapchain_ = XR_NULL_HANDLE;
+    xrDestroySwapchain(swapchain);
 }
 
 vk::Image Swapchain::acquire() {
     std::uint32_t index = 0;
     {
         const std::lock_guard lock(session_->context().queueMutex());
-        BINOSPLAT_XR(xrAcquireSwapchainImage(swapchain_, nullptr, &index));
+        BINOSPLAT_XR(xrAcquireSwapchainImage(handle(), nullptr, &index));
     }
     auto info = structure<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
     info.timeout = kWaitNs;
     int waits = 0;
-    while (BINOSPLAT_XR(xrWaitSwapchainImage(swapchain_, &info)) == XR_TIMEOUT_EXPIRED) {
+    while (BINOSPLAT_XR(xrWaitSwapchainImage(handle(), &info)) == XR_TIMEOUT_EXPIRED) {
         if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: a swapchain image did not come free for ten seconds"); }
     }
     acquired_ = index;
@@ -104,11 +91,11 @@ vk::Image Swapchain::acquire() {
 
 void Swapchain::release() {
     const std::lock_guard lock(session_->context().queueMutex());
-    BINOSPLAT_XR(xrReleaseSwapchainImage(swapchain_, nullptr));
+    BINOSPLAT_XR(xrReleaseSwapchainImage(handle(), nullptr));
 }
 
 XrSwapchainSubImage Swapchain::subImage(glm::uvec2 part_px) const {
-    return {swapchain_, {{0, 0}, {static_cast<std::int32_t>(part_px.x), static_cast<std::int32_t>(part_px.y)}}, 0};
+    return {handle(), {{0, 0}, {static_cast<std::int32_t>(part_px.x), static_cast<std::int32_t>(part_px.y)}}, 0};
 }
 
 }  // namespace binosplat::xr

@@ -25,9 +25,6 @@ class Swapchain {
 public:
     Swapchain() = default;
     Swapchain(const Session& session, const std::string& name, glm::uvec2 size_px, vk::Format format, ImageUse use);
-    Swapchain(Swapchain&& other) noexcept { *this = std::move(other); }
-    Swapchain& operator=(Swapchain&& other) noexcept;
-    ~Swapchain() { destroy(); }
 
     // Lends an image and waits until it is free; to be released before the frame ends. Throws Lost, or Error if it is not
     // free within ten seconds.
@@ -37,7 +34,7 @@ public:
     [[nodiscard]] std::size_t acquiredIndex() const { return acquired_; }
     [[nodiscard]] const std::vector<vk::Image>& images() const { return images_; }
 
-    [[nodiscard]] XrSwapchain handle() const { return swapchain_; }
+    [[nodiscard]] XrSwapchain handle() const { return swapchain_.get(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] vk::Format format() const { return format_; }
     // Of each image: 1, or down to a single pixel.
@@ -46,10 +43,14 @@ public:
     [[nodiscard]] XrSwapchainSubImage subImage(glm::uvec2 part_px) const;
 
 private:
-    void destroy();
+    // Once no frame is on its way into the images.
+    struct DestroyIdle {
+        const Context* context;
+        void operator()(XrSwapchain swapchain) const;
+    };
 
     const Session* session_ = nullptr;
-    XrSwapchain swapchain_ = XR_NULL_HANDLE;
+    Owned<XrSwapchain, DestroyIdle> swapchain_;
     std::vector<vk::Image> images_;
     glm::uvec2 size_px_{0, 0};
     vk::Format format_ = vk::Format::eUndefined;

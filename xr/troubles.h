@@ -18,14 +18,12 @@ public:
     // Those that were not fetched yet.
     [[nodiscard]] std::vector<std::string> take() { return std::exchange(news_, {}); }
 
-    // Does `act`; if that throws Error, goes on without `what` ("pulses") and returns false. Rethrows Lost and InstanceLost.
+    // Does `act`; if that throws Error, goes on without `what` ("pulses") and returns false.
     template <typename Act>
     bool tryFor(const char* what, Act&& act) {
         try {
             act();
             return true;
-        } catch (const Lost&) { throw; } catch (const InstanceLost&) {
-            throw;
         } catch (const Error& error) { add(fmt::format("{}; on without {}", error.what(), what)); }
         return false;
     }

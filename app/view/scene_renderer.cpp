@@ -34,8 +34,6 @@ void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
     if (before_px == size_px) { return; }
     try {
         makeImages(stay, size_px);
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
     } catch (const Error&) {
         makeImages(stay, before_px);
         throw;

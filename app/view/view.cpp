@@ -9,6 +9,7 @@
 #include "app/view/window/waiting_window.h"
 #include "engine/error.h"
 #include "engine/platform.h"
+#include "xr/extensions/vulkan_enable2.h"
 
 #include <chrono>
 #include <csignal>
@@ -45,7 +46,7 @@ void waitForHeadset(const std::string& runtime, std::unique_ptr<WaitingWindow>& 
 
 void showScene(const ViewOptions& options, const ViewSettings& settings, xr::Instance& instance) {
     ContextOptions context_options = contextOptions(options.run);
-    context_options.maker = instance.deviceMaker();
+    context_options.maker = xr::deviceMaker(instance);
     const std::unique_ptr<WindowSystem> windows = WindowSystem::find();
     if (windows) {
         context_options.instance_extensions = WindowSystem::instanceExtensions();
@@ -75,6 +76,8 @@ void viewOnce(ViewOptions options) {
         showScene(options, settings, *instance);
     } catch (const Interrupted&) {  // while one was waited for
         fmt::print("0 frames; stopped before there was a headset\n");
+    } catch (const xr::Lost& lost) { throw Error(ExitCode::kNoDevice, lost.what()); } catch (const xr::InstanceLost& lost) {
+        throw Error(ExitCode::kNoDevice, lost.what());
     } catch (const xr::RuntimeFailed&) {
         // The runtime has said where and why.
         check(!options.simulate || options.script.empty(),

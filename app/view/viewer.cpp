@@ -190,8 +190,6 @@ bool Viewer::prepareScene(const FrameViews& views) {
         if (scene != nullptr) { renderer_.prepare(stay(), *scene, scenes_.scene_from_room, wished, views); }
         settings_that_fit_ = drawn_;
         return true;
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
     } catch (const Error& error) {
         const std::string change = settings_that_fit_ ? describeChange(*settings_that_fit_, settings_) : "";
         if (change.empty()) { throw; }
@@ -238,8 +236,6 @@ void Viewer::submitFrame(const FrameViews& views) {
         try {
             submit(with_things);
             return true;
-        } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-            throw;
         } catch (const Error& error) { refusal = error.what(); }
         return false;
     };

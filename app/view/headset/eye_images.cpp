@@ -26,8 +26,6 @@ EyeImages::EyeImages(const xr::Session& session, Presenter& presenter, vk::Forma
         for (std::size_t e = 0; e < 2; ++e) {
             depth_[e] = xr::Swapchain(session, nameOf(e) + "'s depth", size_px, vk::Format::eD32Sfloat, xr::ImageUse::kDepth);
         }
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
     } catch (const Error&) { dropDepth(); }  // offered, and not there: the picture does without
 }
 

@@ -63,8 +63,6 @@ HeadsetLife::Search HeadsetLife::search(const Say& say) {
     try {
         stay_ = std::make_unique<HeadsetStay>(instance_, context_, panel_px_);
         failures_ = 0;
-    } catch (const xr::Lost&) { throw; } catch (const xr::InstanceLost&) {
-        throw;
     } catch (const Error& error) {
         // It was found, but is not awake yet.
         if (++failures_ > kMostFailures) { throw; }

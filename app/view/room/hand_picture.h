@@ -3,7 +3,7 @@
 
 #include "app/view/room/sprites.h"
 #include "app/view/room/strips.h"
-#include "xr/hand_tracking.h"
+#include "xr/extensions/hand_tracking.h"
 
 namespace binosplat {
 

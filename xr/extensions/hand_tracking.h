@@ -1,13 +1,17 @@
-// Bare hands, joint by joint, where the runtime has XR_EXT_hand_tracking.
+// XR_EXT_hand_tracking: bare hands, joint by joint.
 #pragma once
 
 #include "engine/geometry.h"
 #include "xr/session.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 
 namespace binosplat::xr {
+
+// Whether the present headset does.
+[[nodiscard]] bool findsHands(const Instance& instance);
 
 // A hand's joints in room axes (ours), in the order of XrHandJointEXT.
 struct HandJoint {
@@ -20,17 +24,14 @@ using HandJoints = std::array<HandJoint, XR_HAND_JOINT_COUNT_EXT>;
 class HandTracking {
 public:
     explicit HandTracking(const Session& session);
-    HandTracking(const HandTracking&) = delete;
-    HandTracking& operator=(const HandTracking&) = delete;
-    ~HandTracking();
 
     // At the open frame's display time; empty while the hand is not seen whole.
     [[nodiscard]] std::optional<HandJoints> locate(int hand);
 
 private:
     const Session& session_;
-    std::array<XrHandTrackerEXT, 2> trackers_{};
-    PFN_xrDestroyHandTrackerEXT destroy_ = nullptr;
+    using Tracker = Owned<XrHandTrackerEXT, PFN_xrDestroyHandTrackerEXT>;
+    std::array<Tracker, 2> trackers_{Tracker(nullptr, nullptr), Tracker(nullptr, nullptr)};
     PFN_xrLocateHandJointsEXT locate_ = nullptr;
 };
 

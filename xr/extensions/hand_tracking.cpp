@@ -1,19 +1,25 @@
 // Asking for joints.
-#include "xr/hand_tracking.h"
+#include "xr/extensions/hand_tracking.h"
 
 #include "xr/convert.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace binosplat::xr {
+
+bool findsHands(const Instance& instance) {
+    if (!instance.hasExtension(XR_EXT_HAND_TRACKING_EXTENSION_NAME)) { return false; }
+    auto hands = structure<XrSystemHandTrackingPropertiesEXT>(XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT);
+    instance.troubles().tryFor("hand tracking", [&] { instance.readProperties(&hands); });
+    return hands.supportsHandTracking == XR_TRUE;
+}
 
 HandTracking::HandTracking(const Session& session) : session_(session) {
     const Instance& instance = session.instance();
     if (!instance.tracksHands()) { return; }
     instance.troubles().tryFor("hand tracking", [&] {
         const auto create = instance.function<PFN_xrCreateHandTrackerEXT>("xrCreateHandTrackerEXT");
-        destroy_ = instance.function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
+        const auto destroy = instance.function<PFN_xrDestroyHandTrackerEXT>("xrDestroyHandTrackerEXT");
         locate_ = instance.function<PFN_xrLocateHandJointsEXT>("xrLocateHandJointsEXT");
         for (std::size_t h = 0; h < 2; ++h) {
             auto info = structure<XrHandTrackerCreateInfoEXT>(XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
@@ -22,20 +28,14 @@ HandTracking::HandTracking(const Session& session) : session_(session) {
             // A runtime may offer hands that this headset, or its wearer, does not allow: controllers are drawn then.
             XrHandTrackerEXT made = XR_NULL_HANDLE;
             checkResult(create(session.handle(), &info, &made), "xrCreateHandTrackerEXT");
-            trackers_[h] = made;
+            trackers_[h] = Tracker(made, destroy);
         }
     });
 }
 
-HandTracking::~HandTracking() {
-    for (const XrHandTrackerEXT tracker : trackers_) {
-        if (tracker != XR_NULL_HANDLE) { destroy_(tracker); }
-    }
-}
-
 std::optional<HandJoints> HandTracking::locate(int hand) {
-    XrHandTrackerEXT& tracker = trackers_[static_cast<std::size_t>(hand)];
-    if (tracker == XR_NULL_HANDLE) { return std::nullopt; }
+    Tracker& tracker = trackers_[static_cast<std::size_t>(hand)];
+    if (!tracker) { return std::nullopt; }
     std::array<XrHandJointLocationEXT, XR_HAND_JOINT_COUNT_EXT> found{};
     auto info = structure<XrHandJointsLocateInfoEXT>(XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
     info.baseSpace = session_.space();
@@ -43,9 +43,9 @@ std::optional<HandJoints> HandTracking::locate(int hand) {
     auto locations = structure<XrHandJointLocationsEXT>(XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
     locations.jointCount = XR_HAND_JOINT_COUNT_EXT;
     locations.jointLocations = found.data();
-    const auto ask = [&] { checkResult(locate_(tracker, &info, &locations), "xrLocateHandJointsEXT"); };
+    const auto ask = [&] { checkResult(locate_(tracker.get(), &info, &locations), "xrLocateHandJointsEXT"); };
     if (!session_.instance().troubles().tryFor("hand tracking", ask)) {
-        destroy_(std::exchange(tracker, XrHandTrackerEXT(XR_NULL_HANDLE)));
+        tracker.reset();
         return std::nullopt;
     }
     const auto isKnown = [](const XrHandJointLocationEXT& joint) {

@@ -1,0 +1,36 @@
+// XR_KHR_visibility_mask: what of the eyes' pictures the lenses never show.
+#pragma once
+
+#include "xr/instance.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace binosplat::xr {
+
+// A part of an eye's picture that the lenses never show: triangles in the plane z = -1 of the eye (OpenXR axes).
+struct HiddenMesh {
+    std::vector<XrVector2f> vertices;
+    std::vector<std::uint32_t> indices;
+};
+
+// Both eyes' of a session; empty without the extension.
+class HiddenMeshes {
+public:
+    HiddenMeshes(const Instance& instance, XrSession session);
+
+    // After XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR.
+    void read(std::uint32_t eye);
+    [[nodiscard]] const std::array<HiddenMesh, 2>& meshes() const { return meshes_; }
+    // A new number whenever they were read.
+    [[nodiscard]] int version() const { return version_; }
+
+private:
+    const Instance& instance_;
+    XrSession session_;
+    std::array<HiddenMesh, 2> meshes_;
+    int version_ = 0;
+};
+
+}  // namespace binosplat::xr

@@ -1,0 +1,96 @@
+// The runtime's requirements of Vulkan, and its own ways to make it.
+#include "xr/extensions/vulkan_enable2.h"
+
+namespace binosplat::xr {
+namespace {
+
+// Both are to be asked for each headset anew.
+XrVersion leastVulkan(const Instance& instance) {
+    auto needs = structure<XrGraphicsRequirementsVulkan2KHR>(XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
+    BINOSPLAT_XR(instance.function<PFN_xrGetVulkanGraphicsRequirements2KHR>("xrGetVulkanGraphicsRequirements2KHR")(
+        instance.handle(), instance.system(), &needs));
+    return needs.minApiVersionSupported;
+}
+
+VkPhysicalDevice graphicsDevice(const Instance& instance, VkInstance vulkan_instance) {
+    auto info = structure<XrVulkanGraphicsDeviceGetInfoKHR>(XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
+    info.systemId = instance.system();
+    info.vulkanInstance = vulkan_instance;
+    VkPhysicalDevice chosen = VK_NULL_HANDLE;
+    BINOSPLAT_XR(instance.function<PFN_xrGetVulkanGraphicsDevice2KHR>("xrGetVulkanGraphicsDevice2KHR")(instance.handle(), &info, &chosen));
+    return chosen;
+}
+
+void requireSuccess(VkResult result, const char* what) {
+    if (result == VK_SUCCESS) { return; }
+    throw Error(ExitCode::kNoDevice, fmt::format("{}: {}", what, vk::to_string(vk::Result(result))));
+}
+
+VkInstance createInstance(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, const VkInstanceCreateInfo& vulkan_info) {
+    const XrVersion least = leastVulkan(instance);
+    const std::uint32_t wanted = vulkan_info.pApplicationInfo->apiVersion;
+    const XrVersion version = XR_MAKE_VERSION(VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted), 0);
+    if (version < least) {
+        throw Error(ExitCode::kNoDevice,
+                    fmt::format("{} needs Vulkan {}.{} or newer, this program uses {}.{}", instance.description(), XR_VERSION_MAJOR(least),
+                                XR_VERSION_MINOR(least), VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted)));
+    }
+    auto info = structure<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
+    info.systemId = instance.system();
+    info.pfnGetInstanceProcAddr = get_address;
+    info.vulkanCreateInfo = &vulkan_info;
+    VkInstance created = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    const auto create = instance.function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR");
+    checkResult(create(instance.handle(), &info, &created, &result), "xrCreateVulkanInstanceKHR");
+    requireSuccess(result, "xrCreateVulkanInstanceKHR");
+    return created;
+}
+
+VkDevice createDevice(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, VkPhysicalDevice physical_device,
+                      const VkDeviceCreateInfo& vulkan_info) {
+    auto info = structure<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
+    info.systemId = instance.system();
+    info.pfnGetInstanceProcAddr = get_address;
+    info.vulkanPhysicalDevice = physical_device;
+    info.vulkanCreateInfo = &vulkan_info;
+    VkDevice created = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    const auto create = instance.function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR");
+    checkResult(create(instance.handle(), &info, &created, &result), "xrCreateVulkanDeviceKHR");
+    requireSuccess(result, "xrCreateVulkanDeviceKHR");
+    return created;
+}
+
+}  // namespace
+
+DeviceMaker deviceMaker(const Instance& instance) {
+    DeviceMaker maker;
+    maker.create_instance = [&instance](PFN_vkGetInstanceProcAddr get_address, const VkInstanceCreateInfo& info) {
+        return createInstance(instance, get_address, info);
+    };
+    maker.choose_device = [&instance](VkInstance vulkan_instance) { return graphicsDevice(instance, vulkan_instance); };
+    maker.create_device = [&instance](PFN_vkGetInstanceProcAddr get_address, VkPhysicalDevice device, const VkDeviceCreateInfo& info) {
+        return createDevice(instance, get_address, device, info);
+    };
+    return maker;
+}
+
+void requireSameDevice(const Instance& instance, const Context& context) {
+    static_cast<void>(leastVulkan(instance));  // to be asked before a session
+    if (vk::PhysicalDevice(graphicsDevice(instance, *context.instance())) != *context.physicalDevice()) {
+        throw Error(ExitCode::kNoDevice, fmt::format("{} is on another graphics device than before: start anew", instance.description()));
+    }
+}
+
+XrGraphicsBindingVulkan2KHR graphicsBinding(const Context& context) {
+    auto binding = structure<XrGraphicsBindingVulkan2KHR>(XR_TYPE_GRAPHICS_BINDING_VULKAN2_KHR);
+    binding.instance = *context.instance();
+    binding.physicalDevice = *context.physicalDevice();
+    binding.device = *context.device();
+    binding.queueFamilyIndex = context.queueFamily();
+    binding.queueIndex = 0;
+    return binding;
+}
+
+}  // namespace binosplat::xr

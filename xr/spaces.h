@@ -1,0 +1,56 @@
+// A session's spaces, and where the eyes are in them.
+#pragma once
+
+#include "xr/check.h"
+#include "xr/own.h"
+
+#include <array>
+#include <optional>
+
+namespace binosplat::xr {
+
+// An eye at a display time.
+struct EyeView {
+    XrPosef pose;
+    XrFovf fov;
+};
+
+inline constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
+
+[[nodiscard]] OwnedSpace makeSpace(XrSession session, XrReferenceSpaceType type, const XrPosef& pose = kHere);
+
+// The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
+class Spaces {
+public:
+    explicit Spaces(XrSession session);
+
+    // Places the room for `time` and after, the first time that the head's pose is known, again when the runtime recentred its space, and
+    // when `demanded`. Returns true if it did.
+    bool settle(XrTime time, bool demanded);
+    // The runtime recentres its space itself.
+    void recentreFrom(XrTime time) { recentred_from_ = time; }
+    // The poses of the eyes in room(); empty if the headset's orientation is unknown. While its position is unknown, the last known one is
+    // used.
+    [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes(XrTime time);
+
+    // LOCAL until it is settled.
+    [[nodiscard]] XrSpace room() const { return room_.get(); }
+    // It moves with the head.
+    [[nodiscard]] XrSpace head() const { return head_.get(); }
+
+private:
+    // Of xrLocateViews, with what is known of it.
+    struct Located {
+        std::array<EyeView, 2> eyes;
+        bool turn_known = false, place_known = false;
+    };
+    [[nodiscard]] Located locate(XrSpace space, XrTime time) const;
+
+    XrSession session_;
+    OwnedSpace local_, room_, head_;
+    bool turn_settled_ = false, place_settled_ = false;
+    std::optional<XrTime> recentred_from_;
+    XrVector3f last_place_{};  // of the head in the room, as it was last known
+};
+
+}  // namespace binosplat::xr
