@@ -371,7 +371,7 @@ TEST_CASE("empty rectangles show nothing") {
 
 TEST_CASE("eyes side by side keep their pixels") {
     const RgbPicture left{{1, 2}, {1, 2, 3, 4, 5, 6}}, right{{2, 1}, {7, 8, 9, 10, 11, 12}};
-    CHECK(sideBySide(left, right) == RgbPicture{{3, 2}, {1, 2, 3, 7, 8, 9, 10, 11, 12, 4, 5, 6, 0, 0, 0, 0, 0, 0}});
+    CHECK(putSideBySide(left, right) == RgbPicture{{3, 2}, {1, 2, 3, 7, 8, 9, 10, 11, 12, 4, 5, 6, 0, 0, 0, 0, 0, 0}});
 }
 
 TEST_CASE("pictures in files come back and the files are the same every time") {
@@ -404,7 +404,7 @@ TEST_CASE("a picture is not written through a link or over an unfinished one") {
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "victim") << "keep me";
     for (const char* name : {".a.unfinished.png", "b.png"}) { std::filesystem::create_symlink("victim", folder / name); }
-    std::ofstream(unfinishedPicture(folder / "c.png")) << "keep me";
+    std::ofstream(nameUnfinishedPicture(folder / "c.png")) << "keep me";
     const RgbPicture picture{{1, 1}, {1, 2, 3}};
     for (const char* name : {"a.png", "c.png"}) {
         CHECK_THROWS_WITH_AS(writePng(folder / name, picture), ((folder / name).string() + ": cannot be written (File exists)").c_str(),
@@ -413,7 +413,7 @@ TEST_CASE("a picture is not written through a link or over an unfinished one") {
     writePng(folder / "b.png", picture);
     CHECK(readPng(folder / "b.png") == picture);
     CHECK(std::filesystem::file_size(folder / "victim") == 7);
-    CHECK(std::filesystem::file_size(unfinishedPicture(folder / "c.png")) == 7);
+    CHECK(std::filesystem::file_size(nameUnfinishedPicture(folder / "c.png")) == 7);
     std::filesystem::remove_all(folder);
 }
 #endif

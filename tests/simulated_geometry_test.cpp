@@ -59,7 +59,7 @@ TEST_CASE("interpolation meets its ends") {
 TEST_CASE("levelling keeps the heading alone") {
     const Pose tilted{turnedLeft(0.5, {}).orientation * glm::angleAxis(0.6, glm::dvec3(1, 0, 0)) * glm::angleAxis(0.2, glm::dvec3(0, 0, 1)),
                       {1, 2, 3}};
-    const Pose level = levelled(tilted);
+    const Pose level = makeLevel(tilted);
     CHECK(level.position == tilted.position);
     CHECK(isNear(level.orientation * glm::dvec3(0, 0, -1), {-std::sin(0.5), 0, -std::cos(0.5)}));
     CHECK(isNear(level.orientation * glm::dvec3(0, 1, 0), {0, 1, 0}));
@@ -67,7 +67,7 @@ TEST_CASE("levelling keeps the heading alone") {
 
 TEST_CASE("levelling a head that looks straight up keeps its right") {
     const Pose up{turnedLeft(0.5, {}).orientation * glm::angleAxis(kQuarter, glm::dvec3(1, 0, 0)), {}};
-    CHECK(isNear(levelled(up).orientation * glm::dvec3(1, 0, 0), {std::cos(0.5), 0, -std::sin(0.5)}));
+    CHECK(isNear(makeLevel(up).orientation * glm::dvec3(1, 0, 0), {std::cos(0.5), 0, -std::sin(0.5)}));
 }
 
 TEST_CASE("the left eye is on the left and turns left") {
@@ -79,7 +79,7 @@ TEST_CASE("the left eye is on the left and turns left") {
 }
 
 TEST_CASE("hidden and visible mesh fill the view together") {
-    const Mesh hidden = hiddenMesh(kFov), visible = visibleMesh(kFov);
+    const Mesh hidden = makeHiddenMesh(kFov), visible = makeVisibleMesh(kFov);
     REQUIRE(hidden.indices.size() % 3 == 0);
     CHECK(areaOf(hidden) + areaOf(visible) == doctest::Approx(1.5 * 2.0));
     // A polygon of 64 corners on the ellipse has 32 sin(pi / 32) instead of pi.
@@ -87,13 +87,13 @@ TEST_CASE("hidden and visible mesh fill the view together") {
 }
 
 TEST_CASE("mask triangles are counter-clockwise") {
-    for (const Mesh& mesh : {hiddenMesh(kFov), visibleMesh(kFov)}) {
+    for (const Mesh& mesh : {makeHiddenMesh(kFov), makeVisibleMesh(kFov)}) {
         for (std::size_t triangle = 0; triangle < mesh.indices.size() / 3; ++triangle) { CHECK(signedArea(mesh, triangle) > 0.0); }
     }
 }
 
 TEST_CASE("mask vertices stay inside the view") {
-    for (const Mesh& mesh : {hiddenMesh(kFov), visibleMesh(kFov), visibleOutline(kFov)}) {
+    for (const Mesh& mesh : {makeHiddenMesh(kFov), makeVisibleMesh(kFov), makeVisibleOutline(kFov)}) {
         for (const std::uint32_t index : mesh.indices) { REQUIRE(index < mesh.vertices.size()); }
         for (const glm::vec2& vertex : mesh.vertices) {
             CHECK(vertex.x >= -1.0f - 1e-6f);
@@ -105,7 +105,7 @@ TEST_CASE("mask vertices stay inside the view") {
 }
 
 TEST_CASE("the outline touches the four edges") {
-    const Mesh outline = visibleOutline(kFov);
+    const Mesh outline = makeVisibleOutline(kFov);
     const auto [left, right] = std::ranges::minmax(outline.vertices, {}, &glm::vec2::x);
     CHECK(left.x == doctest::Approx(-1.0));
     CHECK(right.x == doctest::Approx(0.5));

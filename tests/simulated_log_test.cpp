@@ -45,10 +45,10 @@ FrameRecord someRecord() {
 
 }  // namespace
 
-TEST_CASE("a frame is one line") { CHECK(frameLine(someRecord()).find('\n') == std::string::npos); }
+TEST_CASE("a frame is one line") { CHECK(makeFrameLine(someRecord()).find('\n') == std::string::npos); }
 
 TEST_CASE("numbers in the log read back as they were") {
-    const Json json = Json::parse(frameLine(someRecord()));
+    const Json json = Json::parse(makeFrameLine(someRecord()));
     CHECK(json["frame"] == 7);
     CHECK(json["blend_mode"] == "ADDITIVE");
     CHECK(json["display_time_ns"].get<std::int64_t>() == 9'007'199'254'740'993);
@@ -58,12 +58,12 @@ TEST_CASE("numbers in the log read back as they were") {
 }
 
 TEST_CASE("quaternions in the log are x, y, z, w") {
-    const Json json = Json::parse(frameLine(someRecord()));
+    const Json json = Json::parse(makeFrameLine(someRecord()));
     CHECK(json["head"]["orientation"] == Json::array({0.2, 0.3, 0.4, 0.1}));
 }
 
 TEST_CASE("every layer is logged") {
-    const Json json = Json::parse(frameLine(someRecord()));
+    const Json json = Json::parse(makeFrameLine(someRecord()));
     REQUIRE(json["layers"].size() == 2);
     const Json &projection = json["layers"][0], &quad = json["layers"][1];
     CHECK(projection["type"] == "projection");
@@ -80,16 +80,16 @@ TEST_CASE("every layer is logged") {
 }
 
 TEST_CASE("frames without layers have empty lists") {
-    const Json json = Json::parse(frameLine(FrameRecord{}));
+    const Json json = Json::parse(makeFrameLine(FrameRecord{}));
     CHECK(json["layers"].is_array());
     CHECK(json["layers"].empty());
     CHECK(json["should_render"] == true);
 }
 
 TEST_CASE("what happens between frames has a line without a number") {
-    const Json states = Json::parse(betweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
+    const Json states = Json::parse(makeBetweenLine({"", "", 7, true, "EXITING", {"state IDLE", "state EXITING"}}));
     CHECK(states == Json{{"session_state", "EXITING"}, {"display_time_ns", 7}, {"events", {"state IDLE", "state EXITING"}}});
-    const Json refused = Json::parse(betweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
+    const Json refused = Json::parse(makeBetweenLine({"XR_ERROR_TIME_INVALID", "the time is 0", 9, true, "FOCUSED", {}}));
     CHECK_FALSE(refused.contains("frame"));
     CHECK(refused["refused"] == "XR_ERROR_TIME_INVALID");
     CHECK(refused["reason"] == "the time is 0");
@@ -100,24 +100,24 @@ TEST_CASE("what happens between frames has a line without a number") {
 TEST_CASE("names that are no UTF-8 do not stop the log") {
     FrameRecord record;
     record.events = {"\xff\xfe"};
-    CHECK(Json::parse(frameLine(record))["events"].size() == 1);
+    CHECK(Json::parse(makeFrameLine(record))["events"].size() == 1);
 }
 
 TEST_CASE("a frame that has a picture names it") {
     FrameRecord record = someRecord();
-    CHECK_FALSE(Json::parse(frameLine(record)).contains("picture"));
-    record.picture = pictureName(12);
-    CHECK(Json::parse(frameLine(record))["picture"] == "frame_000012.png");
-    CHECK(pictureName(1234567) == "frame_1234567.png");
+    CHECK_FALSE(Json::parse(makeFrameLine(record)).contains("picture"));
+    record.picture = namePicture(12);
+    CHECK(Json::parse(makeFrameLine(record))["picture"] == "frame_000012.png");
+    CHECK(namePicture(1234567) == "frame_1234567.png");
 }
 
 TEST_CASE("lines are there before the log is closed") {
     const std::filesystem::path path = std::filesystem::temp_directory_path() / ("binosplat_log_" + std::to_string(::getpid()) + ".jsonl");
     {
         FrameLog log(path);
-        log.write(frameLine(someRecord()));
-        log.write(frameLine(someRecord()));
-        CHECK(std::filesystem::file_size(path) == 2 * (frameLine(someRecord()).size() + 1));
+        log.write(makeFrameLine(someRecord()));
+        log.write(makeFrameLine(someRecord()));
+        CHECK(std::filesystem::file_size(path) == 2 * (makeFrameLine(someRecord()).size() + 1));
     }
     CHECK_THROWS_AS(FrameLog(path / "none" / "a.jsonl"), std::runtime_error);
     CHECK_THROWS_WITH_AS(FrameLog(path).write(""), (path.string() + ": cannot be made (File exists)").c_str(), std::runtime_error);
@@ -147,7 +147,7 @@ struct UsedFolder {
         std::ofstream stream(path / kLogName);
         for (const std::string& picture : pictures) {
             record.picture = picture;
-            stream << frameLine(record) << "\n";
+            stream << makeFrameLine(record) << "\n";
         }
     }
     [[nodiscard]] std::set<std::string> names() const {
@@ -227,8 +227,8 @@ TEST_CASE("a run's files do not replace others") {
         folder.checkRefuses(".frame_000001.unfinished.png");
     }
     SUBCASE("but a log may begin with a frame that was refused, or with a session's states") {
-        for (const std::string& line :
-             {betweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}), betweenLine({"", "", 0, true, "IDLE", {"state IDLE"}})}) {
+        for (const std::string& line : {makeBetweenLine({"XR_ERROR_TIME_INVALID", "", 0, true, "READY", {}}),
+                                        makeBetweenLine({"", "", 0, true, "IDLE", {"state IDLE"}})}) {
             const UsedFolder folder({});
             std::ofstream(folder.path / kLogName) << line << "\n";
             removeOldOutput(folder.path, true, {});

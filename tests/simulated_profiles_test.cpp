@@ -171,7 +171,7 @@ struct Played : HeadlessSession {
 }  // namespace
 
 TEST_CASE("every input of every profile is read as it is moved, each by itself, and only while its device is there") {
-    for (const Profile& profile : simulated::allProfiles()) {
+    for (const Profile& profile : simulated::listProfiles()) {
         for (const std::string_view user : profile.user_paths) {
             INFO(std::string(profile.path), " ", std::string(user));
             const Played played(profile, user);
@@ -212,7 +212,7 @@ TEST_CASE("every input of every profile is read as it is moved, each by itself, 
 
 TEST_CASE("every pose of every profile is where it is put") {
     constexpr float kHalf = 0.70710678f;
-    for (const Profile& profile : simulated::allProfiles()) {
+    for (const Profile& profile : simulated::listProfiles()) {
         for (const std::string_view user : profile.user_paths) {
             const Played played(profile, user);
             const XrSpace stage = played.space(XR_REFERENCE_SPACE_TYPE_STAGE);

@@ -20,7 +20,7 @@ struct Setting {
 // `name` is "SCRIPT", "OUT", "CLOCK", "PROFILE", "GPU" or "EXPLAIN".
 [[nodiscard]] inline Setting settingOf(const char* name) {
     std::string variable = std::string("SIMULATED_OPENXR_") + name;
-    std::optional<std::string> value = environmentVariable(variable);
+    std::optional<std::string> value = readEnvironmentVariable(variable);
     const bool is_there = value.has_value();
     return {std::move(variable), is_there, std::move(value).value_or("")};
 }

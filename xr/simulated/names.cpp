@@ -35,7 +35,7 @@ constexpr LaterName<XrStructureType> kLaterTypes[] = {
 template <class Value>
 const char* findName(std::span<const LaterName<Value>> names, Value value) {
     for (const auto& [later, name] : names) {
-        if (later == value) return name;
+        if (later == value) { return name; }
     }
     return nullptr;
 }

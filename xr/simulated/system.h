@@ -8,14 +8,14 @@
 
 namespace simulated {
 
-std::optional<std::string> environmentVariable(const std::string& name);
+std::optional<std::string> readEnvironmentVariable(const std::string& name);
 
 // A file that was not there, for writing. Null, with the reason in errno, if anything has that name.
 std::FILE* createFile(const std::filesystem::path& path);
 
 // A function of the system's Vulkan loader; null without it. The library is held open for good: the application's Vulkan objects may
 // outlive this runtime's interest in them.
-void* vulkanLoadersFunction(const char* name);
+void* findVulkanFunction(const char* name);
 // The name of that loader in messages.
 extern const char* const kVulkanLoader;
 

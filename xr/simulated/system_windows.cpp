@@ -14,7 +14,7 @@ namespace simulated {
 
 const char* const kVulkanLoader = "vulkan-1.dll";
 
-std::optional<std::string> environmentVariable(const std::string& name) {
+std::optional<std::string> readEnvironmentVariable(const std::string& name) {
     const std::wstring wide(name.begin(), name.end());  // ours are ASCII
     std::wstring value(32767, L'\0');                   // the longest there is
     ::SetLastError(ERROR_SUCCESS);
@@ -33,7 +33,7 @@ std::FILE* createFile(const std::filesystem::path& path) {
     return descriptor >= 0 ? ::_fdopen(descriptor, "wb") : nullptr;
 }
 
-void* vulkanLoadersFunction(const char* name) {
+void* findVulkanFunction(const char* name) {
     static const HMODULE library = ::LoadLibraryW(L"vulkan-1.dll");
     return library != nullptr ? reinterpret_cast<void*>(::GetProcAddress(library, name)) : nullptr;
 }

@@ -13,11 +13,11 @@ namespace {
 AttachedAction attach(const Action& action, const ActionSet& set) {
     AttachedAction attached{action.number, set.number, set.priority, action.type, action.subaction_paths, {}, {}};
     attached.readings[XR_NULL_PATH] = {};
-    for (const XrPath path : action.subaction_paths) attached.readings[path] = {};
+    for (const XrPath path : action.subaction_paths) { attached.readings[path] = {}; }
     return attached;
 }
 
-std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActionsSyncInfo& info) {
+std::vector<ActiveSet> checkActiveSets(const Session& session, const XrActionsSyncInfo& info) {
     require(info.activeActionSets != nullptr || info.countActiveActionSets == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
             info.countActiveActionSets, " action sets is missing");
     std::vector<ActiveSet> active;
@@ -30,7 +30,7 @@ std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActions
         require(is_attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "the action set ", described.name, " is not attached to this session");
         std::vector<XrPath> declared;
         for (const AttachedAction& action : session.attachment->actions) {
-            if (action.set == set) declared.insert(declared.end(), action.subaction_paths.begin(), action.subaction_paths.end());
+            if (action.set == set) { declared.insert(declared.end(), action.subaction_paths.begin(), action.subaction_paths.end()); }
         }
         checkSubactionPath(session.instance, declared, path);
         active.push_back({set, path});
@@ -40,7 +40,7 @@ std::vector<ActiveSet> checkedActiveSets(const Session& session, const XrActions
 
 // Common to the four xrGetActionState functions.
 const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* getInfo, XrActionType type) {
-    const XrActionStateGetInfo& info = checked(getInfo, XR_TYPE_ACTION_STATE_GET_INFO);
+    const XrActionStateGetInfo& info = checkStruct(getInfo, XR_TYPE_ACTION_STATE_GET_INFO);
     const AttachedAction& action = getAttached(session, info.action);
     require(action.type == type, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ", getAction(session.instance, info.action).name,
             " is of another type");
@@ -54,18 +54,18 @@ const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* ge
 XrResult xrAttachSessionActionSets(XrSession session, const XrSessionActionSetsAttachInfo* attachInfo) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const XrSessionActionSetsAttachInfo& info = checked(attachInfo, XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
+        const XrSessionActionSetsAttachInfo& info = checkStruct(attachInfo, XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
         require(info.countActionSets > 0 && info.actionSets != nullptr, XR_ERROR_VALIDATION_FAILURE, "no action sets");
         require(!owner.attachment, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "action sets are attached once per session");
         std::vector<ActionSet*> sets;
-        for (std::uint32_t i = 0; i < info.countActionSets; ++i) sets.push_back(&getActionSet(owner.instance, info.actionSets[i]));
+        for (std::uint32_t i = 0; i < info.countActionSets; ++i) { sets.push_back(&getActionSet(owner.instance, info.actionSets[i])); }
         Attachment attachment;
         attachment.suggestions = owner.instance.suggestions;
         for (ActionSet* const set : sets) {
-            if (std::count(attachment.sets.begin(), attachment.sets.end(), set->number) > 0) continue;
+            if (std::count(attachment.sets.begin(), attachment.sets.end(), set->number) > 0) { continue; }
             set->is_attached = true;
             attachment.sets.push_back(set->number);
-            for (const auto& child : set->children) attachment.actions.push_back(attach(dynamic_cast<const Action&>(*child), *set));
+            for (const auto& child : set->children) { attachment.actions.push_back(attach(dynamic_cast<const Action&>(*child), *set)); }
         }
         owner.attachment = std::move(attachment);
         return successOf(owner);
@@ -75,9 +75,9 @@ XrResult xrAttachSessionActionSets(XrSession session, const XrSessionActionSetsA
 XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const XrActionsSyncInfo& info = checked(syncInfo, XR_TYPE_ACTIONS_SYNC_INFO);
-        const std::vector<ActiveSet> active = checkedActiveSets(owner, info);
-        if (owner.isHeadless() && owner.is_running) owner.passHeadlessFrame();
+        const XrActionsSyncInfo& info = checkStruct(syncInfo, XR_TYPE_ACTIONS_SYNC_INFO);
+        const std::vector<ActiveSet> active = checkActiveSets(owner, info);
+        if (owner.isHeadless() && owner.is_running) { owner.passHeadlessFrame(); }
         const bool is_focused = owner.state == XR_SESSION_STATE_FOCUSED;
         if (owner.attachment) {
             const Clock& clock = owner.instance.simulation->clock;
@@ -96,7 +96,7 @@ XrResult xrGetActionStateBoolean(XrSession session, const XrActionStateGetInfo* 
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_BOOLEAN_INPUT);
-        XrActionStateBoolean& output = checked(state, XR_TYPE_ACTION_STATE_BOOLEAN);
+        XrActionStateBoolean& output = checkStruct(state, XR_TYPE_ACTION_STATE_BOOLEAN);
         output.currentState = reading.value.x > 0;
         output.changedSinceLastSync = reading.has_changed;
         output.lastChangeTime = reading.changed_at;
@@ -109,7 +109,7 @@ XrResult xrGetActionStateFloat(XrSession session, const XrActionStateGetInfo* ge
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_FLOAT_INPUT);
-        XrActionStateFloat& output = checked(state, XR_TYPE_ACTION_STATE_FLOAT);
+        XrActionStateFloat& output = checkStruct(state, XR_TYPE_ACTION_STATE_FLOAT);
         output.currentState = static_cast<float>(reading.value.x);
         output.changedSinceLastSync = reading.has_changed;
         output.lastChangeTime = reading.changed_at;
@@ -122,7 +122,7 @@ XrResult xrGetActionStateVector2f(XrSession session, const XrActionStateGetInfo*
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_VECTOR2F_INPUT);
-        XrActionStateVector2f& output = checked(state, XR_TYPE_ACTION_STATE_VECTOR2F);
+        XrActionStateVector2f& output = checkStruct(state, XR_TYPE_ACTION_STATE_VECTOR2F);
         output.currentState = {static_cast<float>(reading.value.x), static_cast<float>(reading.value.y)};
         output.changedSinceLastSync = reading.has_changed;
         output.lastChangeTime = reading.changed_at;
@@ -135,7 +135,7 @@ XrResult xrGetActionStatePose(XrSession session, const XrActionStateGetInfo* get
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_POSE_INPUT);
-        checked(state, XR_TYPE_ACTION_STATE_POSE).isActive = reading.is_active;
+        checkStruct(state, XR_TYPE_ACTION_STATE_POSE).isActive = reading.is_active;
         return successOf(owner);
     });
 }

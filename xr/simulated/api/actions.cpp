@@ -22,14 +22,14 @@ template <class T>
 void checkUnique(const Object& parent, const std::string& name, const std::string& localized_name) {
     for (const auto& child : parent.children) {
         const T* const sibling = dynamic_cast<const T*>(child.get());
-        if (sibling == nullptr) continue;
+        if (sibling == nullptr) { continue; }
         require(sibling->name != name, XR_ERROR_NAME_DUPLICATED, name, ": the name is taken");
         require(sibling->localized_name != localized_name, XR_ERROR_LOCALIZED_NAME_DUPLICATED, localized_name,
                 ": the localized name is taken");
     }
 }
 
-std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActionCreateInfo& info) {
+std::vector<XrPath> checkSubactionPaths(const Instance& instance, const XrActionCreateInfo& info) {
     require(info.subactionPaths != nullptr || info.countSubactionPaths == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
             info.countSubactionPaths, " subaction paths is missing");
     std::vector<XrPath> paths;
@@ -48,18 +48,18 @@ std::vector<XrPath> checkedSubactionPaths(const Instance& instance, const XrActi
 
 ActionSet& getActionSet(const Instance& instance, XrActionSet set) {
     ActionSet& found = get<ActionSet>(set);
-    if (found.parent != &instance) refuseHandle(set, " of this instance");
+    if (found.parent != &instance) { refuseHandle(set, " of this instance"); }
     return found;
 }
 
 Action& getAction(const Instance& instance, XrAction action) {
     Action& found = get<Action>(action);
-    if (found.parent->parent != &instance) refuseHandle(action, " of this instance");
+    if (found.parent->parent != &instance) { refuseHandle(action, " of this instance"); }
     return found;
 }
 
 void checkSubactionPath(const Instance& instance, const std::vector<XrPath>& declared, XrPath path) {
-    if (path == XR_NULL_PATH) return;
+    if (path == XR_NULL_PATH) { return; }
     const std::string& text = instance.paths.textOf(path);
     require(std::find(declared.begin(), declared.end(), path) != declared.end(), XR_ERROR_PATH_UNSUPPORTED, text,
             " is not among the subaction paths that were declared");
@@ -68,8 +68,8 @@ void checkSubactionPath(const Instance& instance, const std::vector<XrPath>& dec
 XrResult xrCreateActionSet(XrInstance instance, const XrActionSetCreateInfo* createInfo, XrActionSet* actionSet) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrActionSetCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_SET_CREATE_INFO);
-        XrActionSet& output = checkedOutput(actionSet);
+        const XrActionSetCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_SET_CREATE_INFO);
+        XrActionSet& output = checkOutput(actionSet);
         auto created = std::make_unique<ActionSet>();
         created->name = textOf(info.actionSetName);
         created->localized_name = textOf(info.localizedActionSetName);
@@ -91,9 +91,9 @@ XrResult xrDestroyActionSet(XrActionSet actionSet) {
 XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createInfo, XrAction* action) {
     return answer(__func__, [&] {
         ActionSet& set = get<ActionSet>(actionSet);
-        const Instance& instance = getInstance(handleOf(ancestor<Instance>(set)));
-        const XrActionCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_CREATE_INFO);
-        XrAction& output = checkedOutput(action);
+        const Instance& instance = getInstance(handleOf(findAncestor<Instance>(set)));
+        const XrActionCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_CREATE_INFO);
+        XrAction& output = checkOutput(action);
         require(!set.is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set ", set.name, " is attached already");
         switch (info.actionType) {
             case XR_ACTION_TYPE_BOOLEAN_INPUT:
@@ -109,7 +109,7 @@ XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createI
         created->name = textOf(info.actionName);
         created->localized_name = textOf(info.localizedActionName);
         created->type = info.actionType;
-        created->subaction_paths = checkedSubactionPaths(instance, info);
+        created->subaction_paths = checkSubactionPaths(instance, info);
         checkNames(created->name, created->localized_name);
         checkUnique<Action>(set, created->name, created->localized_name);
         output = handleOf(adopt(set, std::move(created)));
@@ -127,7 +127,7 @@ XrResult xrDestroyAction(XrAction action) {
 XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrInteractionProfileSuggestedBinding* suggestedBindings) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrInteractionProfileSuggestedBinding& info = checked(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
+        const XrInteractionProfileSuggestedBinding& info = checkStruct(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
         const std::string& name = owner.paths.textOf(info.interactionProfile);
         const Profile* const profile = findProfile(name);
         require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, name, " is not an interaction profile");
@@ -142,7 +142,7 @@ XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrIntera
             const XrPath path = info.suggestedBindings[i].binding;
             const std::string& binding = owner.paths.textOf(path);
             if (!allowsBinding(*profile, binding, owner)) {
-                const std::string_view needed = neededFor(*profile, binding);
+                const std::string_view needed = findNeeded(*profile, binding);
                 refuse(XR_ERROR_PATH_UNSUPPORTED, name, " has no ", binding, needed.empty() ? "" : " without ", needed,
                        ", suggested for the action ", action.name);
             }

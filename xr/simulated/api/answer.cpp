@@ -18,14 +18,14 @@ struct Said {
     std::uint64_t times = 0, told = 0;
 };
 
-std::map<std::string, Said>& saidLines() {
+std::map<std::string, Said>& getSaidLines() {
     // It outlives whatever the end of the process destroys, which may still have something to say.
     static auto& lines = *new std::map<std::string, Said>();
     return lines;
 }
 
 bool isPowerOfTen(std::uint64_t number) {
-    while (number >= 10 && number % 10 == 0) number /= 10;
+    while (number >= 10 && number % 10 == 0) { number /= 10; }
     return number == 1;
 }
 
@@ -33,44 +33,48 @@ bool isPowerOfTen(std::uint64_t number) {
 void say(const std::string& line) {
     // A program whose lines are all different is not remembered for ever.
     constexpr std::size_t kMostLines = 1000;
-    if (saidLines().size() == kMostLines && !saidLines().contains(line)) sayTotals();
-    Said& said = saidLines()[line];
-    if (!isPowerOfTen(++said.times)) return;
+    if (getSaidLines().size() == kMostLines && !getSaidLines().contains(line)) { sayTotals(); }
+    Said& said = getSaidLines()[line];
+    if (!isPowerOfTen(++said.times)) { return; }
     said.told = said.times;
-    if (said.times == 1)
+    if (said.times == 1) {
         std::fprintf(stderr, "simulated runtime: %s\n", line.c_str());
-    else
+    } else {
         std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times so far)\n", line.c_str(), said.times);
+    }
 }
 
 }  // namespace
 
-std::mutex& runtimeLock() {
+std::mutex& getRuntimeLock() {
     static std::mutex lock;
     return lock;
 }
 
 void sayTotals() {
-    for (const auto& [line, said] : saidLines()) {
-        if (said.times > said.told) std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times in all)\n", line.c_str(), said.times);
+    for (const auto& [line, said] : getSaidLines()) {
+        if (said.times > said.told) {
+            std::fprintf(stderr, "simulated runtime: %s (%" PRIu64 " times in all)\n", line.c_str(), said.times);
+        }
     }
-    saidLines().clear();
+    getSaidLines().clear();
 }
 
 void append(std::string& reason, XrStructureType type) {
-    if (const char* const name = nameOf(type))
+    if (const char* const name = nameOf(type)) {
         reason += name;
-    else
+    } else {
         append(reason, static_cast<std::int64_t>(type));
+    }
 }
 
 void explain(const char* function, const Refusal& refusal) {
     // A failure of the runtime itself is always said: no application can know what to do about it. The loader asks for every function
     // that it has heard of, also without an instance after one was refused; that is no mistake of the application's.
     const bool is_loaders = std::strcmp(function, "xrGetInstanceProcAddr") == 0 && refusal.result != XR_ERROR_VALIDATION_FAILURE;
-    if (!is_loaders) queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason);
+    if (!is_loaders) { queueMessage(XR_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT, nameOf(refusal.result), function, refusal.reason); }
     const bool is_wanted = settingOf("EXPLAIN").is_there && !is_loaders;
-    if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) return;
+    if (!is_wanted && refusal.result != XR_ERROR_RUNTIME_FAILURE) { return; }
     say(std::string(function) + ": " + nameOf(refusal.result) + ": " + refusal.reason);
 }
 

@@ -42,11 +42,11 @@ template <class... Parts>
 // The reason names what was refused: it is put together of words and values only where it is needed.
 template <class... Parts>
 void require(bool holds, XrResult otherwise, const Parts&... parts) {
-    if (!holds) refuse(otherwise, parts...);
+    if (!holds) { refuse(otherwise, parts...); }
 }
 
 // One lock for the whole runtime: calls are short, and only xrWaitFrame waits (and lets go of it meanwhile).
-std::mutex& runtimeLock();
+std::mutex& getRuntimeLock();
 
 // With SIMULATED_OPENXR_EXPLAIN set, says on standard error which call was refused and why; failures of the runtime are always said.
 void explain(const char* function, const Refusal& refusal);
@@ -74,7 +74,7 @@ template <class Body>
 XrResult answer(const char* function, Body&& body) {
     XrResult result = XR_SUCCESS;
     {
-        const std::lock_guard guard(runtimeLock());
+        const std::lock_guard guard(getRuntimeLock());
         result = answerUnlocked(function, std::forward<Body>(body));
     }
     deliverMessages();

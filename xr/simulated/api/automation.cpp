@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kInputPrefix = "/input/";
 
-std::size_t checkedDevice(const Session& session, XrPath user_path) {
+std::size_t checkInputDevice(const Session& session, XrPath user_path) {
     const std::string& text = session.instance.paths.textOf(user_path);
     const std::optional<std::size_t> device = deviceOf(text);
     require(device.has_value(), XR_ERROR_PATH_UNSUPPORTED, text, " is not the path of a device");
@@ -28,8 +28,8 @@ struct Input {
 };
 
 // An input of the device, by its whole path. `suffix` is what a vector's components are called beyond that.
-Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const char* suffix) {
-    DeviceOverride& device = session.automation.devices[checkedDevice(session, user_path)];
+Input checkInput(Session& session, XrPath user_path, XrPath source_path, const char* suffix) {
+    DeviceOverride& device = session.automation.devices[checkInputDevice(session, user_path)];
     const std::string &user = session.instance.paths.textOf(user_path), &source = session.instance.paths.textOf(source_path);
     const std::string prefix = user + std::string(kInputPrefix);
     require(source.starts_with(prefix), XR_ERROR_PATH_UNSUPPORTED, source, " is not an input of ", user);
@@ -39,7 +39,7 @@ Input checkedInput(Session& session, XrPath user_path, XrPath source_path, const
     };
     bool is_known = device.profile != nullptr && has(*device.profile);
     if (device.profile == nullptr) {
-        for (const Profile& profile : allProfiles()) is_known = is_known || has(profile);
+        for (const Profile& profile : listProfiles()) { is_known = is_known || has(profile); }
     }
     require(is_known, XR_ERROR_PATH_UNSUPPORTED, device.profile != nullptr ? device.profile->path : "no interaction profile", " has no ",
             source, suffix);
@@ -50,7 +50,7 @@ XrResult setInput(const char* function, XrSession session, XrPath user_path, XrP
     return answer(function, [&] {
         Session& owner = getSession(session);
         require(std::isfinite(value), XR_ERROR_VALIDATION_FAILURE, "the value is ", value, ", must be finite");
-        const Input input = checkedInput(owner, user_path, source_path, "");
+        const Input input = checkInput(owner, user_path, source_path, "");
         input.device.inputs[input.name] = value;
         return successOf(owner);
     });
@@ -61,11 +61,11 @@ XrResult setInput(const char* function, XrSession session, XrPath user_path, XrP
 void Automation::applyTo(State& state) const {
     for (std::size_t i = 0; i < kDevices; ++i) {
         ControllerState& device = state.device(i);
-        if (devices[i].is_active) device.tracked = *devices[i].is_active;
-        if (devices[i].is_active && i == kGaze) state.gaze_is_good = *devices[i].is_active;
-        for (const auto& [name, value] : devices[i].inputs) device.inputs[name] = value;
-        if (devices[i].stage_from_grip) device.stage_from_grip = *devices[i].stage_from_grip;
-        if (devices[i].stage_from_aim) device.stage_from_aim = *devices[i].stage_from_aim;
+        if (devices[i].is_active) { device.tracked = *devices[i].is_active; }
+        if (devices[i].is_active && i == kGaze) { state.gaze_is_good = *devices[i].is_active; }
+        for (const auto& [name, value] : devices[i].inputs) { device.inputs[name] = value; }
+        if (devices[i].stage_from_grip) { device.stage_from_grip = *devices[i].stage_from_grip; }
+        if (devices[i].stage_from_aim) { device.stage_from_aim = *devices[i].stage_from_aim; }
     }
 }
 
@@ -76,13 +76,13 @@ XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile,
         const Profile* const profile = findProfile(name);
         require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, name, " is not an interaction profile");
         require(owner.instance.has(*profile), XR_ERROR_PATH_UNSUPPORTED, name, " needs ", profile->depends);
-        const std::size_t device = checkedDevice(owner, topLevelPath);
+        const std::size_t device = checkInputDevice(owner, topLevelPath);
         const std::string& user_path = owner.instance.paths.textOf(topLevelPath);
         const bool is_for_it = std::find(profile->user_paths.begin(), profile->user_paths.end(), user_path) != profile->user_paths.end();
         require(is_for_it, XR_ERROR_PATH_UNSUPPORTED, name, " is not for ", user_path);
         DeviceOverride& moved = owner.automation.devices[device];
         // Another controller's buttons are others.
-        if (moved.profile != profile) moved.inputs.clear();
+        if (moved.profile != profile) { moved.inputs.clear(); }
         moved.profile = profile;
         moved.is_active = isActive != XR_FALSE;
         return successOf(owner);
@@ -102,7 +102,7 @@ XrResult xrSetInputDeviceStateVector2fEXT(XrSession session, XrPath topLevelPath
         Session& owner = getSession(session);
         require(std::isfinite(state.x) && std::isfinite(state.y), XR_ERROR_VALIDATION_FAILURE, "the value is ", state.x, " ", state.y,
                 ", must be finite");
-        const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "/x");
+        const Input input = checkInput(owner, topLevelPath, inputSourcePath, "/x");
         input.device.inputs[input.name + "/x"] = state.x;
         input.device.inputs[input.name + "/y"] = state.y;
         return successOf(owner);
@@ -112,7 +112,7 @@ XrResult xrSetInputDeviceStateVector2fEXT(XrSession session, XrPath topLevelPath
 XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrSpace space, XrPosef pose) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const Input input = checkedInput(owner, topLevelPath, inputSourcePath, "");
+        const Input input = checkInput(owner, topLevelPath, inputSourcePath, "");
         require(input.name.ends_with("/pose"), XR_ERROR_PATH_UNSUPPORTED, input.name, " is not a pose");
         checkPose(pose);
         const std::optional<Pose> stage_from_space =
@@ -120,7 +120,7 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
         require(stage_from_space.has_value(), XR_ERROR_VALIDATION_FAILURE, "the place of the space is not known");
         Pose stage_from_pose = compose(*stage_from_space, fromXr(pose));
         const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
-        if (!aims) stage_from_pose = compose(stage_from_pose, inverse(gripFromPose(input.name, checkedDevice(owner, topLevelPath))));
+        if (!aims) { stage_from_pose = compose(stage_from_pose, inverse(gripFromPose(input.name, checkInputDevice(owner, topLevelPath)))); }
         (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
         return successOf(owner);
     });

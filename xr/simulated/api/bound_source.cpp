@@ -13,7 +13,7 @@ std::optional<std::string> resolve(const Profile& profile, std::string_view user
     const auto firstOf = [&](std::initializer_list<const char*> components) -> std::optional<std::string> {
         for (const char* component : components) {
             const std::string longer = std::string(path) + component;
-            if (findComponent(profile, user_path, longer, enabled) != nullptr) return longer;
+            if (findComponent(profile, user_path, longer, enabled) != nullptr) { return longer; }
         }
         return std::nullopt;
     };
@@ -22,19 +22,19 @@ std::optional<std::string> resolve(const Profile& profile, std::string_view user
     const bool is_number = is(ComponentKind::kBoolean) || is(ComponentKind::kFloat);
     switch (type) {
         case XR_ACTION_TYPE_BOOLEAN_INPUT:
-            if (is_number) return std::string(path);
+            if (is_number) { return std::string(path); }
             return firstOf({"/click", "/value"});
         case XR_ACTION_TYPE_FLOAT_INPUT:
-            if (is_number) return std::string(path);
+            if (is_number) { return std::string(path); }
             return firstOf({"/value", "/click"});
         case XR_ACTION_TYPE_VECTOR2F_INPUT:
-            if (firstOf({"/x"}) && firstOf({"/y"})) return std::string(path);
+            if (firstOf({"/x"}) && firstOf({"/y"})) { return std::string(path); }
             return std::nullopt;
         case XR_ACTION_TYPE_POSE_INPUT:
-            if (is(ComponentKind::kPose)) return std::string(path);
+            if (is(ComponentKind::kPose)) { return std::string(path); }
             return firstOf({"/pose"});
         default:
-            if (is(ComponentKind::kVibration)) return std::string(path);
+            if (is(ComponentKind::kVibration)) { return std::string(path); }
             return std::nullopt;
     }
 }
@@ -45,10 +45,10 @@ std::optional<BoundSource> bindSource(const Instance& instance, const Profile& p
     const std::string& text = instance.paths.textOf(path);
     const std::string_view user_path = userPathOf(text);
     const std::optional<std::size_t> device = deviceOf(user_path);
-    if (!device) return std::nullopt;
+    if (!device) { return std::nullopt; }
     const std::optional<std::string> component =
         resolve(profile, user_path, std::string_view(text).substr(user_path.size()), type, instance);
-    if (!component) return std::nullopt;
+    if (!component) { return std::nullopt; }
     const std::size_t start = component->find('/', 1) + 1;
     const std::size_t end = component->find('/', start);
     return BoundSource{path, instance.paths.findPath(user_path), *device, component->substr(start, end - start), component->substr(start)};

@@ -26,8 +26,8 @@ public:
     // A period without a frame, as long as nobody asks for any.
     void pass();
     XrTime now() const;
-    XrDuration period() const { return frame_period; }
-    bool isReal() const { return is_real; }
+    XrDuration period() const { return period_; }
+    bool isReal() const { return is_real_; }
     // Seconds since the first frame: the time that scripts know. It does not count how long a program takes to start.
     double secondsAt(XrTime time) const { return static_cast<double>(time - kStart) * 1e-9; }
     XrTime timeAt(double seconds) const { return kStart + static_cast<XrTime>(seconds * 1e9); }
@@ -42,19 +42,19 @@ private:
     static constexpr XrTime kStart = 1'000'000'000;
 
     // When the frame on display is.
-    XrTime shown() const { return origin + std::max<std::int64_t>(frame, 0) * frame_period + delayOf(frame); }
+    XrTime shown() const { return origin_ + std::max<std::int64_t>(frame_, 0) * period_ + delayOf(frame_); }
     XrDuration delayOf(std::int64_t of_frame) const;
 
-    bool is_real;
-    XrDuration frame_period;
-    double irregularity;
+    bool is_real_;
+    XrDuration period_;
+    double irregularity_;
     // The frame on display, counted in periods since this period began.
-    XrTime origin = kStart;
-    std::int64_t frame = -1;
-    std::optional<std::chrono::steady_clock::time_point> birth;
+    XrTime origin_ = kStart;
+    std::int64_t frame_ = -1;
+    std::optional<std::chrono::steady_clock::time_point> birth_;
     // Time began before the first frame.
-    bool is_early = false;
-    std::optional<std::int64_t> offset;
+    bool is_early_ = false;
+    std::optional<std::int64_t> offset_;
 };
 
 }  // namespace simulated

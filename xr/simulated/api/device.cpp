@@ -49,8 +49,8 @@ vk::ImageLayout layoutOf(const ImageInfo& info) {
 
 }  // namespace
 
-PFN_vkGetInstanceProcAddr systemVulkanLoader() {
-    void* const function = vulkanLoadersFunction("vkGetInstanceProcAddr");
+PFN_vkGetInstanceProcAddr findSystemVulkanLoader() {
+    void* const function = findVulkanFunction("vkGetInstanceProcAddr");
     require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, "there is no ", kVulkanLoader);
     return reinterpret_cast<PFN_vkGetInstanceProcAddr>(function);
 }
@@ -92,7 +92,7 @@ Device::Implementation::Implementation(const GraphicsBinding& binding)
         const auto features = physical_device.getFormatProperties(vk::Format(format.format), dispatch).optimalTilingFeatures;
         const auto needed =
             format.aspects == kColour ? vk::FormatFeatureFlagBits::eColorAttachment : vk::FormatFeatureFlagBits::eDepthStencilAttachment;
-        if (features & needed) formats.push_back(format);
+        if (features & needed) { formats.push_back(format); }
     }
     pool = device.createCommandPoolUnique({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, binding.queue_family}, nullptr, dispatch);
     commands = device.allocateCommandBuffers({*pool, vk::CommandBufferLevel::ePrimary, 1}, dispatch).front();
@@ -102,7 +102,7 @@ Device::Implementation::Implementation(const GraphicsBinding& binding)
 std::uint32_t Device::Implementation::findMemory(std::uint32_t allowed, vk::MemoryPropertyFlags wanted) const {
     const auto memory = physical_device.getMemoryProperties(dispatch);
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        if ((allowed >> i & 1) != 0 && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+        if ((allowed >> i & 1) != 0 && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) { return i; }
     }
     throw Refusal{XR_ERROR_RUNTIME_FAILURE, "the device has no such memory"};
 }
@@ -115,7 +115,7 @@ void Device::Implementation::transition(const DeviceImage& image, vk::ImageLayou
     // Whatever the application did before and does after: all of it waits. Nothing here is about speed.
     const auto everything = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
     const vk::ImageMemoryBarrier barrier(everything, everything, from, to, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image.handle(),
-                                         {vk::ImageAspectFlags(image.info.format.aspects), 0, image.info.mips, 0, image.info.layers});
+                                         {vk::ImageAspectFlags(image.info().format.aspects), 0, image.info().mips, 0, image.info().layers});
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eAllCommands, {}, {}, {}, barrier,
                              dispatch);
 }
@@ -133,13 +133,13 @@ void Device::Implementation::finish() {
     device.resetFences(*done, dispatch);
 }
 
-Device::Device(const GraphicsBinding& binding) : implementation(std::make_unique<Implementation>(binding)) {}
+Device::Device(const GraphicsBinding& binding) : implementation_(std::make_unique<Implementation>(binding)) {}
 Device::~Device() = default;
 
-const std::vector<SwapchainFormat>& Device::formats() const { return implementation->formats; }
+const std::vector<SwapchainFormat>& Device::formats() const { return implementation_->formats; }
 
 void Device::checkImage(const ImageInfo& info) const {
-    const auto& [dispatch, physical_device, device, queue, formats, pool, commands, done] = *implementation;
+    const auto& [dispatch, physical_device, device, queue, formats, pool, commands, done] = *implementation_;
     const vk::ImageCreateInfo wanted = createInfoOf(info);
     vk::ImageFormatProperties limits;
     const vk::Result result = physical_device.getImageFormatProperties(wanted.format, wanted.imageType, wanted.tiling, wanted.usage,
@@ -153,32 +153,32 @@ void Device::checkImage(const ImageInfo& info) const {
 
 std::unique_ptr<DeviceImage> Device::createImage(const ImageInfo& info) {
     try {
-        return std::make_unique<DeviceImage>(info, *implementation);
+        return std::make_unique<DeviceImage>(info, *implementation_);
     } catch (const vk::OutOfDeviceMemoryError&) {
         throw Refusal{XR_ERROR_OUT_OF_MEMORY, "the device has no memory left for an image"};
     } catch (const vk::OutOfHostMemoryError&) { throw Refusal{XR_ERROR_OUT_OF_MEMORY, "there is no memory left for an image"}; }
 }
 
-DeviceImage::DeviceImage(const ImageInfo& image_info, Device::Implementation& device)
-    : info(image_info), implementation(std::make_unique<Implementation>()) {
-    auto& [image, memory] = *implementation;
+DeviceImage::DeviceImage(const ImageInfo& info, Device::Implementation& device)
+    : info_(info), implementation_(std::make_unique<Implementation>()) {
+    auto& [image, memory] = *implementation_;
     image = device.device.createImageUnique(createInfoOf(info), nullptr, device.dispatch);
     memory = device.allocate(device.device.getImageMemoryRequirements(*image, device.dispatch), vk::MemoryPropertyFlagBits::eDeviceLocal);
     device.device.bindImageMemory(*image, *memory, 0, device.dispatch);
 }
 
 DeviceImage::~DeviceImage() = default;
-VkImage DeviceImage::handle() const { return *implementation->image; }
+VkImage DeviceImage::handle() const { return *implementation_->image; }
 
 void Device::prepare(const DeviceImage& image) {
-    implementation->begin();
-    implementation->transition(image, vk::ImageLayout::eUndefined, layoutOf(image.info));
-    implementation->finish();
+    implementation_->begin();
+    implementation_->transition(image, vk::ImageLayout::eUndefined, layoutOf(image.info()));
+    implementation_->finish();
 }
 
 std::vector<std::byte> Device::read(const DeviceImage& image) {
-    Implementation& my = *implementation;
-    const auto& [format, size, layers, mips, usage, flags, faces] = image.info;
+    Implementation& my = *implementation_;
+    const auto& [format, size, layers, mips, usage, flags, faces] = image.info();
     std::vector<std::byte> texels(std::size_t{size.width} * size.height * layers * format.texel_bytes);
 
     const auto buffer = my.device.createBufferUnique({{}, texels.size(), vk::BufferUsageFlagBits::eTransferDst}, nullptr, my.dispatch);
@@ -189,12 +189,12 @@ std::vector<std::byte> Device::read(const DeviceImage& image) {
     const auto aspect = format.aspects == kColour ? vk::ImageAspectFlagBits::eColor : vk::ImageAspectFlagBits::eDepth;
     const vk::BufferImageCopy whole(0, 0, 0, {aspect, 0, 0, layers}, {}, {size.width, size.height, 1});
     my.begin();
-    my.transition(image, layoutOf(image.info), vk::ImageLayout::eTransferSrcOptimal);
+    my.transition(image, layoutOf(image.info()), vk::ImageLayout::eTransferSrcOptimal);
     my.commands.copyImageToBuffer(image.handle(), vk::ImageLayout::eTransferSrcOptimal, *buffer, whole, my.dispatch);
     const vk::MemoryBarrier for_the_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
     my.commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, for_the_host, {}, {},
                                 my.dispatch);
-    my.transition(image, vk::ImageLayout::eTransferSrcOptimal, layoutOf(image.info));
+    my.transition(image, vk::ImageLayout::eTransferSrcOptimal, layoutOf(image.info()));
     my.finish();
 
     const void* const mapped = my.device.mapMemory(*memory, 0, VK_WHOLE_SIZE, {}, my.dispatch);

@@ -19,7 +19,7 @@ struct GraphicsBinding {
 };
 
 // Of the system's Vulkan loader, for instances that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE without one.
-PFN_vkGetInstanceProcAddr systemVulkanLoader();
+PFN_vkGetInstanceProcAddr findSystemVulkanLoader();
 
 struct SwapchainFormat {
     VkFormat format;
@@ -62,20 +62,20 @@ public:
     struct Implementation;
 
 private:
-    std::unique_ptr<Implementation> implementation;
+    std::unique_ptr<Implementation> implementation_;
 };
 
 class DeviceImage {
 public:
-    ImageInfo info;
-
     DeviceImage(const ImageInfo& info, Device::Implementation& device);
     ~DeviceImage();
+    [[nodiscard]] const ImageInfo& info() const { return info_; }
     [[nodiscard]] VkImage handle() const;
 
 private:
     struct Implementation;
-    std::unique_ptr<Implementation> implementation;
+    ImageInfo info_;
+    std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace simulated

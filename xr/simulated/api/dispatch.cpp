@@ -29,7 +29,7 @@ const Entry kEntries[] = {
 // Functions that exist without an instance.
 bool needsNoInstance(const char* name) {
     for (const char* candidate : {"xrEnumerateInstanceExtensionProperties", "xrEnumerateApiLayerProperties", "xrCreateInstance"}) {
-        if (std::strcmp(name, candidate) == 0) return true;
+        if (std::strcmp(name, candidate) == 0) { return true; }
     }
     return false;
 }
@@ -38,18 +38,19 @@ bool needsNoInstance(const char* name) {
 
 XrResult xrGetInstanceProcAddr(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
     return answer(__func__, [&] {
-        PFN_xrVoidFunction& output = checkedOutput(function);
+        PFN_xrVoidFunction& output = checkOutput(function);
         output = nullptr;
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "a name is missing");
         const Instance* owner = nullptr;
-        if (instance != XR_NULL_HANDLE)
+        if (instance != XR_NULL_HANDLE) {
             owner = &get<Instance>(instance);
-        else
+        } else {
             require(needsNoInstance(name), XR_ERROR_HANDLE_INVALID, name, " needs an instance");
+        }
         for (const Entry& entry : kEntries) {
-            if (std::strcmp(entry.name, name) != 0) continue;
-            if (entry.extension != nullptr && !owner->extensions.contains(entry.extension)) break;
-            if (entry.is_1_1 && !owner->is_1_1) break;
+            if (std::strcmp(entry.name, name) != 0) { continue; }
+            if (entry.extension != nullptr && !owner->extensions.contains(entry.extension)) { break; }
+            if (entry.is_1_1 && !owner->is_1_1) { break; }
             output = entry.function;
             return XR_SUCCESS;
         }

@@ -26,42 +26,44 @@ XrSession sessionOf(const XrEventDataBuffer& event) {
         default:
             break;
     }
-    if (event.type == XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT)
+    if (event.type == XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT) {
         return reinterpret_cast<const XrEventDataUserPresenceChangedEXT&>(event).session;
+    }
     return XR_NULL_HANDLE;
 }
 
 }  // namespace
 
 void Events::pushBuffer(const XrEventDataBuffer& event) {
-    if (waiting.size() < kMostEvents)
-        waiting.push_back(event);
-    else
-        ++lost;
+    if (waiting_.size() < kMostEvents) {
+        waiting_.push_back(event);
+    } else {
+        ++lost_;
+    }
 }
 
 bool Events::pop(XrEventDataBuffer& event) {
-    if (waiting.empty() && lost > 0) {
-        XrEventDataEventsLost loss{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, lost};
-        lost = 0;
+    if (waiting_.empty() && lost_ > 0) {
+        XrEventDataEventsLost loss{XR_TYPE_EVENT_DATA_EVENTS_LOST, nullptr, lost_};
+        lost_ = 0;
         push(loss);
     }
-    if (waiting.empty()) return false;
-    event = waiting.front();
-    waiting.pop_front();
+    if (waiting_.empty()) { return false; }
+    event = waiting_.front();
+    waiting_.pop_front();
     return true;
 }
 
 void Events::forget(XrSession session) {
-    std::erase_if(waiting, [&](const auto& event) { return sessionOf(event) == session; });
+    std::erase_if(waiting_, [&](const auto& event) { return sessionOf(event) == session; });
 }
 
 XrResult xrPollEvent(XrInstance instance, XrEventDataBuffer* eventData) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        XrEventDataBuffer& event = checked(eventData, XR_TYPE_EVENT_DATA_BUFFER);
-        if (owner.events.pop(event)) return XR_SUCCESS;
-        if (owner.session != nullptr) owner.session->idle();
+        XrEventDataBuffer& event = checkStruct(eventData, XR_TYPE_EVENT_DATA_BUFFER);
+        if (owner.events.pop(event)) { return XR_SUCCESS; }
+        if (owner.session != nullptr) { owner.session->idle(); }
         return XR_EVENT_UNAVAILABLE;
     });
 }

@@ -28,8 +28,8 @@ public:
 private:
     void pushBuffer(const XrEventDataBuffer& event);
 
-    std::deque<XrEventDataBuffer> waiting;
-    std::uint32_t lost = 0;
+    std::deque<XrEventDataBuffer> waiting_;
+    std::uint32_t lost_ = 0;
 };
 
 }  // namespace simulated

@@ -20,12 +20,12 @@ constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | X
                            kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
 
 // An xrWaitFrame on another thread waits here for xrBeginFrame.
-std::condition_variable& frameBegun() {
+std::condition_variable& getFrameBegun() {
     static std::condition_variable begun;
     return begun;
 }
 
-Session& runningSession(XrSession session) {
+Session& getRunningSession(XrSession session) {
     Session& found = getSession(session);
     require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
     return found;
@@ -40,17 +40,18 @@ void checkBlendMode(XrEnvironmentBlendMode mode, const Script& script) {
 }
 
 // A frame that was begun and is refused stands in the log, once for each reason; it may be ended again.
-const XrFrameEndInfo& checkedFrame(Session& session, const XrFrameEndInfo* frame_end_info) {
+const XrFrameEndInfo& checkFrame(Session& session, const XrFrameEndInfo* frame_end_info) {
     try {
-        const XrFrameEndInfo& info = checked(frame_end_info, XR_TYPE_FRAME_END_INFO);
+        const XrFrameEndInfo& info = checkStruct(frame_end_info, XR_TYPE_FRAME_END_INFO);
         require(session.frames.begun.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrBeginFrame was not called for this frame");
         checkTime(info.displayTime);
         checkBlendMode(info.environmentBlendMode, session.instance.simulation->script);
         checkLayers(session, info);
         return info;
     } catch (const Refusal& refusal) {
-        if (session.frames.begun && std::exchange(session.frames.refused_for, refusal.reason) != refusal.reason)
+        if (session.frames.begun && std::exchange(session.frames.refused_for, refusal.reason) != refusal.reason) {
             logBetween(session, &refusal);
+        }
         throw;
     }
 }
@@ -60,10 +61,10 @@ void loadGpu(Session& session, const XrFrameEndInfo& info) {
     const Simulation& simulation = *session.instance.simulation;
     const GpuLoad load = simulation.script.gpu_load.at(simulation.clock.secondsAt(info.displayTime));
     session.frames.gpu_ms.reset();
-    if (load.amount == 0 || session.isHeadless()) return;
+    if (load.amount == 0 || session.isHeadless()) { return; }
     double megapixels = 0;
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
-        if (info.layers[i]->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) continue;
+        if (info.layers[i]->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) { continue; }
         const auto& layer = *reinterpret_cast<const XrCompositionLayerProjection*>(info.layers[i]);
         for (std::uint32_t view = 0; view < layer.viewCount; ++view) {
             const XrExtent2Di& size = layer.views[view].subImage.imageRect.extent;
@@ -77,20 +78,20 @@ void loadGpu(Session& session, const XrFrameEndInfo& info) {
 
 }  // namespace
 
-void wakeFrameWaiters() { frameBegun().notify_all(); }
+void wakeFrameWaiters() { getFrameBegun().notify_all(); }
 
 XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
                        uint32_t* viewCountOutput, XrView* views) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        const XrViewLocateInfo& info = checked(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
-        XrViewState& output = checked(viewState, XR_TYPE_VIEW_STATE);
+        const XrViewLocateInfo& info = checkStruct(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
+        XrViewState& output = checkStruct(viewState, XR_TYPE_VIEW_STATE);
         checkViewConfiguration(owner.instance, info.viewConfigurationType);
         const Space& space = getSpace(owner, info.space);
         checkTime(info.displayTime);
         output.viewStateFlags = 0;
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return successOf(owner);
-        for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) { return successOf(owner); }
+        for (std::size_t eye = 0; eye < kEyes; ++eye) { checkType(views[eye], XR_TYPE_VIEW); }
         const State state = owner.at(info.displayTime);
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
@@ -98,35 +99,35 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
             Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
             // Unknown values are not reported.
             if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
-                if (!state.head_place_known) pose.position = glm::dvec3(0.0);
-                if (!state.head_turn_known) pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0);
+                if (!state.head_place_known) { pose.position = glm::dvec3(0.0); }
+                if (!state.head_turn_known) { pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0); }
             }
             views[eye].pose = toXr(pose);
             views[eye].fov = toXr(seen.fov);
         }
         const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
-        if (stage_from_space && (state.head_turn_known || is_in_head)) output.viewStateFlags = kTurnsKnown;
-        if (stage_from_space && (state.head_place_known || is_in_head)) output.viewStateFlags |= kPlacesKnown;
+        if (stage_from_space && (state.head_turn_known || is_in_head)) { output.viewStateFlags = kTurnsKnown; }
+        if (stage_from_space && (state.head_place_known || is_in_head)) { output.viewStateFlags |= kPlacesKnown; }
         return successOf(owner);
     });
 }
 
 XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, XrFrameState* frameState) {
     Clock::Frame frame{};
-    std::unique_lock lock(runtimeLock());
+    std::unique_lock lock(getRuntimeLock());
     const XrResult result = answerUnlocked(__func__, [&] {
-        runningSession(session);
+        getRunningSession(session);
         checkOptional(frameWaitInfo, XR_TYPE_FRAME_WAIT_INFO);
-        XrFrameState& output = checked(frameState, XR_TYPE_FRAME_STATE);
+        XrFrameState& output = checkStruct(frameState, XR_TYPE_FRAME_STATE);
         // The session may end meanwhile, so it is looked up anew each time.
-        frameBegun().wait(lock, [&] {
+        getFrameBegun().wait(lock, [&] {
             const Session* const waiting = find<Session>(session);
             return waiting == nullptr || !waiting->is_running || !waiting->frames.waited;
         });
-        Session& owner = runningSession(session);
+        Session& owner = getRunningSession(session);
         Simulation& simulation = *owner.instance.simulation;
         // Time goes on though no frame ends.
-        if (!owner.frames.refused_for.empty()) owner.passFrame(simulation.clock.now());
+        if (!owner.frames.refused_for.empty()) { owner.passFrame(simulation.clock.now()); }
         const std::int64_t missed = std::exchange(owner.frames.missed, 0);
         frame = simulation.clock.nextFrame(missed);
         const State state = simulation.at(frame.display_time);
@@ -141,27 +142,27 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
         output.predictedDisplayPeriod =
             simulation.clock.period() * (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);
         output.shouldRender = owner.frames.should_render;
-        if (!simulation.clock.isReal()) frame.wake_time = {};
+        if (!simulation.clock.isReal()) { frame.wake_time = {}; }
         return successOf(owner);
     });
     lock.unlock();
     deliverMessages();
-    if (XR_SUCCEEDED(result)) std::this_thread::sleep_until(frame.wake_time);
+    if (XR_SUCCEEDED(result)) { std::this_thread::sleep_until(frame.wake_time); }
     return result;
 }
 
 XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo) {
     return answer(__func__, [&] {
-        Session& owner = runningSession(session);
+        Session& owner = getRunningSession(session);
         checkOptional(frameBeginInfo, XR_TYPE_FRAME_BEGIN_INFO);
         require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
-        if (is_discarding) owner.passFrame(*owner.frames.begun);
+        if (is_discarding) { owner.passFrame(*owner.frames.begun); }
         owner.frames.begun = std::exchange(owner.frames.waited, std::nullopt);
         owner.frames.last_begun = owner.frames.begun;
         owner.frames.moves_state = true;
         owner.frames.refused_for.clear();
-        if (owner.instance.simulation->script.changes_state_at_begin) owner.passFrame(*owner.frames.begun);
+        if (owner.instance.simulation->script.changes_state_at_begin) { owner.passFrame(*owner.frames.begun); }
         wakeFrameWaiters();
         return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
     });
@@ -169,8 +170,8 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
 
 XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
     return answer(__func__, [&] {
-        Session& owner = runningSession(session);
-        const XrFrameEndInfo& info = checkedFrame(owner, frameEndInfo);
+        Session& owner = getRunningSession(session);
+        const XrFrameEndInfo& info = checkFrame(owner, frameEndInfo);
         owner.frames.begun.reset();
         owner.frames.refused_for.clear();
         const State state = owner.at(info.displayTime);

@@ -25,20 +25,20 @@ constexpr XrSpaceLocationFlags kPlaceKnown = XR_SPACE_LOCATION_ORIENTATION_VALID
                                              XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
 
 // In the base space; none while the hand is not seen.
-std::optional<std::array<HandJoint, kHandJoints>> jointsAt(const HandTracker& tracker, const Space& base, XrTime time) {
+std::optional<std::array<HandJoint, kHandJoints>> findJoints(const HandTracker& tracker, const Space& base, XrTime time) {
     const State state = tracker.session.at(time);
     const ControllerState& controller = state.controllers[tracker.side];
     const std::optional<Pose> stage_from_base = stageFromSpace(base, state);
-    if (!controller.tracked || !stage_from_base) return std::nullopt;
+    if (!controller.tracked || !stage_from_base) { return std::nullopt; }
     const auto mostOf = [&](std::initializer_list<const char*> inputs) {
         double most = 0;
-        for (const char* input : inputs) most = std::max(most, controller.input(input));
+        for (const char* input : inputs) { most = std::max(most, controller.input(input)); }
         return most;
     };
-    auto joints = handJoints(tracker.side, controller.stage_from_grip,
-                             mostOf({"trigger/value", "select/value", "pinch_ext/value", "aim_activate_ext/value", "grasp_ext/value"}),
-                             mostOf({"squeeze/value", "grasp_ext/value"}));
-    for (HandJoint& joint : joints) joint.stage_from_joint = compose(inverse(*stage_from_base), joint.stage_from_joint);
+    auto joints = makeHandJoints(tracker.side, controller.stage_from_grip,
+                                 mostOf({"trigger/value", "select/value", "pinch_ext/value", "aim_activate_ext/value", "grasp_ext/value"}),
+                                 mostOf({"squeeze/value", "grasp_ext/value"}));
+    for (HandJoint& joint : joints) { joint.stage_from_joint = compose(inverse(*stage_from_base), joint.stage_from_joint); }
     return joints;
 }
 
@@ -46,20 +46,20 @@ void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, Xr
                   XrHandJointVelocitiesEXT* velocities) {
     // Hands are seen in focus alone.
     const bool is_seen = tracker.session.is_running && tracker.session.state == XR_SESSION_STATE_FOCUSED;
-    const auto now = is_seen ? jointsAt(tracker, base, time) : std::nullopt;
+    const auto now = is_seen ? findJoints(tracker, base, time) : std::nullopt;
     locations.isActive = now ? XR_TRUE : XR_FALSE;
     for (std::size_t i = 0; i < kHandJoints; ++i) {
         XrHandJointLocationEXT& joint = locations.jointLocations[i];
         joint = now ? XrHandJointLocationEXT{kPlaceKnown, toXr((*now)[i].stage_from_joint), static_cast<float>((*now)[i].radius_m)}
                     : XrHandJointLocationEXT{0, toXr(Pose{}), 0};
     }
-    if (velocities == nullptr) return;
-    const auto before = now ? jointsAt(tracker, base, time - kMotionStep) : std::nullopt;
-    const auto after = now ? jointsAt(tracker, base, time + kMotionStep) : std::nullopt;
+    if (velocities == nullptr) { return; }
+    const auto before = now ? findJoints(tracker, base, time - kMotionStep) : std::nullopt;
+    const auto after = now ? findJoints(tracker, base, time + kMotionStep) : std::nullopt;
     for (std::size_t i = 0; i < kHandJoints; ++i) {
         XrHandJointVelocityEXT& joint = velocities->jointVelocities[i];
         joint = {0, {0, 0, 0}, {0, 0, 0}};
-        if (!before || !after) continue;
+        if (!before || !after) { continue; }
         const Motion motion = motionOf((*before)[i].stage_from_joint, (*after)[i].stage_from_joint);
         joint = {XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT, motion.linear_m_s, motion.angular_rad_s};
     }
@@ -70,8 +70,8 @@ void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, Xr
 XrResult xrCreateHandTrackerEXT(XrSession session, const XrHandTrackerCreateInfoEXT* createInfo, XrHandTrackerEXT* handTracker) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const auto& info = checked(createInfo, XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
-        XrHandTrackerEXT& output = checkedOutput(handTracker);
+        const auto& info = checkStruct(createInfo, XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
+        XrHandTrackerEXT& output = checkOutput(handTracker);
         require(info.hand == XR_HAND_LEFT_EXT || info.hand == XR_HAND_RIGHT_EXT, XR_ERROR_VALIDATION_FAILURE, "the hand is ", info.hand,
                 ", must be left or right");
         require(info.handJointSet == XR_HAND_JOINT_SET_DEFAULT_EXT, XR_ERROR_VALIDATION_FAILURE, "the set of joints is ", info.handJointSet,
@@ -93,8 +93,8 @@ XrResult xrLocateHandJointsEXT(XrHandTrackerEXT handTracker, const XrHandJointsL
     return answer(__func__, [&] {
         const HandTracker& tracker = get<HandTracker>(handTracker);
         checkNotLost(tracker.session);
-        const auto& info = checked(locateInfo, XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
-        auto& output = checked(locations, XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
+        const auto& info = checkStruct(locateInfo, XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
+        auto& output = checkStruct(locations, XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
         require(output.jointCount == kHandJoints && output.jointLocations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.jointCount,
                 " locations, a hand has ", kHandJoints, " joints");
         auto* const velocities = reinterpret_cast<XrHandJointVelocitiesEXT*>(

@@ -38,7 +38,7 @@ void adoptObject(Object& parent, std::unique_ptr<Object> child) {
 }
 
 void destroyObject(Object& object) {
-    while (!object.children.empty()) destroyObject(*object.children.back());
+    while (!object.children.empty()) { destroyObject(*object.children.back()); }
     table().objects.erase(object.number);
     auto& siblings = object.parent->children;
     siblings.erase(std::find_if(siblings.begin(), siblings.end(), [&](const auto& sibling) { return sibling.get() == &object; }));

@@ -73,7 +73,7 @@ template <class Handle>
 template <class T>
 T& get(typename T::Handle handle) {
     T* const object = find<T>(handle);
-    if (object == nullptr) refuseHandle(handle, " that lives");
+    if (object == nullptr) { refuseHandle(handle, " that lives"); }
     return *object;
 }
 
@@ -86,9 +86,9 @@ T& adopt(Object& parent, std::unique_ptr<T> child) {
 
 // The ancestor of type T: a swapchain's session, an action's instance.
 template <class T>
-T& ancestor(Object& object) {
+T& findAncestor(Object& object) {
     Object* above = object.parent;
-    while (dynamic_cast<T*>(above) == nullptr) above = above->parent;
+    while (dynamic_cast<T*>(above) == nullptr) { above = above->parent; }
     return dynamic_cast<T&>(*above);
 }
 

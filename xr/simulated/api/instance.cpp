@@ -13,18 +13,18 @@
 namespace simulated {
 namespace {
 
-std::vector<Extension> offeredExtensions(const Script& script) {
+std::vector<Extension> listOfferedExtensions(const Script& script) {
     std::vector<Extension> offered;
     for (const Extension& extension : kExtensions) {
-        if (script.allowsExtension(extension.name)) offered.push_back(extension);
+        if (script.allowsExtension(extension.name)) { offered.push_back(extension); }
     }
     return offered;
 }
 
 // A broken script is reported when the instance is made; until then it takes nothing away.
-Script scriptBeforeInstance() {
+Script loadScriptBeforeInstance() {
     try {
-        return scriptOfEnvironment();
+        return loadScriptOfEnvironment();
     } catch (const ScriptError&) { return {}; }
 }
 
@@ -41,23 +41,23 @@ void checkApplication(const XrApplicationInfo& application) {
 [[noreturn]] void refuseExtension(const char* name) {
     // Programs with other graphics could have no session here: they are told at once what there is.
     for (const char* const graphics : {"XR_KHR_opengl_enable", "XR_KHR_opengl_es_enable", "XR_MNDX_egl_enable", "XR_KHR_metal_enable"}) {
-        if (std::strcmp(name, graphics) != 0) continue;
+        if (std::strcmp(name, graphics) != 0) { continue; }
         refuse(XR_ERROR_EXTENSION_NOT_PRESENT, name, ": this runtime has Vulkan alone, XR_KHR_vulkan_enable2 or XR_KHR_vulkan_enable");
     }
     throw Refusal{XR_ERROR_EXTENSION_NOT_PRESENT, name};
 }
 
-std::set<std::string, std::less<>> checkedExtensions(const XrInstanceCreateInfo& info, const Script& script) {
+std::set<std::string, std::less<>> checkExtensions(const XrInstanceCreateInfo& info, const Script& script) {
     require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
             info.enabledExtensionCount, " extension names is missing");
-    const std::vector<Extension> offered = offeredExtensions(script);
+    const std::vector<Extension> offered = listOfferedExtensions(script);
     std::set<std::string, std::less<>> names;
     for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
         const char* const name = info.enabledExtensionNames[i];
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
         const bool is_offered =
             std::any_of(offered.begin(), offered.end(), [&](const auto& one) { return std::strcmp(one.name, name) == 0; });
-        if (!is_offered) refuseExtension(name);
+        if (!is_offered) { refuseExtension(name); }
         names.emplace(name);
     }
     return names;
@@ -65,10 +65,11 @@ std::set<std::string, std::less<>> checkedExtensions(const XrInstanceCreateInfo&
 
 template <std::size_t size, class Value>
 XrResult spell(char (&text)[size], const char* name, const char* unknown_prefix, Value value) {
-    if (name != nullptr)
+    if (name != nullptr) {
         copyText(text, name);
-    else
+    } else {
         std::snprintf(text, size, "%s%d", unknown_prefix, static_cast<int>(value));
+    }
     return XR_SUCCESS;
 }
 
@@ -89,9 +90,9 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t 
                                                 XrExtensionProperties* properties) {
     return answer(__func__, [&] {
         require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, layerName, ": a runtime has no layers");
-        const std::vector<Extension> offered = offeredExtensions(scriptBeforeInstance());
-        if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) return XR_SUCCESS;
-        for (std::size_t i = 0; i < offered.size(); ++i) checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES);
+        const std::vector<Extension> offered = listOfferedExtensions(loadScriptBeforeInstance());
+        if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) { return XR_SUCCESS; }
+        for (std::size_t i = 0; i < offered.size(); ++i) { checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES); }
         for (std::size_t i = 0; i < offered.size(); ++i) {
             copyText(properties[i].extensionName, offered[i].name);
             properties[i].extensionVersion = offered[i].version;
@@ -103,8 +104,8 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t 
 XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* instance) {
     const CreationMessenger messenger(createInfo);
     return answer(__func__, [&] {
-        const XrInstanceCreateInfo& info = checked(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
-        XrInstance& output = checkedOutput(instance);
+        const XrInstanceCreateInfo& info = checkStruct(createInfo, XR_TYPE_INSTANCE_CREATE_INFO);
+        XrInstance& output = checkOutput(instance);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         // Layers are the loader's: it passes their names through, and a runtime has nothing to say about them.
         checkApplication(info.applicationInfo);
@@ -112,7 +113,7 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         require(root().children.empty(), XR_ERROR_LIMIT_REACHED, "one instance at a time");
         created->is_1_1 = XR_VERSION_MINOR(info.applicationInfo.apiVersion) >= 1;
         // Last, since it empties the folder that is written to and takes over from an instance that was lost.
-        created->extensions = checkedExtensions(info, scriptOfEnvironment());
+        created->extensions = checkExtensions(info, loadScriptOfEnvironment());
         created->simulation = Simulation::begin();
         output = handleOf(adopt(root(), std::move(created)));
         return XR_SUCCESS;
@@ -130,7 +131,7 @@ XrResult xrDestroyInstance(XrInstance instance) {
 XrResult xrGetInstanceProperties(XrInstance instance, XrInstanceProperties* instanceProperties) {
     return answer(__func__, [&] {
         getInstance(instance);
-        XrInstanceProperties& properties = checked(instanceProperties, XR_TYPE_INSTANCE_PROPERTIES);
+        XrInstanceProperties& properties = checkStruct(instanceProperties, XR_TYPE_INSTANCE_PROPERTIES);
         properties.runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
         copyText(properties.runtimeName, "Simulated OpenXR runtime");
         return XR_SUCCESS;

@@ -38,7 +38,7 @@ void checkColour(const Swapchain& swapchain) {
 }
 
 const XrCompositionLayerDepthInfoKHR* depthOf(const Session& session, const XrCompositionLayerProjectionView& view) {
-    if (!session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) return nullptr;
+    if (!session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) { return nullptr; }
     return reinterpret_cast<const XrCompositionLayerDepthInfoKHR*>(findInChain(view.next, XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR));
 }
 
@@ -64,13 +64,13 @@ void checkView(const Session& session, const XrCompositionLayerProjectionView& v
                 ", must be within a quarter turn");
     }
     checkColour(checkSubImage(session, view.subImage));
-    if (const XrCompositionLayerDepthInfoKHR* depth = depthOf(session, view)) checkDepth(session, *depth);
+    if (const XrCompositionLayerDepthInfoKHR* depth = depthOf(session, view)) { checkDepth(session, *depth); }
 }
 
 void checkProjection(const Session& session, const XrCompositionLayerProjection& layer) {
     require(layer.viewCount == kEyes && layer.views != nullptr, XR_ERROR_VALIDATION_FAILURE, layer.viewCount,
             " views, must be one for each eye");
-    for (std::size_t eye = 0; eye < kEyes; ++eye) checkView(session, layer.views[eye]);
+    for (std::size_t eye = 0; eye < kEyes; ++eye) { checkView(session, layer.views[eye]); }
 }
 
 void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
@@ -82,7 +82,7 @@ void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
     checkColour(checkSubImage(session, layer.subImage));
 }
 
-ProjectionView composable(const Session& session, const XrCompositionLayerProjectionView& view, const Pose& stage_from_space) {
+ProjectionView makeView(const Session& session, const XrCompositionLayerProjectionView& view, const Pose& stage_from_space) {
     return {pictureOf(getSwapchain(session, view.subImage.swapchain), view.subImage.imageArrayIndex), rectOf(view.subImage.imageRect),
             compose(stage_from_space, fromXr(view.pose)), fromXr(view.fov)};
 }
@@ -100,9 +100,9 @@ LoggedView loggedView(const Session& session, const XrCompositionLayerProjection
 
 std::vector<std::string> loggedFlags(XrCompositionLayerFlags flags) {
     std::vector<std::string> names;
-    if ((flags & XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT) != 0) names.emplace_back("correct_chromatic_aberration");
-    if ((flags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0) names.emplace_back("blend_texture_source_alpha");
-    if ((flags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0) names.emplace_back("unpremultiplied_alpha");
+    if ((flags & XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT) != 0) { names.emplace_back("correct_chromatic_aberration"); }
+    if ((flags & XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT) != 0) { names.emplace_back("blend_texture_source_alpha"); }
+    if ((flags & XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT) != 0) { names.emplace_back("unpremultiplied_alpha"); }
     return names;
 }
 
@@ -175,12 +175,13 @@ void checkLayer(const Session& session, const XrCompositionLayerBaseHeader* subm
     checkChain(layer.next);
     require((layer.layerFlags & ~kKnownLayerFlags) == 0, XR_ERROR_VALIDATION_FAILURE, "unknown layer flags: ", layer.layerFlags);
     getSpace(session, layer.space);
-    if (is_surrounding)
+    if (is_surrounding) {
         checkSurrounding(session, layer);
-    else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD)
+    } else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
         checkQuad(session, as<XrCompositionLayerQuad>(layer));
-    else
+    } else {
         checkProjection(session, as<XrCompositionLayerProjection>(layer));
+    }
 }
 
 }  // namespace
@@ -197,15 +198,15 @@ void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     }
 }
 
-std::vector<Layer> composableLayers(const Session& session, const XrFrameEndInfo& info, const State& state) {
+std::vector<Layer> makeLayers(const Session& session, const XrFrameEndInfo& info, const State& state) {
     std::vector<Layer> layers;
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         const XrCompositionLayerBaseHeader& layer = *info.layers[i];
         const std::optional<Pose> stage_from_space = stageFromSpace(getSpace(session, layer.space), state);
-        if (!stage_from_space) continue;
+        if (!stage_from_space) { continue; }
         const Blending blending = blendingOf(layer.layerFlags);
         if (isSurrounding(session, layer.type)) {
-            layers.push_back(surroundingLayer(session, layer, *stage_from_space));
+            layers.push_back(makeSurroundingLayer(session, layer, *stage_from_space));
         } else if (layer.type == XR_TYPE_COMPOSITION_LAYER_QUAD) {
             const auto& quad = as<XrCompositionLayerQuad>(layer);
             layers.emplace_back(QuadLayer{pictureOf(getSwapchain(session, quad.subImage.swapchain), quad.subImage.imageArrayIndex),
@@ -217,7 +218,7 @@ std::vector<Layer> composableLayers(const Session& session, const XrFrameEndInfo
         } else {
             const auto& views = as<XrCompositionLayerProjection>(layer).views;
             layers.emplace_back(ProjectionLayer{
-                {composable(session, views[kLeft], *stage_from_space), composable(session, views[kRight], *stage_from_space)}, blending});
+                {makeView(session, views[kLeft], *stage_from_space), makeView(session, views[kRight], *stage_from_space)}, blending});
         }
     }
     return layers;
@@ -244,7 +245,7 @@ std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndIn
         } else {
             const auto& projection = as<XrCompositionLayerProjection>(layer);
             entry.type = "projection";
-            for (std::size_t eye = 0; eye < kEyes; ++eye) entry.views.push_back(loggedView(session, projection.views[eye]));
+            for (std::size_t eye = 0; eye < kEyes; ++eye) { entry.views.push_back(loggedView(session, projection.views[eye])); }
         }
     }
     return logged;

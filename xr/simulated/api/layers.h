@@ -13,7 +13,7 @@ namespace simulated {
 void checkLayers(const Session& session, const XrFrameEndInfo& info);
 
 // Of layers that passed the check. A layer whose space is not located at that state is not shown, but logged.
-std::vector<Layer> composableLayers(const Session& session, const XrFrameEndInfo& info, const State& state);
+std::vector<Layer> makeLayers(const Session& session, const XrFrameEndInfo& info, const State& state);
 std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndInfo& info, const State& state);
 
 }  // namespace simulated

@@ -32,46 +32,49 @@ struct Pending {
 std::optional<std::string> copyOf(const char* text) { return text == nullptr ? std::nullopt : std::optional<std::string>(text); }
 const char* pointerTo(const std::optional<std::string>& text) { return text ? text->c_str() : nullptr; }
 
-std::vector<Pending>& pending() {
+std::vector<Pending>& getPending() {
     thread_local std::vector<Pending> messages;
     return messages;
 }
 
-const XrDebugUtilsMessengerCreateInfoEXT*& creationMessenger() {
+const XrDebugUtilsMessengerCreateInfoEXT*& getCreationMessenger() {
     thread_local const XrDebugUtilsMessengerCreateInfoEXT* messenger = nullptr;
     return messenger;
 }
 
 void queueFor(const Pending& message, XrDebugUtilsMessageSeverityFlagsEXT severities, XrDebugUtilsMessageTypeFlagsEXT types,
               PFN_xrDebugUtilsMessengerCallbackEXT callback, void* user_data) {
-    if ((severities & message.severity) == 0 || (types & message.types) == 0) return;
-    pending().push_back(message);
-    pending().back().callback = callback;
-    pending().back().user_data = user_data;
+    if ((severities & message.severity) == 0 || (types & message.types) == 0) { return; }
+    getPending().push_back(message);
+    getPending().back().callback = callback;
+    getPending().back().user_data = user_data;
 }
 
 void queueForAll(const Pending& message) {
-    if (const auto* const creation = creationMessenger())
+    if (const auto* const creation = getCreationMessenger()) {
         queueFor(message, creation->messageSeverities, creation->messageTypes, creation->userCallback, creation->userData);
+    }
     for (const auto& instance : root().children) {
         for (const auto& child : instance->children) {
             const auto* const messenger = dynamic_cast<const Messenger*>(child.get());
-            if (messenger != nullptr) queueFor(message, messenger->severities, messenger->types, messenger->callback, messenger->user_data);
+            if (messenger != nullptr) {
+                queueFor(message, messenger->severities, messenger->types, messenger->callback, messenger->user_data);
+            }
         }
     }
 }
 
 std::vector<std::string> labelsOf(const Instance* instance) {
     std::vector<std::string> labels;
-    if (instance == nullptr || instance->session == nullptr) return labels;
+    if (instance == nullptr || instance->session == nullptr) { return labels; }
     const Labels& current = instance->session->labels;
-    if (current.inserted) labels.push_back(*current.inserted);
+    if (current.inserted) { labels.push_back(*current.inserted); }
     labels.insert(labels.end(), current.regions.rbegin(), current.regions.rend());
     return labels;
 }
 
-const XrDebugUtilsMessengerCreateInfoEXT& checkedMessenger(const XrDebugUtilsMessengerCreateInfoEXT* info) {
-    const auto& checked_info = checked(info, XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+const XrDebugUtilsMessengerCreateInfoEXT& checkMessenger(const XrDebugUtilsMessengerCreateInfoEXT* info) {
+    const auto& checked_info = checkStruct(info, XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
     require(checked_info.messageSeverities != 0 && (checked_info.messageSeverities & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE,
             "messageSeverities is ", checked_info.messageSeverities, ", must be of the bits ", kSeverities);
     require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ",
@@ -80,8 +83,8 @@ const XrDebugUtilsMessengerCreateInfoEXT& checkedMessenger(const XrDebugUtilsMes
     return checked_info;
 }
 
-std::string checkedLabel(const XrDebugUtilsLabelEXT* label) {
-    const auto& info = checked(label, XR_TYPE_DEBUG_UTILS_LABEL_EXT);
+std::string checkLabel(const XrDebugUtilsLabelEXT* label) {
+    const auto& info = checkStruct(label, XR_TYPE_DEBUG_UTILS_LABEL_EXT);
     require(info.labelName != nullptr, XR_ERROR_VALIDATION_FAILURE, "a label has no name");
     return info.labelName;
 }
@@ -89,7 +92,7 @@ std::string checkedLabel(const XrDebugUtilsLabelEXT* label) {
 bool wantsMessages(const XrInstanceCreateInfo& info) {
     for (std::uint32_t i = 0; info.enabledExtensionNames != nullptr && i < info.enabledExtensionCount; ++i) {
         const char* const name = info.enabledExtensionNames[i];
-        if (name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0) return true;
+        if (name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0) { return true; }
     }
     return false;
 }
@@ -97,17 +100,17 @@ bool wantsMessages(const XrInstanceCreateInfo& info) {
 }  // namespace
 
 CreationMessenger::CreationMessenger(const XrInstanceCreateInfo* info) {
-    if (info == nullptr || info->type != XR_TYPE_INSTANCE_CREATE_INFO || !wantsMessages(*info)) return;
+    if (info == nullptr || info->type != XR_TYPE_INSTANCE_CREATE_INFO || !wantsMessages(*info)) { return; }
     const auto* link = static_cast<const XrBaseInStructure*>(info->next);
     for (int i = 0; link != nullptr && i < 64; ++i, link = link->next) {
-        if (link->type != XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT) continue;
+        if (link->type != XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT) { continue; }
         const auto* const found = reinterpret_cast<const XrDebugUtilsMessengerCreateInfoEXT*>(link);
-        if (found->userCallback != nullptr) creationMessenger() = found;
+        if (found->userCallback != nullptr) { getCreationMessenger() = found; }
         return;
     }
 }
 
-CreationMessenger::~CreationMessenger() { creationMessenger() = nullptr; }
+CreationMessenger::~CreationMessenger() { getCreationMessenger() = nullptr; }
 
 void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const char* function, const std::string& text) {
     const Instance* const instance = root().children.empty() ? nullptr : dynamic_cast<const Instance*>(root().children.front().get());
@@ -116,9 +119,9 @@ void queueMessage(XrDebugUtilsMessageTypeFlagsEXT type, const char* id, const ch
 
 void deliverMessages() {
     // A callback may queue others.
-    for (const Pending& message : std::exchange(pending(), {})) {
+    for (const Pending& message : std::exchange(getPending(), {})) {
         std::vector<XrDebugUtilsLabelEXT> labels;
-        for (const std::string& label : message.labels) labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()});
+        for (const std::string& label : message.labels) { labels.push_back({XR_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, label.c_str()}); }
         std::vector<XrDebugUtilsObjectNameInfoEXT> objects;
         for (const auto& [object, name] : message.objects) {
             objects.push_back(object);
@@ -141,8 +144,8 @@ XrResult xrCreateDebugUtilsMessengerEXT(XrInstance instance, const XrDebugUtilsM
                                         XrDebugUtilsMessengerEXT* messenger) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrDebugUtilsMessengerCreateInfoEXT& info = checkedMessenger(createInfo);
-        XrDebugUtilsMessengerEXT& output = checkedOutput(messenger);
+        const XrDebugUtilsMessengerCreateInfoEXT& info = checkMessenger(createInfo);
+        XrDebugUtilsMessengerEXT& output = checkOutput(messenger);
         auto created = std::make_unique<Messenger>();
         created->severities = info.messageSeverities;
         created->types = info.messageTypes;
@@ -165,7 +168,7 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
                                       const XrDebugUtilsMessengerCallbackDataEXT* callbackData) {
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
-        const auto& data = checked(callbackData, XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT);
+        const auto& data = checkStruct(callbackData, XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT);
         require(messageSeverity != 0 && (messageSeverity & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE, "messageSeverity is ",
                 messageSeverity, ", must be of the bits ", kSeverities);
         require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ", messageTypes,
@@ -176,8 +179,8 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
         // The application's message is unchanged, except for the names of objects; missing parts are filled in.
         Pending message{nullptr, nullptr, messageSeverity, messageTypes, copyOf(data.messageId), copyOf(data.functionName), data.message,
                         {},      {}};
-        for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) message.labels.push_back(checkedLabel(&data.sessionLabels[i]));
-        if (message.labels.empty()) message.labels = labelsOf(&owner);
+        for (std::uint32_t i = 0; i < data.sessionLabelCount; ++i) { message.labels.push_back(checkLabel(&data.sessionLabels[i])); }
+        if (message.labels.empty()) { message.labels = labelsOf(&owner); }
         for (std::uint32_t i = 0; i < data.objectCount; ++i) {
             const auto& object = data.objects[i];
             // The registered name counts, as in the loader's own messengers.
@@ -192,13 +195,14 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
 XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObjectNameInfoEXT* nameInfo) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const auto& info = checked(nameInfo, XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+        const auto& info = checkStruct(nameInfo, XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
         require(info.objectType != XR_OBJECT_TYPE_UNKNOWN && info.objectHandle != 0, XR_ERROR_VALIDATION_FAILURE, "no object to name");
         const std::pair key(info.objectType, info.objectHandle);
-        if (info.objectName == nullptr || *info.objectName == '\0')
+        if (info.objectName == nullptr || *info.objectName == '\0') {
             owner.object_names.erase(key);
-        else
+        } else {
             owner.object_names[key] = info.objectName;
+        }
         return XR_SUCCESS;
     });
 }
@@ -206,7 +210,7 @@ XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObj
 XrResult xrSessionBeginDebugUtilsLabelRegionEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        owner.labels.regions.push_back(checkedLabel(labelInfo));
+        owner.labels.regions.push_back(checkLabel(labelInfo));
         owner.labels.inserted.reset();
         return successOf(owner);
     });
@@ -216,7 +220,7 @@ XrResult xrSessionEndDebugUtilsLabelRegionEXT(XrSession session) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
         owner.labels.inserted.reset();
-        if (!owner.labels.regions.empty()) owner.labels.regions.pop_back();
+        if (!owner.labels.regions.empty()) { owner.labels.regions.pop_back(); }
         return successOf(owner);
     });
 }
@@ -224,7 +228,7 @@ XrResult xrSessionEndDebugUtilsLabelRegionEXT(XrSession session) {
 XrResult xrSessionInsertDebugUtilsLabelEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        owner.labels.inserted = checkedLabel(labelInfo);
+        owner.labels.inserted = checkLabel(labelInfo);
         return successOf(owner);
     });
 }

@@ -49,7 +49,7 @@ bool isUnderstood(const NegotiateRuntimeRequest* request) {
 
 extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(const NegotiateLoaderInfo* loader_info,
                                                                                              NegotiateRuntimeRequest* request) {
-    if (!isUnderstood(loader_info) || !isUnderstood(request)) return XR_ERROR_INITIALIZATION_FAILED;
+    if (!isUnderstood(loader_info) || !isUnderstood(request)) { return XR_ERROR_INITIALIZATION_FAILED; }
     simulated::keepThisLibrary();
     request->interface_version = kInterfaceVersion;
     // The versions that this runtime implements, as far as the loader supports them.

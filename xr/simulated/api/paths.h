@@ -20,8 +20,8 @@ public:
     XrPath findPath(std::string_view text) const;
 
 private:
-    std::vector<std::string> texts;
-    std::unordered_map<std::string, XrPath> paths;
+    std::vector<std::string> texts_;
+    std::unordered_map<std::string, XrPath> paths_;
 };
 
 // Letters, digits, and - _ . in lower case: one level of a path, and so the name of an action.

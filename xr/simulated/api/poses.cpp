@@ -29,7 +29,7 @@ Motion motionOf(const Pose& a_step_before, const Pose& a_step_after) {
     constexpr double kSeconds = 2e-9 * kMotionStep;
     const glm::vec3 linear((a_step_after.position - a_step_before.position) / kSeconds);
     glm::dquat turn = a_step_after.orientation * glm::conjugate(a_step_before.orientation);
-    if (turn.w < 0) turn = -turn;
+    if (turn.w < 0) { turn = -turn; }
     // Small turns: the vector part is half the angle along the axis.
     const glm::vec3 angular(glm::dvec3(turn.x, turn.y, turn.z) * (2 / kSeconds));
     return {{linear.x, linear.y, linear.z}, {angular.x, angular.y, angular.z}};

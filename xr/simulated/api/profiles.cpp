@@ -25,7 +25,7 @@ bool isParent(std::string_view parent, std::string_view path) {
 
 }  // namespace
 
-std::span<const Profile> allProfiles() { return kProfiles; }
+std::span<const Profile> listProfiles() { return kProfiles; }
 
 const Profile* findProfile(std::string_view path) {
     const auto found =
@@ -38,11 +38,12 @@ const Profile* findHandProfile(std::string_view name) {
     return found != nullptr && found->user_paths.front().starts_with("/user/hand/") ? found : nullptr;
 }
 
-std::string handProfiles() {
+std::string listHandProfiles() {
     std::string names;
     for (const Profile& profile : kProfiles) {
-        if (profile.user_paths.front().starts_with("/user/hand/"))
+        if (profile.user_paths.front().starts_with("/user/hand/")) {
             names.append(names.empty() ? "" : ", ").append(profile.path.substr(kProfilePrefix.size()));
+        }
     }
     return names;
 }
@@ -53,9 +54,9 @@ bool Enabled::meets(std::string_view depends) const {
     while (!depends.empty()) {
         const std::size_t end = depends.find_first_of("+,");
         meets = meets && has(depends.substr(0, end));
-        if (end == std::string_view::npos) break;
+        if (end == std::string_view::npos) { break; }
         if (depends[end] == ',') {
-            if (meets) return true;
+            if (meets) { return true; }
             meets = true;
         }
         depends.remove_prefix(end + 1);
@@ -64,7 +65,7 @@ bool Enabled::meets(std::string_view depends) const {
 }
 
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled) {
-    if (!holds(profile.user_paths, user_path)) return nullptr;
+    if (!holds(profile.user_paths, user_path)) { return nullptr; }
     const auto found = std::ranges::find_if(profile.components,
                                             [&](const Component& one) { return one.path == path && isThere(one, user_path, enabled); });
     return found == profile.components.end() ? nullptr : &*found;
@@ -72,14 +73,14 @@ const Component* findComponent(const Profile& profile, std::string_view user_pat
 
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled) {
     const std::string_view user_path = userPathOf(binding);
-    if (!holds(profile.user_paths, user_path)) return false;
+    if (!holds(profile.user_paths, user_path)) { return false; }
     const std::string_view path = binding.substr(user_path.size());
     return std::ranges::any_of(profile.components, [&](const Component& one) {
         return isThere(one, user_path, enabled) && (one.path == path || isParent(path, one.path));
     });
 }
 
-std::string_view neededFor(const Profile& profile, std::string_view binding) {
+std::string_view findNeeded(const Profile& profile, std::string_view binding) {
     const std::string_view user_path = userPathOf(binding), path = binding.substr(user_path.size());
     const auto found = std::ranges::find_if(profile.components, [&](const Component& one) {
         return one.path == path && (one.user_path.empty() || one.user_path == user_path);
@@ -90,7 +91,7 @@ std::string_view neededFor(const Profile& profile, std::string_view binding) {
 std::optional<std::size_t> deviceOf(std::string_view user_path) {
     // All but the last, in this order.
     for (std::size_t i = 0; i + 1 < std::size(kUserPaths); ++i) {
-        if (kUserPaths[i] == user_path) return i;
+        if (kUserPaths[i] == user_path) { return i; }
     }
     return std::nullopt;
 }
@@ -99,7 +100,7 @@ bool isUserPath(std::string_view path) { return holds(kUserPaths, path); }
 
 std::string_view userPathOf(std::string_view binding) {
     for (const std::string_view user_path : kUserPaths) {
-        if (binding.starts_with(user_path) && binding.size() > user_path.size() && binding[user_path.size()] == '/') return user_path;
+        if (binding.starts_with(user_path) && binding.size() > user_path.size() && binding[user_path.size()] == '/') { return user_path; }
     }
     return {};
 }

@@ -39,20 +39,20 @@ struct Enabled {
 };
 
 // In the order in which the simulated controllers like to play them; those that they cannot play come last.
-std::span<const Profile> allProfiles();
+std::span<const Profile> listProfiles();
 // Null if the core has no such profile.
 const Profile* findProfile(std::string_view path);
 // Of controllers held in the hands, by what follows /interaction_profiles/; null if there is none.
 const Profile* findHandProfile(std::string_view name);
 // All of these names, for messages.
-std::string handProfiles();
+std::string listHandProfiles();
 // True if "/user/hand/left/input/trigger/value", or a parent of components such as ".../input/trigger", may be bound in this profile.
 bool allowsBinding(const Profile& profile, std::string_view binding, const Enabled& enabled);
 // Null if it has none: of this user path, with this version and these extensions.
 const Component* findComponent(const Profile& profile, std::string_view user_path, std::string_view path, const Enabled& enabled);
 
 // The extension or version that the profile has this path with, if only that is missing; else empty.
-std::string_view neededFor(const Profile& profile, std::string_view binding);
+std::string_view findNeeded(const Profile& profile, std::string_view binding);
 
 // /user/hand/left, /user/hand/right, /user/head, /user/gamepad, /user/treadmill, and /user/eyes_ext of XR_EXT_eye_gaze_interaction.
 bool isUserPath(std::string_view path);

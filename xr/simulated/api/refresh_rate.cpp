@@ -11,9 +11,9 @@ namespace {
 
 std::vector<float> ratesOf(const Script& script) {
     std::vector<float> rates{static_cast<float>(script.rate_hz)};
-    if (!script.rate_is_fixed) rates.insert(rates.end(), {72, 80, 90, 120});
+    if (!script.rate_is_fixed) { rates.insert(rates.end(), {72, 80, 90, 120}); }
     for (const ScriptEvent& event : script.events) {
-        if (event.kind == ScriptEvent::Kind::kRate) rates.push_back(static_cast<float>(event.value));
+        if (event.kind == ScriptEvent::Kind::kRate) { rates.push_back(static_cast<float>(event.value)); }
     }
     std::sort(rates.begin(), rates.end());
     rates.erase(std::unique(rates.begin(), rates.end()), rates.end());
@@ -26,7 +26,7 @@ void changeRate(Instance& instance, double rate_hz) {
     Simulation& simulation = *instance.simulation;
     const auto before = static_cast<float>(std::exchange(simulation.rate_hz, rate_hz)), now = static_cast<float>(rate_hz);
     simulation.clock.setPeriod(std::llround(1e9 / rate_hz));
-    if (now == before || !instance.extensions.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) return;
+    if (now == before || !instance.extensions.contains(XR_FB_DISPLAY_REFRESH_RATE_EXTENSION_NAME)) { return; }
     instance.events.push(XrEventDataDisplayRefreshRateChangedFB{XR_TYPE_EVENT_DATA_DISPLAY_REFRESH_RATE_CHANGED_FB, nullptr, before, now});
 }
 
@@ -43,7 +43,7 @@ XrResult xrEnumerateDisplayRefreshRatesFB(XrSession session, uint32_t displayRef
 XrResult xrGetDisplayRefreshRateFB(XrSession session, float* displayRefreshRate) {
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
-        checkedOutput(displayRefreshRate) = static_cast<float>(owner.instance.simulation->rate_hz);
+        checkOutput(displayRefreshRate) = static_cast<float>(owner.instance.simulation->rate_hz);
         return successOf(owner);
     });
 }
@@ -58,7 +58,7 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         const std::vector<float> rates = ratesOf(simulation.script);
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 displayRefreshRate, " Hz was not enumerated");
-        if (wanted == before) return successOf(owner);
+        if (wanted == before) { return successOf(owner); }
         require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 "the script says that the rate is fixed, and not at ", displayRefreshRate, " Hz");
         changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);

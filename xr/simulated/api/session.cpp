@@ -14,8 +14,8 @@ namespace {
 
 // The state that the wearer and the script would have the session in.
 XrSessionState targetOf(const Session& session, const State& wanted) {
-    if (session.wants_exit || !wanted.worn) return XR_SESSION_STATE_STOPPING;
-    if (!wanted.visible) return XR_SESSION_STATE_SYNCHRONIZED;
+    if (session.wants_exit || !wanted.worn) { return XR_SESSION_STATE_STOPPING; }
+    if (!wanted.visible) { return XR_SESSION_STATE_SYNCHRONIZED; }
     return wanted.focused ? XR_SESSION_STATE_FOCUSED : XR_SESSION_STATE_VISIBLE;
 }
 
@@ -33,8 +33,9 @@ void announceRecentring(const Session& session, double change_s) {
                                                                             toXr(compose(inverse(before), after))});
     };
     announce(XR_REFERENCE_SPACE_TYPE_LOCAL, &Script::stageFromLocal);
-    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME))
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) {
         announce(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR, &Script::stageFromLocalFloor);
+    }
 }
 
 }  // namespace
@@ -72,22 +73,23 @@ void Session::enter(XrSessionState next) {
 }
 
 void Session::step(const State& wanted) {
-    if (loss_announced || state == XR_SESSION_STATE_STOPPING) return;
+    if (loss_announced || state == XR_SESSION_STATE_STOPPING) { return; }
     const XrSessionState target = targetOf(*this, wanted);
-    if (state == XR_SESSION_STATE_READY)
+    if (state == XR_SESSION_STATE_READY) {
         enter(XR_SESSION_STATE_SYNCHRONIZED);
-    else if (target == XR_SESSION_STATE_STOPPING && state == XR_SESSION_STATE_SYNCHRONIZED) {
+    } else if (target == XR_SESSION_STATE_STOPPING && state == XR_SESSION_STATE_SYNCHRONIZED) {
         enter(XR_SESSION_STATE_STOPPING);
         // There may be no frame any more to tell of it.
-        if (!frames.begun) logBetween(*this);
-    } else if (target == XR_SESSION_STATE_STOPPING || target < state)
+        if (!frames.begun) { logBetween(*this); }
+    } else if (target == XR_SESSION_STATE_STOPPING || target < state) {
         enter(static_cast<XrSessionState>(state - 1));
-    else if (target > state)
+    } else if (target > state) {
         enter(static_cast<XrSessionState>(state + 1));
+    }
 }
 
 void Session::passFrame(XrTime time) {
-    if (std::exchange(frames.moves_state, false)) step(at(time));
+    if (std::exchange(frames.moves_state, false)) { step(at(time)); }
 }
 
 void Session::settle() {
@@ -100,9 +102,9 @@ void Session::settle() {
 }
 
 void Session::passHeadlessFrame() {
-    if (frames.are_used) return;
+    if (frames.are_used) { return; }
     Clock& clock = instance.simulation->clock;
-    if (!clock.isReal()) clock.nextFrame();
+    if (!clock.isReal()) { clock.nextFrame(); }
     meetEvents(clock.now());
     announcePresence(instance.simulation->at(clock.now()));
     settle();
@@ -115,8 +117,8 @@ void Session::meetEvents(XrTime display_time) {
     const XrTime grace_ends = display_time + kFramesOfGrace * simulation.clock.period();
     for (const ScriptEvent& event : simulation.script.eventsIn(simulation.events_until_s, time_s)) {
         std::string& logged = log_events.emplace_back(nameOf(event.kind));
-        if (event.kind == ScriptEvent::Kind::kRate) logged.append(" ").append(std::to_string(std::lround(event.value)));
-        if (event.kind == ScriptEvent::Kind::kSlowImages) logged.append(" ").append(std::to_string(event.count));
+        if (event.kind == ScriptEvent::Kind::kRate) { logged.append(" ").append(std::to_string(std::lround(event.value))); }
+        if (event.kind == ScriptEvent::Kind::kSlowImages) { logged.append(" ").append(std::to_string(event.count)); }
         switch (event.kind) {
             case ScriptEvent::Kind::kRate:
                 changeRate(instance, event.value);
@@ -149,31 +151,32 @@ void Session::meetEvents(XrTime display_time) {
 
 void Session::announcePresence(const State& now) {
     const bool present = now.present && now.worn;
-    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == present) return;
+    if (!instance.extensions.contains(XR_EXT_USER_PRESENCE_EXTENSION_NAME) || announced_presence == present) { return; }
     announced_presence = present;
     instance.events.push(XrEventDataUserPresenceChangedEXT{XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT, nullptr, handleOf(*this),
                                                            static_cast<XrBool32>(present)});
 }
 
 void Session::idle() {
-    if (state != XR_SESSION_STATE_IDLE || is_running) return;
+    if (state != XR_SESSION_STATE_IDLE || is_running) { return; }
     Simulation& simulation = *instance.simulation;
     frames.last_begun.reset();
     simulation.clock.pass();
     const XrTime now = simulation.clock.now();
     meetEvents(now);
-    if (loss_announced) return;
+    if (loss_announced) { return; }
     if (wants_exit) {
         enter(XR_SESSION_STATE_EXITING);
         logBetween(*this);
-    } else if (simulation.at(now).worn)
+    } else if (simulation.at(now).worn) {
         enter(XR_SESSION_STATE_READY);
+    }
 }
 
 void Session::announceMasks(const State& now) {
-    if (!instance.simulation->script.visibility_mask || !instance.extensions.contains(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
+    if (!instance.simulation->script.visibility_mask || !instance.extensions.contains(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) { return; }
     for (const Side side : kSides) {
-        if (!masked || (*masked)[side] == now.eyes[side].fov) continue;
+        if (!masked || (*masked)[side] == now.eyes[side].fov) { continue; }
         instance.events.push(XrEventDataVisibilityMaskChangedKHR{XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, handleOf(*this),
                                                                  XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
                                                                  static_cast<std::uint32_t>(side)});

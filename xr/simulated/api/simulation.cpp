@@ -24,27 +24,27 @@ bool wantsRealClock() {
 
 std::optional<Output> makeOutput(const Script& script) {
     const Setting setting = settingOf("OUT");
-    if (!setting.isSet()) return std::nullopt;
+    if (!setting.isSet()) { return std::nullopt; }
     const std::filesystem::path folder(setting.value);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")");
+    if (error) { throw std::runtime_error(setting.variable + ": " + folder.string() + " cannot be made (" + error.message() + ")"); }
     removeOldOutput(folder, script.writes_pictures, script.frames);
     return Output{folder, FrameLog(folder / kLogName)};
 }
 
 // The environment's word counts before the script's.
-std::string favouriteProfile(const Script& script) {
+std::string findFavouriteProfile(const Script& script) {
     const Setting setting = settingOf("PROFILE");
     const std::string name = setting.isSet() ? setting.value : script.profile;
-    if (name.empty()) return {};
+    if (name.empty()) { return {}; }
     const Profile* const profile = findHandProfile(name);
-    if (profile == nullptr) throw std::runtime_error(setting.variable + " is '" + name + "', must be one of: " + handProfiles());
+    if (profile == nullptr) { throw std::runtime_error(setting.variable + " is '" + name + "', must be one of: " + listHandProfiles()); }
     checkInputs(script, *profile);
     return std::string(profile->path);
 }
 
-std::unique_ptr<Simulation>& survivor() {
+std::unique_ptr<Simulation>& getSurvivor() {
     // The loader closes the library between two instances; it is linked so that it stays loaded, or this would be forgotten.
     static std::unique_ptr<Simulation> simulation;
     return simulation;
@@ -58,7 +58,7 @@ std::string originOfEnvironment() {
 
 }  // namespace
 
-Script scriptOfEnvironment() {
+Script loadScriptOfEnvironment() {
     const Setting setting = settingOf("SCRIPT");
     return setting.isSet() ? Script::load(setting.value) : Script();
 }
@@ -66,21 +66,21 @@ Script scriptOfEnvironment() {
 std::unique_ptr<Simulation> Simulation::begin() {
     // Another script or folder is another run within the same process.
     const std::string origin = originOfEnvironment();
-    std::unique_ptr<Simulation> survived = std::move(survivor());
+    std::unique_ptr<Simulation> survived = std::move(getSurvivor());
     if (survived != nullptr && survived->origin == origin) {
         survived->survives = false;
         return survived;
     }
-    Script script = scriptOfEnvironment();
+    Script script = loadScriptOfEnvironment();
     const Clock clock(wantsRealClock(), std::llround(1e9 / script.rate_hz), script.irregularity);
-    std::string profile = favouriteProfile(script);
+    std::string profile = findFavouriteProfile(script);
     std::optional<Output> output = makeOutput(script);
     const double rate_hz = script.rate_hz;
     return std::make_unique<Simulation>(Simulation{origin, std::move(script), clock, std::move(output), std::move(profile), rate_hz});
 }
 
 void Simulation::end(std::unique_ptr<Simulation> simulation) {
-    if (simulation != nullptr && simulation->survives) survivor() = std::move(simulation);
+    if (simulation != nullptr && simulation->survives) { getSurvivor() = std::move(simulation); }
 }
 
 }  // namespace simulated

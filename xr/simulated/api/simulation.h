@@ -19,7 +19,7 @@ struct Output {
 };
 
 // SIMULATED_OPENXR_SCRIPT, or the resting headset. Throws ScriptError.
-Script scriptOfEnvironment();
+Script loadScriptOfEnvironment();
 
 struct Simulation {
     // The environment's settings.

@@ -16,9 +16,9 @@ constexpr XrInputSourceLocalizedNameFlags kAllComponents = XR_INPUT_SOURCE_LOCAL
                                                            XR_INPUT_SOURCE_LOCALIZED_NAME_COMPONENT_BIT;
 
 std::string titleOfUserPath(std::string_view user_path) {
-    if (user_path == "/user/hand/left") return "Left hand";
-    if (user_path == "/user/hand/right") return "Right hand";
-    if (user_path == "/user/eyes_ext") return "Eyes";
+    if (user_path == "/user/hand/left") { return "Left hand"; }
+    if (user_path == "/user/hand/right") { return "Right hand"; }
+    if (user_path == "/user/eyes_ext") { return "Eyes"; }
     return user_path == "/user/head" ? "Head" : "Gamepad";
 }
 
@@ -31,8 +31,8 @@ std::string titleOfComponent(std::string_view component) {
     return title;
 }
 
-const AttachedAction& checkedHaptic(Session& session, const XrHapticActionInfo* hapticActionInfo) {
-    const XrHapticActionInfo& info = checked(hapticActionInfo, XR_TYPE_HAPTIC_ACTION_INFO);
+const AttachedAction& checkHaptic(Session& session, const XrHapticActionInfo* hapticActionInfo) {
+    const XrHapticActionInfo& info = checkStruct(hapticActionInfo, XR_TYPE_HAPTIC_ACTION_INFO);
     const AttachedAction& action = getAttached(session, info.action);
     require(action.type == XR_ACTION_TYPE_VIBRATION_OUTPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ",
             getAction(session.instance, info.action).name, " is not haptic");
@@ -47,9 +47,9 @@ const Profile* profileOf(const Session& session, std::string_view user_path) {
 
 // A line in the log for each controller that would be felt.
 void logHaptic(Session& session, const AttachedAction& action, XrPath subaction_path, const std::string& what) {
-    if (session.state != XR_SESSION_STATE_FOCUSED) return;
+    if (session.state != XR_SESSION_STATE_FOCUSED) { return; }
     for (const BoundSource& source : action.sources) {
-        if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) continue;
+        if (subaction_path != XR_NULL_PATH && source.user_path != subaction_path) { continue; }
         constexpr const char* kNames[kDevices] = {"left ", "right ", "head ", "gamepad ", "eyes "};
         session.log_events.push_back(std::string("haptic ") + kNames[source.device] + what);
     }
@@ -63,7 +63,7 @@ XrResult successOfHaptic(const Session& session) { return session.state == XR_SE
 XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPath, XrInteractionProfileState* interactionProfile) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        XrInteractionProfileState& output = checked(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
+        XrInteractionProfileState& output = checkStruct(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
         require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, user_path, " is not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
@@ -77,10 +77,10 @@ XrResult xrEnumerateBoundSourcesForAction(XrSession session, const XrBoundSource
                                           uint32_t sourceCapacityInput, uint32_t* sourceCountOutput, XrPath* sources) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const auto& info = checked(enumerateInfo, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
+        const auto& info = checkStruct(enumerateInfo, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
         std::vector<XrPath> paths;
         for (const BoundSource& source : getAttached(owner, info.action).sources) {
-            if (std::find(paths.begin(), paths.end(), source.path) == paths.end()) paths.push_back(source.path);
+            if (std::find(paths.begin(), paths.end(), source.path) == paths.end()) { paths.push_back(source.path); }
         }
         fillArray(sourceCapacityInput, sourceCountOutput, sources, paths);
         return successOf(owner);
@@ -91,7 +91,7 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
                                        uint32_t* bufferCountOutput, char* buffer) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const auto& info = checked(getInfo, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
+        const auto& info = checkStruct(getInfo, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
         require(info.whichComponents != 0 && (info.whichComponents & ~kAllComponents) == 0, XR_ERROR_VALIDATION_FAILURE,
                 "whichComponents is ", info.whichComponents, ", must be of the bits ", kAllComponents);
         const std::string& path = owner.instance.paths.textOf(info.sourcePath);
@@ -102,7 +102,7 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
         require(is_source, XR_ERROR_PATH_UNSUPPORTED, path, " is not the path of a source");
         std::string name;
         const auto append = [&](XrInputSourceLocalizedNameFlags part, const std::string& title) {
-            if ((info.whichComponents & part) != 0 && !title.empty()) name += (name.empty() ? "" : " ") + title;
+            if ((info.whichComponents & part) != 0 && !title.empty()) { name += (name.empty() ? "" : " ") + title; }
         };
         append(XR_INPUT_SOURCE_LOCALIZED_NAME_USER_PATH_BIT, titleOfUserPath(user_path));
         if (const Profile* profile = profileOf(owner, user_path)) {
@@ -117,8 +117,8 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
 XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo, const XrHapticBaseHeader* hapticFeedback) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const AttachedAction& action = checkedHaptic(owner, hapticActionInfo);
-        const auto& vibration = reinterpret_cast<const XrHapticVibration&>(checked(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
+        const AttachedAction& action = checkHaptic(owner, hapticActionInfo);
+        const auto& vibration = reinterpret_cast<const XrHapticVibration&>(checkStruct(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
         const bool has_duration = vibration.duration > 0 || vibration.duration == XR_MIN_HAPTIC_DURATION;
         require(has_duration, XR_ERROR_VALIDATION_FAILURE, "the duration is ", vibration.duration,
                 ", must be positive or XR_MIN_HAPTIC_DURATION");
@@ -138,7 +138,7 @@ XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapt
 XrResult xrStopHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const AttachedAction& action = checkedHaptic(owner, hapticActionInfo);
+        const AttachedAction& action = checkHaptic(owner, hapticActionInfo);
         logHaptic(owner, action, hapticActionInfo->subactionPath, "off");
         return successOf(owner, successOfHaptic(owner));
     });

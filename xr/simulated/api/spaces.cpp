@@ -19,8 +19,8 @@ bool hasStage(const Session& session) { return session.instance.simulation->scri
 
 std::vector<XrReferenceSpaceType> referenceSpacesOf(const Session& session) {
     std::vector<XrReferenceSpaceType> types{XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL};
-    if (hasStage(session)) types.push_back(XR_REFERENCE_SPACE_TYPE_STAGE);
-    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR);
+    if (hasStage(session)) { types.push_back(XR_REFERENCE_SPACE_TYPE_STAGE); }
+    if (session.instance.has1_1Or(XR_EXT_LOCAL_FLOOR_EXTENSION_NAME)) { types.push_back(XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR); }
     return types;
 }
 
@@ -41,22 +41,22 @@ bool areOnOneThing(const Space& space, const Space& base) {
 // is on the head, and tracked whole or not at all.
 XrSpaceLocationFlags locationFlagsOf(const Space& space, const Space& base, const State& state) {
     constexpr XrSpaceLocationFlags kTracked = XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-    if (areOnOneThing(space, base)) return kPoseKnown;
+    if (areOnOneThing(space, base)) { return kPoseKnown; }
     const bool gaze = isGaze(space), base_gaze = isGaze(base);
     const bool is_poor = (gaze || base_gaze) && !state.gaze_is_good;
     const bool on_head = gaze || space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
     const bool base_on_head = base_gaze || base.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
-    if (on_head == base_on_head || state.head_place_known) return is_poor ? kPoseKnown & ~kTracked : kPoseKnown;
-    if (!state.head_turn_known) return 0;
-    if (gaze || base_gaze) return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT;
+    if (on_head == base_on_head || state.head_place_known) { return is_poor ? kPoseKnown & ~kTracked : kPoseKnown; }
+    if (!state.head_turn_known) { return 0; }
+    if (gaze || base_gaze) { return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT; }
     return XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT;
 }
 
 std::optional<Pose> baseFromSpace(const Space& space, const Space& base, XrTime time) {
-    if (areOnOneThing(space, base)) return compose(inverse(base.origin_from_space), space.origin_from_space);
+    if (areOnOneThing(space, base)) { return compose(inverse(base.origin_from_space), space.origin_from_space); }
     const State state = space.session.at(time);
     const std::optional<Pose> stage_from_space = stageFromSpace(space, state), stage_from_base = stageFromSpace(base, state);
-    if (!stage_from_space || !stage_from_base) return std::nullopt;
+    if (!stage_from_space || !stage_from_base) { return std::nullopt; }
     return compose(inverse(*stage_from_base), *stage_from_space);
 }
 
@@ -78,7 +78,7 @@ void differentiate(const Space& space, const Space& base, XrTime time, Velocity&
     velocity.linearVelocity = velocity.angularVelocity = {0, 0, 0};
     const std::optional<Pose> before = baseFromSpace(space, base, time - kMotionStep),
                               after = baseFromSpace(space, base, time + kMotionStep);
-    if (!before || !after) return;
+    if (!before || !after) { return; }
     const Motion motion = motionOf(*before, *after);
     velocity.velocityFlags = kVelocityKnown;
     velocity.linearVelocity = motion.linear_m_s;
@@ -91,19 +91,20 @@ void checkTime(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "the time
 
 Space& getSpace(const Session& session, XrSpace space) {
     Space& found = get<Space>(space);
-    if (&found.session != &session) refuseHandle(space, " of this session");
+    if (&found.session != &session) { refuseHandle(space, " of this session"); }
     return found;
 }
 
 std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
     if (!space.reference) {
         const std::optional<Pose> stage_from_source = stageFromAction(space.session, space.action, space.subaction_path, state);
-        if (!stage_from_source) return std::nullopt;
+        if (!stage_from_source) { return std::nullopt; }
         return compose(*stage_from_source, space.origin_from_space);
     }
     // No case of its own: older headers' enumeration lacks it.
-    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR)
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) {
         return compose(space.session.instance.simulation->script.stageFromLocalFloor(state.time_s), space.origin_from_space);
+    }
     switch (*space.reference) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return compose(state.stage_from_head, space.origin_from_space);
@@ -119,8 +120,8 @@ namespace {
 // Of 1.1's xrLocateSpaces and its predecessor.
 XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
     const Session& owner = getSession(session);
-    const XrSpacesLocateInfo& info = checked(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
-    XrSpaceLocations& output = checked(space_locations, XR_TYPE_SPACE_LOCATIONS);
+    const XrSpacesLocateInfo& info = checkStruct(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
+    XrSpaceLocations& output = checkStruct(space_locations, XR_TYPE_SPACE_LOCATIONS);
     require(info.spaceCount > 0 && info.spaces != nullptr, XR_ERROR_VALIDATION_FAILURE, "no spaces");
     require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.locationCount,
             " locations, must be one for each of ", info.spaceCount, " spaces");
@@ -129,13 +130,13 @@ XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrS
     require(velocities == nullptr || (velocities->velocityCount == info.spaceCount && velocities->velocities != nullptr),
             XR_ERROR_VALIDATION_FAILURE, "not as many velocities as there are spaces, ", info.spaceCount);
     const Space& base = getSpace(owner, info.baseSpace);
-    for (std::uint32_t i = 0; i < info.spaceCount; ++i) getSpace(owner, info.spaces[i]);
+    for (std::uint32_t i = 0; i < info.spaceCount; ++i) { getSpace(owner, info.spaces[i]); }
     checkTime(info.time);
     for (std::uint32_t i = 0; i < info.spaceCount; ++i) {
         const Space& space = getSpace(owner, info.spaces[i]);
         const auto [flags, pose] = locate(space, base, info.time);
         output.locations[i] = {flags, pose};
-        if (velocities != nullptr) differentiate(space, base, info.time, velocities->velocities[i]);
+        if (velocities != nullptr) { differentiate(space, base, info.time, velocities->velocities[i]); }
     }
     return successOf(owner);
 }
@@ -143,8 +144,8 @@ XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrS
 }  // namespace
 
 const char* nameOf(const Space& space) {
-    if (!space.reference) return "action";
-    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) return "LOCAL_FLOOR";
+    if (!space.reference) { return "action"; }
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) { return "LOCAL_FLOOR"; }
     switch (*space.reference) {
         case XR_REFERENCE_SPACE_TYPE_VIEW:
             return "VIEW";
@@ -167,8 +168,8 @@ XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInp
 XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateInfo* createInfo, XrSpace* space) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const XrReferenceSpaceCreateInfo& info = checked(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
-        XrSpace& output = checkedOutput(space);
+        const XrReferenceSpaceCreateInfo& info = checkStruct(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
+        XrSpace& output = checkOutput(space);
         require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, info.referenceSpaceType,
                 " is no reference space that this session has");
         checkPose(info.poseInReferenceSpace);
@@ -183,8 +184,8 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
 XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* createInfo, XrSpace* space) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const XrActionSpaceCreateInfo& info = checked(createInfo, XR_TYPE_ACTION_SPACE_CREATE_INFO);
-        XrSpace& output = checkedOutput(space);
+        const XrActionSpaceCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_SPACE_CREATE_INFO);
+        XrSpace& output = checkOutput(space);
         const Action& action = getAction(owner.instance, info.action);
         require(action.type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH, "the action ", action.name, " is not a pose");
         checkSubactionPath(owner.instance, action.subaction_paths, info.subactionPath);
@@ -208,8 +209,8 @@ XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType r
         // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
         require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
                 " is no reference space that this session has");
-        checkedOutput(bounds) = {0, 0};
-        if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE);
+        checkOutput(bounds) = {0, 0};
+        if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) { return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE); }
         *bounds = {3, 2};
         return successOf(owner);
     });
@@ -220,14 +221,15 @@ XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLoc
         const Space& located = get<Space>(space);
         checkNotLost(located.session);
         const Space& base = getSpace(located.session, baseSpace);
-        XrSpaceLocation& output = checked(location, XR_TYPE_SPACE_LOCATION);
+        XrSpaceLocation& output = checkStruct(location, XR_TYPE_SPACE_LOCATION);
         checkTime(time);
         const auto [flags, pose] = locate(located, base, time);
         output.locationFlags = flags;
         output.pose = pose;
         const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
-        if (velocity != nullptr)
+        if (velocity != nullptr) {
             differentiate(located, base, time, *const_cast<XrSpaceVelocity*>(reinterpret_cast<const XrSpaceVelocity*>(velocity)));
+        }
         const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
         const XrBaseInStructure* const sample = has_samples ? findInChain(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT) : nullptr;
         // The script knows the gaze of any time; 0 stands for no sample.

@@ -22,7 +22,7 @@ void checkType(const T& structure, XrStructureType type) {
 }
 
 template <class T>
-T& checked(T* structure, XrStructureType type) {
+T& checkStruct(T* structure, XrStructureType type) {
     require(structure != nullptr, XR_ERROR_VALIDATION_FAILURE, "the structure of type ", type, " is missing");
     checkType(*structure, type);
     return *structure;
@@ -31,11 +31,11 @@ T& checked(T* structure, XrStructureType type) {
 // For structures that may be left out altogether.
 template <class T>
 void checkOptional(const T* structure, XrStructureType type) {
-    if (structure != nullptr) checkType(*structure, type);
+    if (structure != nullptr) { checkType(*structure, type); }
 }
 
 template <class T>
-T& checkedOutput(T* output) {
+T& checkOutput(T* output) {
     require(output != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the result is missing");
     return *output;
 }
@@ -44,7 +44,7 @@ T& checkedOutput(T* output) {
 inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void* array, std::size_t size) {
     require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
     *count = static_cast<std::uint32_t>(size);
-    if (capacity == 0) return false;
+    if (capacity == 0) { return false; }
     require(capacity >= size, XR_ERROR_SIZE_INSUFFICIENT, "the array has room for ", capacity, ", must have for ", size);
     require(array != nullptr || size == 0, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
     return true;
@@ -53,19 +53,19 @@ inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void*
 template <class T>
 XrResult fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std::vector<T>& values) {
     if (wantsArray(capacity, count, array, values.size())) {
-        for (std::size_t i = 0; i < values.size(); ++i) array[i] = values[i];
+        for (std::size_t i = 0; i < values.size(); ++i) { array[i] = values[i]; }
     }
     return XR_SUCCESS;
 }
 
 // With the terminating zero, which counts.
 inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
-    if (wantsArray(capacity, count, buffer, text.size() + 1)) std::memcpy(buffer, text.c_str(), text.size() + 1);
+    if (wantsArray(capacity, count, buffer, text.size() + 1)) { std::memcpy(buffer, text.c_str(), text.size() + 1); }
     return XR_SUCCESS;
 }
 
 // An application's text, in quotes and without characters that a line cannot show.
-std::string printable(std::string_view text);
+std::string makePrintable(std::string_view text);
 // A fixed array's text; XR_ERROR_VALIDATION_FAILURE if it has no end or is not UTF-8.
 std::string textOf(const char* characters, std::size_t size);
 template <std::size_t size>

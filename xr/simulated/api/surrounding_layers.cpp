@@ -52,10 +52,10 @@ void checkCube(const Session& session, const XrCompositionLayerCubeKHR& layer) {
             ", the swapchain has ", swapchain.info.layers / 6, " cube maps");
 }
 
-CubeLayer cubeLayer(const Session& session, const XrCompositionLayerCubeKHR& layer, const Pose& stage_from_space) {
+CubeLayer makeCubeLayer(const Session& session, const XrCompositionLayerCubeKHR& layer, const Pose& stage_from_space) {
     Swapchain& swapchain = getSwapchain(session, layer.swapchain);
     CubeLayer cube;
-    for (std::uint32_t face = 0; face < 6; ++face) cube.faces[face] = pictureOf(swapchain, 6 * layer.imageArrayIndex + face);
+    for (std::uint32_t face = 0; face < 6; ++face) { cube.faces[face] = pictureOf(swapchain, 6 * layer.imageArrayIndex + face); }
     cube.stage_from_cube = compose(stage_from_space, fromXr(poseOf(layer))).orientation;
     cube.visibility = visibilityOf(layer.eyeVisibility);
     cube.blending = blendingOf(layer.layerFlags);
@@ -79,15 +79,16 @@ bool isSurrounding(const Session& session, XrStructureType type) {
 }
 
 void checkSurrounding(const Session& session, const XrCompositionLayerBaseHeader& layer) {
-    if (layer.type == XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR)
+    if (layer.type == XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR) {
         checkCylinder(session, as<XrCompositionLayerCylinderKHR>(layer));
-    else if (layer.type == XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR)
+    } else if (layer.type == XR_TYPE_COMPOSITION_LAYER_EQUIRECT2_KHR) {
         checkSphere(session, as<XrCompositionLayerEquirect2KHR>(layer));
-    else
+    } else {
         checkCube(session, as<XrCompositionLayerCubeKHR>(layer));
+    }
 }
 
-Layer surroundingLayer(const Session& session, const XrCompositionLayerBaseHeader& layer, const Pose& stage_from_space) {
+Layer makeSurroundingLayer(const Session& session, const XrCompositionLayerBaseHeader& layer, const Pose& stage_from_space) {
     if (layer.type == XR_TYPE_COMPOSITION_LAYER_CYLINDER_KHR) {
         const auto& cylinder = as<XrCompositionLayerCylinderKHR>(layer);
         return CylinderLayer{pictureOf(getSwapchain(session, cylinder.subImage.swapchain), cylinder.subImage.imageArrayIndex),
@@ -111,7 +112,7 @@ Layer surroundingLayer(const Session& session, const XrCompositionLayerBaseHeade
                            visibilityOf(sphere.eyeVisibility),
                            blendingOf(sphere.layerFlags)};
     }
-    return cubeLayer(session, as<XrCompositionLayerCubeKHR>(layer), stage_from_space);
+    return makeCubeLayer(session, as<XrCompositionLayerCubeKHR>(layer), stage_from_space);
 }
 
 void logSurrounding(const Session& session, const XrCompositionLayerBaseHeader& layer, LoggedLayer& entry) {

@@ -22,21 +22,21 @@ VkImageUsageFlags usageOf(XrSwapchainUsageFlags asked, const SwapchainFormat& fo
     VkImageUsageFlags usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
     usage |= is_colour ? VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT : VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    if ((asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-    if ((asked & XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT) != 0) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    if ((asked & XR_SWAPCHAIN_USAGE_SAMPLED_BIT) != 0) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    if ((asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0) { usage |= VK_IMAGE_USAGE_STORAGE_BIT; }
+    if ((asked & XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT) != 0) { usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT; }
+    if ((asked & XR_SWAPCHAIN_USAGE_SAMPLED_BIT) != 0) { usage |= VK_IMAGE_USAGE_SAMPLED_BIT; }
     return usage;
 }
 
 // A mutable image may be written through a view of another format, which is how sRGB images are written by compute shaders. Vulkan 1.0
 // has no extended usage, so it is asked for only there.
 VkImageCreateFlags flagsOf(XrSwapchainUsageFlags asked) {
-    if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) return 0;
+    if ((asked & XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT) == 0) { return 0; }
     const bool is_written = (asked & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0;
     return VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | (is_written ? VK_IMAGE_CREATE_EXTENDED_USAGE_BIT : 0);
 }
 
-const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted) {
+const SwapchainFormat& checkFormat(const Session& session, std::int64_t wanted) {
     const auto& formats = session.device->formats();
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) { return format.format == wanted; });
     require(found != formats.end(), XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED, "the format ", wanted, " was not enumerated");
@@ -45,11 +45,11 @@ const SwapchainFormat& checkedFormat(const Session& session, std::int64_t wanted
     return *found;
 }
 
-ImageInfo checkedImage(const Session& session, const XrSwapchainCreateInfo& info) {
+ImageInfo checkImageInfo(const Session& session, const XrSwapchainCreateInfo& info) {
     require((info.createFlags & ~kKnownFlags) == 0 && (info.usageFlags & ~kKnownUsage) == 0, XR_ERROR_VALIDATION_FAILURE,
             "unknown flags: createFlags ", info.createFlags, ", usageFlags ", info.usageFlags);
     require((info.createFlags & XR_SWAPCHAIN_CREATE_PROTECTED_CONTENT_BIT) == 0, XR_ERROR_FEATURE_UNSUPPORTED, "no protected content");
-    const SwapchainFormat& format = checkedFormat(session, info.format);
+    const SwapchainFormat& format = checkFormat(session, info.format);
     const bool is_colour = format.aspects == VK_IMAGE_ASPECT_COLOR_BIT;
     const XrSwapchainUsageFlags foreign =
         is_colour ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
@@ -99,19 +99,19 @@ std::uint32_t Swapchain::nextImage() const {
     const auto isHeld = [&](std::uint32_t image) { return std::find(acquired.begin(), acquired.end(), image) != acquired.end(); };
     // Not the one on show, if there is another.
     const auto isShown = [&](std::uint32_t image) { return has_released && image == released_index && acquired.size() + 1 < count; };
-    while (isHeld(next) || isShown(next)) next = (next + 1) % count;
+    while (isHeld(next) || isShown(next)) { next = (next + 1) % count; }
     return next;
 }
 
 Swapchain& getSwapchain(const Session& session, XrSwapchain swapchain) {
     Swapchain& found = get<Swapchain>(swapchain);
-    if (&found.session != &session) refuseHandle(swapchain, " of this session");
+    if (&found.session != &session) { refuseHandle(swapchain, " of this session"); }
     return found;
 }
 
 void fetchTexels(Swapchain& swapchain) {
     // Depth is looked at by nobody here.
-    if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) return;
+    if (swapchain.has_texels || swapchain.info.format.aspects != VK_IMAGE_ASPECT_COLOR_BIT) { return; }
     swapchain.released_texels = swapchain.session.device->read(*swapchain.images[swapchain.released_index]);
     swapchain.has_texels = true;
 }
@@ -121,7 +121,7 @@ XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityI
         const Session& owner = getSession(session);
         std::vector<int64_t> values;
         if (!owner.isHeadless()) {
-            for (const SwapchainFormat& format : owner.device->formats()) values.push_back(format.format);
+            for (const SwapchainFormat& format : owner.device->formats()) { values.push_back(format.format); }
         }
         fillArray(formatCapacityInput, formatCountOutput, formats, values);
         return successOf(owner);
@@ -131,14 +131,16 @@ XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityI
 XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* createInfo, XrSwapchain* swapchain) {
     return answer(__func__, [&] {
         Session& owner = getSession(session);
-        const XrSwapchainCreateInfo& info = checked(createInfo, XR_TYPE_SWAPCHAIN_CREATE_INFO);
-        XrSwapchain& output = checkedOutput(swapchain);
+        const XrSwapchainCreateInfo& info = checkStruct(createInfo, XR_TYPE_SWAPCHAIN_CREATE_INFO);
+        XrSwapchain& output = checkOutput(swapchain);
         require(!owner.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no swapchains");
         auto created = std::make_unique<Swapchain>(owner);
-        created->info = checkedImage(owner, info);
+        created->info = checkImageInfo(owner, info);
         created->is_static = (info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT) != 0;
         created->is_prepared.resize(created->is_static ? 1 : owner.instance.simulation->script.images);
-        for (std::size_t i = 0; i < created->is_prepared.size(); ++i) created->images.push_back(owner.device->createImage(created->info));
+        for (std::size_t i = 0; i < created->is_prepared.size(); ++i) {
+            created->images.push_back(owner.device->createImage(created->info));
+        }
         output = handleOf(adopt(owner, std::move(created)));
         return successOf(owner);
     });
@@ -156,10 +158,10 @@ XrResult xrEnumerateSwapchainImages(XrSwapchain swapchain, uint32_t imageCapacit
     return answer(__func__, [&] {
         const Swapchain& owner = get<Swapchain>(swapchain);
         checkNotLost(owner.session);
-        if (!wantsArray(imageCapacityInput, imageCountOutput, images, owner.images.size())) return successOf(owner.session);
+        if (!wantsArray(imageCapacityInput, imageCountOutput, images, owner.images.size())) { return successOf(owner.session); }
         auto* const vulkan_images = reinterpret_cast<XrSwapchainImageVulkan2KHR*>(images);
-        for (std::size_t i = 0; i < owner.images.size(); ++i) checkType(vulkan_images[i], XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR);
-        for (std::size_t i = 0; i < owner.images.size(); ++i) vulkan_images[i].image = owner.images[i]->handle();
+        for (std::size_t i = 0; i < owner.images.size(); ++i) { checkType(vulkan_images[i], XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR); }
+        for (std::size_t i = 0; i < owner.images.size(); ++i) { vulkan_images[i].image = owner.images[i]->handle(); }
         return successOf(owner.session);
     });
 }
@@ -169,14 +171,14 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         Swapchain& owner = get<Swapchain>(swapchain);
         checkNotLost(owner.session);
         checkOptional(acquireInfo, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
-        uint32_t& output = checkedOutput(index);
+        uint32_t& output = checkOutput(index);
         require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
         require(owner.acquired.size() < owner.images.size(), XR_ERROR_CALL_ORDER_INVALID, "all ", owner.images.size(),
                 " images are acquired already");
         const std::uint32_t next = owner.nextImage();
         // The image on show is given away again: the application holds all others.
-        if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) fetchTexels(owner);
-        if (!owner.is_prepared[next]) owner.session.device->prepare(*owner.images[next]);
+        if (owner.has_released && owner.released_index == next && owner.session.instance.simulation->output) { fetchTexels(owner); }
+        if (!owner.is_prepared[next]) { owner.session.device->prepare(*owner.images[next]); }
         owner.is_prepared[next] = true;
         ++owner.acquisitions;
         owner.acquired.push_back(next);
@@ -189,7 +191,7 @@ XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitI
     return answer(__func__, [&] {
         Swapchain& owner = get<Swapchain>(swapchain);
         checkNotLost(owner.session);
-        const XrSwapchainImageWaitInfo& info = checked(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
+        const XrSwapchainImageWaitInfo& info = checkStruct(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
         require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
         require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
         // Slow images are late for every wait that has an end. While a loss is pending no result could say so, and the wait succeeds.

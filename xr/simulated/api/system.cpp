@@ -13,8 +13,8 @@ constexpr std::uint32_t kMostViewPixels = 4096;
 
 // An extension's structure to fill, if it is there and the extension is enabled.
 template <class Structure>
-Structure* chained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
-    if (!instance.extensions.contains(extension)) return nullptr;
+Structure* findChained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
+    if (!instance.extensions.contains(extension)) { return nullptr; }
     return reinterpret_cast<Structure*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
 }
 
@@ -36,8 +36,8 @@ void checkViewConfiguration(const Instance& instance, XrViewConfigurationType ty
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
-        const XrSystemGetInfo& info = checked(getInfo, XR_TYPE_SYSTEM_GET_INFO);
-        XrSystemId& output = checkedOutput(systemId);
+        const XrSystemGetInfo& info = checkStruct(getInfo, XR_TYPE_SYSTEM_GET_INFO);
+        XrSystemId& output = checkOutput(systemId);
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "the form factor is ",
                 info.formFactor, ", there are only head-mounted displays");
         require(owner.simulation->script.plugged, XR_ERROR_FORM_FACTOR_UNAVAILABLE,
@@ -61,21 +61,24 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
     return answer(__func__, [&] {
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        XrSystemProperties& output = checked(properties, XR_TYPE_SYSTEM_PROPERTIES);
+        XrSystemProperties& output = checkStruct(properties, XR_TYPE_SYSTEM_PROPERTIES);
         output.systemId = kSystemId;
         output.vendorId = 0;
         copyText(output.systemName, owner.simulation->script.system_name);
         output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
         output.trackingProperties = {XR_TRUE, XR_TRUE};
-        if (auto* gaze = chained<XrSystemEyeGazeInteractionPropertiesEXT>(
-                owner, output.next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME))
+        if (auto* gaze = findChained<XrSystemEyeGazeInteractionPropertiesEXT>(
+                owner, output.next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME)) {
             gaze->supportsEyeGazeInteraction = owner.simulation->script.gaze.tracker != EyeTracking::kOff ? XR_TRUE : XR_FALSE;
-        if (auto* hands = chained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
-                                                                     XR_EXT_HAND_TRACKING_EXTENSION_NAME))
+        }
+        if (auto* hands = findChained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
+                                                                         XR_EXT_HAND_TRACKING_EXTENSION_NAME)) {
             hands->supportsHandTracking = XR_TRUE;
-        if (auto* presence = chained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
-                                                                        XR_EXT_USER_PRESENCE_EXTENSION_NAME))
+        }
+        if (auto* presence = findChained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
+                                                                            XR_EXT_USER_PRESENCE_EXTENSION_NAME)) {
             presence->supportsUserPresence = XR_TRUE;
+        }
         return XR_SUCCESS;
     });
 }
@@ -96,7 +99,7 @@ XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId system
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
-        XrViewConfigurationProperties& output = checked(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
+        XrViewConfigurationProperties& output = checkStruct(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
         output.viewConfigurationType = viewConfigurationType;
         // Scripts change the angles during a run.
         output.fovMutable = XR_TRUE;
@@ -110,8 +113,8 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
         const Instance& owner = getInstance(instance);
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) return XR_SUCCESS;
-        for (std::size_t eye = 0; eye < kEyes; ++eye) checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) { return XR_SUCCESS; }
+        for (std::size_t eye = 0; eye < kEyes; ++eye) { checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW); }
         const glm::uvec2 size_px = owner.simulation->script.size_px;
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             views[eye].recommendedImageRectWidth = size_px.x;

@@ -15,7 +15,7 @@ XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timesp
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
         require(timespecTime != nullptr, XR_ERROR_VALIDATION_FAILURE, "a time is missing");
-        XrTime& output = checkedOutput(time);
+        XrTime& output = checkOutput(time);
         const bool is_time = timespecTime->tv_sec >= 0 && timespecTime->tv_sec < INT64_MAX / kSecond - 1 && timespecTime->tv_nsec >= 0 &&
                              timespecTime->tv_nsec < kSecond;
         require(is_time, XR_ERROR_TIME_INVALID, timespecTime->tv_sec, " s ", timespecTime->tv_nsec, " ns is not a time of CLOCK_MONOTONIC");
@@ -29,7 +29,7 @@ XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timesp
 XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct timespec* timespecTime) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        struct timespec& output = checkedOutput(timespecTime);
+        struct timespec& output = checkOutput(timespecTime);
         checkTime(time);
         const std::int64_t offset = owner.simulation->clock.monotonicOffset();
         require(time < INT64_MAX - std::max<std::int64_t>(offset, 0) && time + offset >= 0, XR_ERROR_TIME_INVALID,

@@ -11,11 +11,11 @@ namespace {
 Mesh meshOf(const Fov& fov, XrVisibilityMaskTypeKHR type) {
     switch (type) {
         case XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR:
-            return hiddenMesh(fov);
+            return makeHiddenMesh(fov);
         case XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR:
-            return visibleMesh(fov);
+            return makeVisibleMesh(fov);
         case XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR:
-            return visibleOutline(fov);
+            return makeVisibleOutline(fov);
         default:
             refuse(XR_ERROR_VALIDATION_FAILURE, type, " is no type of mask");
     }
@@ -29,20 +29,20 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
         const Session& owner = getSession(session);
         checkViewConfiguration(owner.instance, viewConfigurationType);
         require(viewIndex < kEyes, XR_ERROR_VALIDATION_FAILURE, "the view is ", viewIndex, ", must be 0 or 1");
-        XrVisibilityMaskKHR& output = checked(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
+        XrVisibilityMaskKHR& output = checkStruct(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
         const Simulation& simulation = *owner.instance.simulation;
         Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[viewIndex].fov, visibilityMaskType);
-        if (simulation.script.visibility_mask_is_broken) std::abort();
-        if (!simulation.script.visibility_mask) mesh = {};
+        if (simulation.script.visibility_mask_is_broken) { std::abort(); }
+        if (!simulation.script.visibility_mask) { mesh = {}; }
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
-        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) return successOf(owner);
+        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) { return successOf(owner); }
         const bool has_room = output.vertexCapacityInput >= mesh.vertices.size() && output.indexCapacityInput >= mesh.indices.size();
         require(has_room, XR_ERROR_SIZE_INSUFFICIENT, "the arrays have room for ", output.vertexCapacityInput, " vertices and ",
                 output.indexCapacityInput, " indices, must have for ", mesh.vertices.size(), " and ", mesh.indices.size());
         require(output.vertices != nullptr && output.indices != nullptr, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
-        for (std::size_t i = 0; i < mesh.vertices.size(); ++i) output.vertices[i] = {mesh.vertices[i].x, mesh.vertices[i].y};
-        for (std::size_t i = 0; i < mesh.indices.size(); ++i) output.indices[i] = mesh.indices[i];
+        for (std::size_t i = 0; i < mesh.vertices.size(); ++i) { output.vertices[i] = {mesh.vertices[i].x, mesh.vertices[i].y}; }
+        for (std::size_t i = 0; i < mesh.indices.size(); ++i) { output.indices[i] = mesh.indices[i]; }
         return successOf(owner);
     });
 }

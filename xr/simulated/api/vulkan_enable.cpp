@@ -22,7 +22,7 @@ Function resolve(PFN_vkGetInstanceProcAddr loader, VkInstance instance, const ch
 
 PFN_vkGetInstanceProcAddr loaderOf(const Instance& owner, VkInstance instance) {
     const auto found = owner.vulkan_loaders.find(instance);
-    return found == owner.vulkan_loaders.end() ? systemVulkanLoader() : found->second;
+    return found == owner.vulkan_loaders.end() ? findSystemVulkanLoader() : found->second;
 }
 
 bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDevice device) {
@@ -33,15 +33,15 @@ bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDe
     std::vector<VkQueueFamilyProperties> families(count);
     getFamilies(device, &count, families.data());
     for (const auto& family : families) {
-        if ((family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) return true;
+        if ((family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) { return true; }
     }
     return false;
 }
 
 // SIMULATED_OPENXR_GPU counts the devices that can draw, from 0.
-std::size_t wantedDevice() {
+std::size_t findWantedDevice() {
     const Setting setting = settingOf("GPU");
-    if (!setting.isSet()) return 0;
+    if (!setting.isSet()) { return 0; }
     const std::string& text = setting.value;
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
@@ -57,7 +57,7 @@ VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance insta
     std::vector<VkPhysicalDevice> devices(count);
     require(enumerate(instance, &count, devices.data()) == VK_SUCCESS, XR_ERROR_RUNTIME_FAILURE, "Vulkan's devices cannot be listed");
     std::erase_if(devices, [&](VkPhysicalDevice device) { return !canDraw(loader, instance, device); });
-    const std::size_t index = wantedDevice();
+    const std::size_t index = findWantedDevice();
     require(!devices.empty(), XR_ERROR_RUNTIME_FAILURE,
             "no GPU: Vulkan has no device that can draw, not even a software one (Mesa's lavapipe)");
     require(index < devices.size(), XR_ERROR_RUNTIME_FAILURE, settingOf("GPU").variable, " is ", index, ", there are ", devices.size(),
@@ -71,7 +71,7 @@ XrResult answerRequirements(const char* function, XrInstance instance, XrSystemI
         Instance& owner = getInstance(instance);
         checkSystem(system);
         // Both extensions share the structure and its type.
-        Requirements& output = checked(requirements, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
+        Requirements& output = checkStruct(requirements, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
         output.minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
         output.maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
         owner.has_asked_requirements = true;
@@ -115,20 +115,21 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
                                    VkResult* vulkanResult) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrVulkanInstanceCreateInfoKHR& info = checked(createInfo, XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
-        VkInstance& output = checkedOutput(vulkanInstance);
-        VkResult& result = checkedOutput(vulkanResult);
+        const XrVulkanInstanceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
+        VkInstance& output = checkOutput(vulkanInstance);
+        VkResult& result = checkOutput(vulkanResult);
         checkSystem(info.systemId);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
                 "vkGetInstanceProcAddr or the VkInstanceCreateInfo is missing");
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
         result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
-        if (result == VK_SUCCESS) owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr;
+        if (result == VK_SUCCESS) { owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr; }
         // Vulkan's result is in vulkanResult; this call itself succeeded. A machine without a driver is reported all the
         // same.
-        if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+        if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
             explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");
+        }
         return XR_SUCCESS;
     });
 }
@@ -137,8 +138,8 @@ XrResult xrGetVulkanGraphicsDevice2KHR(XrInstance instance, const XrVulkanGraphi
                                        VkPhysicalDevice* vulkanPhysicalDevice) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrVulkanGraphicsDeviceGetInfoKHR& info = checked(getInfo, XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
-        VkPhysicalDevice& output = checkedOutput(vulkanPhysicalDevice);
+        const XrVulkanGraphicsDeviceGetInfoKHR& info = checkStruct(getInfo, XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
+        VkPhysicalDevice& output = checkOutput(vulkanPhysicalDevice);
         checkSystem(info.systemId);
         require(info.vulkanInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
         owner.graphics_device = chooseDevice(loaderOf(owner, info.vulkanInstance), info.vulkanInstance);
@@ -152,7 +153,7 @@ XrResult xrGetVulkanGraphicsDeviceKHR(XrInstance instance, XrSystemId systemId, 
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
         checkSystem(systemId);
-        VkPhysicalDevice& output = checkedOutput(vkPhysicalDevice);
+        VkPhysicalDevice& output = checkOutput(vkPhysicalDevice);
         require(vkInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
         owner.graphics_device = chooseDevice(loaderOf(owner, vkInstance), vkInstance);
         owner.graphics_instance = vkInstance;
@@ -165,9 +166,9 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
                                  VkResult* vulkanResult) {
     return answer(__func__, [&] {
         Instance& owner = getInstance(instance);
-        const XrVulkanDeviceCreateInfoKHR& info = checked(createInfo, XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
-        VkDevice& output = checkedOutput(vulkanDevice);
-        VkResult& result = checkedOutput(vulkanResult);
+        const XrVulkanDeviceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
+        VkDevice& output = checkOutput(vulkanDevice);
+        VkResult& result = checkOutput(vulkanResult);
         checkSystem(info.systemId);
         require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
         require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,

@@ -111,7 +111,7 @@ bool isShownTo(Side side, Visibility visibility) {
 // Of an empty rectangle there is nothing to see.
 bool isEmpty(const Rect& rect) { return rect.extent.x == 0 || rect.extent.y == 0; }
 
-std::vector<SeenLayer> seenBy(const EyeView& eye, Side side, std::span<const Layer> layers) {
+std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const Layer> layers) {
     std::vector<SeenLayer> seen;
     for (const Layer& layer : layers) {
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
@@ -145,7 +145,7 @@ glm::dvec4 blend(const glm::dvec4& below, const glm::dvec4& texel, const Blendin
 }  // namespace
 
 RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop) {
-    const std::vector<SeenLayer> seen = seenBy(eye, side, layers);
+    const std::vector<SeenLayer> seen = listSeen(eye, side, layers);
     const Tangents tangents(eye.fov);
     RgbPicture picture{eye.size_px, {}};
     picture.bytes.reserve(std::size_t{3} * eye.size_px.x * eye.size_px.y);
@@ -164,7 +164,7 @@ RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> laye
     return picture;
 }
 
-RgbPicture sideBySide(const RgbPicture& left, const RgbPicture& right) {
+RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right) {
     RgbPicture both{{left.size_px.x + right.size_px.x, std::max(left.size_px.y, right.size_px.y)}, {}};
     both.bytes.resize(std::size_t{3} * both.size_px.x * both.size_px.y);
     std::size_t first_column = 0;

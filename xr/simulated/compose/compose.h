@@ -125,7 +125,7 @@ struct Backdrop {
 [[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
 
 // Left and right eye beside one another, at the top of a picture as tall as the taller one.
-[[nodiscard]] RgbPicture sideBySide(const RgbPicture& left, const RgbPicture& right);
+[[nodiscard]] RgbPicture putSideBySide(const RgbPicture& left, const RgbPicture& right);
 
 // IEC 61966-2-1, both on 0 to 1; a byte decoded and encoded is the same byte.
 [[nodiscard]] double decodeSrgb(double encoded);

@@ -42,7 +42,7 @@ Pose interpolate(const Pose& from, const Pose& to, double share) {
     return {glm::normalize(glm::slerp(from.orientation, to.orientation, share)), glm::mix(from.position, to.position, share)};
 }
 
-Pose levelled(const Pose& pose) {
+Pose makeLevel(const Pose& pose) {
     const glm::dvec3 forward = pose.orientation * glm::dvec3(0.0, 0.0, -1.0);
     const glm::dvec3 right = pose.orientation * glm::dvec3(1.0, 0.0, 0.0);
     // A turn by `heading` takes -z to (-sin, 0, -cos) and x to (cos, 0, -sin).
@@ -57,7 +57,7 @@ Pose headFromEye(Side side, double eye_distance_m, double cant_rad) {
     return {glm::angleAxis(-outwards * cant_rad, glm::dvec3(0.0, 1.0, 0.0)), {outwards * 0.5 * eye_distance_m, 0.0, 0.0}};
 }
 
-Mesh hiddenMesh(const Fov& fov) {
+Mesh makeHiddenMesh(const Fov& fov) {
     Mesh mesh{ellipse(fov), {}};
     const auto left = static_cast<float>(std::tan(fov.left_rad)), right = static_cast<float>(std::tan(fov.right_rad));
     const auto up = static_cast<float>(std::tan(fov.up_rad)), down = static_cast<float>(std::tan(fov.down_rad));
@@ -72,7 +72,7 @@ Mesh hiddenMesh(const Fov& fov) {
     return mesh;
 }
 
-Mesh visibleMesh(const Fov& fov) {
+Mesh makeVisibleMesh(const Fov& fov) {
     Mesh mesh{ellipse(fov), {}};
     // Opposite corners have the centre between them.
     mesh.vertices.push_back(0.5f * (mesh.vertices[0] + mesh.vertices[kOutlineCorners / 2]));
@@ -82,7 +82,7 @@ Mesh visibleMesh(const Fov& fov) {
     return mesh;
 }
 
-Mesh visibleOutline(const Fov& fov) {
+Mesh makeVisibleOutline(const Fov& fov) {
     Mesh mesh{ellipse(fov), {}};
     for (std::uint32_t i = 0; i < kOutlineCorners; ++i) { mesh.indices.push_back(i); }
     return mesh;

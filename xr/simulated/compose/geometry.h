@@ -30,7 +30,7 @@ struct Pose {
 
 // The pose without tilt: same position, turned about the vertical (y) only, so that it faces where `pose` faces. One that looks
 // straight up or down keeps the heading of its right-hand side.
-[[nodiscard]] Pose levelled(const Pose& pose);
+[[nodiscard]] Pose makeLevel(const Pose& pose);
 
 // View angles in radians, XrFovf's signs: left and down are negative for a usual eye.
 struct Fov {
@@ -51,8 +51,8 @@ struct Mesh {
 };
 
 // The visible part is the ellipse that touches the four edges of the view in tangent space.
-[[nodiscard]] Mesh hiddenMesh(const Fov& fov);      // what lies outside, up to the edges
-[[nodiscard]] Mesh visibleMesh(const Fov& fov);     // a fan about the ellipse's centre
-[[nodiscard]] Mesh visibleOutline(const Fov& fov);  // its border, counter-clockwise
+[[nodiscard]] Mesh makeHiddenMesh(const Fov& fov);      // what lies outside, up to the edges
+[[nodiscard]] Mesh makeVisibleMesh(const Fov& fov);     // a fan about the ellipse's centre
+[[nodiscard]] Mesh makeVisibleOutline(const Fov& fov);  // its border, counter-clockwise
 
 }  // namespace simulated

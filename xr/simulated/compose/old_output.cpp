@@ -31,7 +31,7 @@ std::optional<std::uint64_t> frameOfPicture(std::string_view name) {
     if (!name.starts_with(kPrefix)) { return {}; }
     std::uint64_t frame = 0;
     const auto read = std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), frame);
-    if (read.ec != std::errc() || pictureName(frame) != name) { return {}; }
+    if (read.ec != std::errc() || namePicture(frame) != name) { return {}; }
     return frame;
 }
 
@@ -70,7 +70,7 @@ std::set<std::string> loggedPictures(const fs::path& log) {
 
 }  // namespace
 
-std::string pictureName(std::uint64_t frame) { return fmt::format("frame_{:06}.png", frame); }
+std::string namePicture(std::uint64_t frame) { return fmt::format("frame_{:06}.png", frame); }
 
 void removeOldOutput(const fs::path& folder, bool writes_pictures, const FrameChoice& frames) {
     const auto refuse = [](const fs::path& path) {
@@ -88,7 +88,7 @@ void removeOldOutput(const fs::path& folder, bool writes_pictures, const FrameCh
         if (is_in_the_way && !(old.contains(name) && isPlainFile(entry->path()))) { refuse(entry->path()); }
     }
     for (const std::string& name : old) {
-        for (const fs::path& path : {folder / name, unfinishedPicture(folder / name)}) {
+        for (const fs::path& path : {folder / name, nameUnfinishedPicture(folder / name)}) {
             if (isPlainFile(path)) { fs::remove(path, error); }
         }
     }

@@ -11,7 +11,7 @@ namespace simulated {
 inline constexpr const char* kLogName = "frames.jsonl";
 
 // "frame_000012.png"
-[[nodiscard]] std::string pictureName(std::uint64_t frame);
+[[nodiscard]] std::string namePicture(std::uint64_t frame);
 
 // Removes the log of an earlier run and the pictures that it names, finished or not, and no other file. Throws std::runtime_error, and
 // removes nothing, if files that a run with these pictures would write are there and not of an earlier run: the log or a picture.

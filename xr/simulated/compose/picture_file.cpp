@@ -38,10 +38,12 @@ struct PngImage : png_image {
 
 }  // namespace
 
-fs::path unfinishedPicture(const fs::path& path) { return path.parent_path() / fmt::format(".{}.unfinished.png", path.stem().string()); }
+fs::path nameUnfinishedPicture(const fs::path& path) {
+    return path.parent_path() / fmt::format(".{}.unfinished.png", path.stem().string());
+}
 
 void writePng(const fs::path& path, const RgbPicture& picture) {
-    const fs::path unfinished = unfinishedPicture(path);
+    const fs::path unfinished = nameUnfinishedPicture(path);
     PngImage image;
     image.width = picture.size_px.x;
     image.height = picture.size_px.y;

@@ -14,7 +14,7 @@ bool isFinite(double radius_m) { return radius_m > 0.0 && std::isfinite(radius_m
 
 // Where a ray leaves the circle or sphere of this radius about the origin: the nearest point ahead on its inside. `a`, `b`, `c` are of
 // a t^2 + 2 b t + c = 0.
-std::optional<double> wayOut(double a, double b, double c) {
+std::optional<double> findWayOut(double a, double b, double c) {
     const double root = b * b - a * c;
     if (!(a > 0.0) || root < 0.0) { return std::nullopt; }
     const double t = (-b + std::sqrt(root)) / a;
@@ -53,8 +53,8 @@ std::optional<glm::dvec4> SeenCylinder::at(std::uint32_t, std::uint32_t, const g
     if (!(level > 0.0)) { return std::nullopt; }  // straight up or down
     if (isFinite(radius_m_)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t =
-            wayOut(level * level, direction.x * from.x + direction.z * from.z, from.x * from.x + from.z * from.z - radius_m_ * radius_m_);
+        const auto t = findWayOut(level * level, direction.x * from.x + direction.z * from.z,
+                                  from.x * from.x + from.z * from.z - radius_m_ * radius_m_);
         if (!t) { return std::nullopt; }
         place = (from + *t * direction) / radius_m_;
     }
@@ -76,7 +76,7 @@ std::optional<glm::dvec4> SeenSphere::at(std::uint32_t, std::uint32_t, const glm
     glm::dvec3 place = direction;
     if (isFinite(radius_m_)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t = wayOut(glm::dot(direction, direction), glm::dot(direction, from), glm::dot(from, from) - radius_m_ * radius_m_);
+        const auto t = findWayOut(glm::dot(direction, direction), glm::dot(direction, from), glm::dot(from, from) - radius_m_ * radius_m_);
         if (!t) { return std::nullopt; }
         place = from + *t * direction;
     }

@@ -20,7 +20,7 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     record.session_state = wordOf(session.state);
     record.blend_mode = wordOf(info.environmentBlendMode);
     record.stage_from_head = state.stage_from_head;
-    for (std::size_t eye = 0; eye < kEyes; ++eye) record.eyes[eye] = {state.eyes[eye].stage_from_eye, state.eyes[eye].fov};
+    for (std::size_t eye = 0; eye < kEyes; ++eye) { record.eyes[eye] = {state.eyes[eye].stage_from_eye, state.eyes[eye].fov}; }
     record.layers = loggedLayers(session, info, state);
     record.events = std::exchange(session.log_events, {});
     return record;
@@ -28,21 +28,21 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
 
 // The room about the wearer, as far as the frame's blend mode shows it.
 Backdrop backdropOf(const Script& script, const XrFrameEndInfo& info) {
-    if (info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE) return {};
+    if (info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_OPAQUE) { return {}; }
     const glm::dvec3& room = script.room_colour;
     return {{decodeSrgb(room.r), decodeSrgb(room.g), decodeSrgb(room.b)}, info.environmentBlendMode == XR_ENVIRONMENT_BLEND_MODE_ADDITIVE};
 }
 
 void writePicture(const Session& session, const XrFrameEndInfo& info, const State& state, const std::filesystem::path& path) {
     const Simulation& simulation = *session.instance.simulation;
-    const std::vector<Layer> layers = composableLayers(session, info, state);
+    const std::vector<Layer> layers = makeLayers(session, info, state);
     std::array<RgbPicture, kEyes> pictures;
     for (const Side side : kSides) {
         const EyeState& eye = state.eyes[side];
         pictures[side] =
             composeEye({simulation.script.size_px, eye.stage_from_eye, eye.fov}, side, layers, backdropOf(simulation.script, info));
     }
-    writePng(path, sideBySide(pictures[kLeft], pictures[kRight]));
+    writePng(path, putSideBySide(pictures[kLeft], pictures[kRight]));
 }
 
 }  // namespace
@@ -56,18 +56,18 @@ void showFrame(Session& session, const XrFrameEndInfo& info, const State& state)
     const bool has_picture =
         simulation.script.writes_pictures && simulation.script.frames.contains(simulation.frames_shown) && info.layerCount > 0;
     FrameRecord record = recordOf(session, info, state);
-    if (has_picture) record.picture = pictureName(simulation.frames_shown);
+    if (has_picture) { record.picture = namePicture(simulation.frames_shown); }
     ++simulation.frames_shown;
     // The log first: whatever a run leaves that ends meanwhile, its log names it.
-    simulation.output->log.write(frameLine(record));
-    if (has_picture) writePicture(session, info, state, simulation.output->folder / record.picture);
+    simulation.output->log.write(makeFrameLine(record));
+    if (has_picture) { writePicture(session, info, state, simulation.output->folder / record.picture); }
 }
 
 void logBetween(Session& session, const Refusal* refusal) {
     BetweenRecord record;
     record.events = std::exchange(session.log_events, {});
     Simulation& simulation = *session.instance.simulation;
-    if (!simulation.output || (refusal == nullptr && record.events.empty())) return;
+    if (!simulation.output || (refusal == nullptr && record.events.empty())) { return; }
     if (refusal != nullptr) {
         record.refused = nameOf(refusal->result);
         record.reason = refusal->reason;
@@ -75,7 +75,7 @@ void logBetween(Session& session, const Refusal* refusal) {
     }
     record.display_time_ns = session.frames.last_begun.value_or(simulation.clock.now());
     record.session_state = wordOf(session.state);
-    simulation.output->log.write(betweenLine(record));
+    simulation.output->log.write(makeBetweenLine(record));
 }
 
 }  // namespace simulated

@@ -39,7 +39,7 @@ const SrgbTables& tables() {
     return kTables;
 }
 
-double halfAt(const std::byte* bytes) {
+double readHalf(const std::byte* bytes) {
     std::uint16_t half = 0;
     std::memcpy(&half, bytes, sizeof half);
     const auto value = static_cast<double>(glm::unpackHalf1x16(half));
@@ -80,7 +80,7 @@ glm::dvec4 Sampler::texel(std::uint32_t x, std::uint32_t y) const {
     const std::size_t index = std::size_t{rect_.offset.y + y} * picture_.size_px.x + rect_.offset.x + x;
     const std::byte* bytes = picture_.bytes.data() + index * bytesPerTexel(picture_.texels);
     if (picture_.texels == Texels::kRgba16f) {
-        const glm::dvec4 values(halfAt(bytes), halfAt(bytes + 2), halfAt(bytes + 4), halfAt(bytes + 6));
+        const glm::dvec4 values(readHalf(bytes), readHalf(bytes + 2), readHalf(bytes + 4), readHalf(bytes + 6));
         if (picture_.transfer == Transfer::kLinear) { return values; }
         return {decodeSrgb(values.r), decodeSrgb(values.g), decodeSrgb(values.b), values.a};
     }

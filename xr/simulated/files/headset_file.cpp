@@ -31,7 +31,7 @@ double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
 double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
 
 // "one, two or three"
-std::string listed(std::initializer_list<std::string_view> words) {
+std::string listWords(std::initializer_list<std::string_view> words) {
     std::string result;
     for (const std::string_view& word : words) {
         const bool is_first = &word == words.begin(), is_last = &word + 1 == words.end();
@@ -41,7 +41,7 @@ std::string listed(std::initializer_list<std::string_view> words) {
     return result;
 }
 
-std::string inWords(const toml::node& node) {
+std::string putInWords(const toml::node& node) {
     if (const auto text = node.value<std::string>()) { return shown(*text); }
     if (const auto* number = node.as_integer()) { return std::to_string(number->get()); }
     if (const auto number = node.value<double>()) {
@@ -62,7 +62,7 @@ public:
             std::string word(key.str());
             std::ranges::replace(word, '-', '_');
             if (std::ranges::find(known, word) == known.end()) {
-                fail(node, prefix_, shown(key.str()), " is not a key of a headset, must be ", listed(known));
+                fail(node, prefix_, shown(key.str()), " is not a key of a headset, must be ", listWords(known));
             }
             if (std::ranges::find(seen, word) != seen.end()) { fail(node, prefix_, word, " is set twice, must be set once"); }
             seen.push_back(word);
@@ -91,7 +91,7 @@ public:
         const std::optional<double> value = node.value<double>();
         // Not the other way round: NaN is refused, too.
         if (!value || !(*value >= least && *value <= most)) {
-            fail(node, prefix_, key, " is ", inWords(node), ", must be a number from ", least, " to ", most);
+            fail(node, prefix_, key, " is ", putInWords(node), ", must be a number from ", least, " to ", most);
         }
         return *value;
     }

@@ -71,7 +71,7 @@ std::optional<Time> parseTime(std::string_view text) {
     return Time{*count, is_whole ? std::optional(whole) : std::nullopt};
 }
 
-double countsBetween(const Time& from, const Time& to) {
+double countBetween(const Time& from, const Time& to) {
     return from.whole && to.whole ? static_cast<double>(*to.whole - *from.whole) : to.count - from.count;
 }
 
@@ -132,7 +132,7 @@ std::vector<MotionSample> parseMotion(std::string_view text, const std::string& 
             if (!layout.seconds_per_count) { layout.seconds_per_count = guessSecondsPerCount(line, first); }
         }
         MotionSample sample;
-        sample.time_s = countsBetween(first, *time) * *layout.seconds_per_count;
+        sample.time_s = countBetween(first, *time) * *layout.seconds_per_count;
         if (!samples.empty() && !(sample.time_s > samples.back().time_s)) {
             line.fail("time is ", shown(line.fields[0]), ", must be after the pose before");
         }

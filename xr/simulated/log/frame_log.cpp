@@ -58,7 +58,7 @@ std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::er
 
 }  // namespace
 
-std::string frameLine(const FrameRecord& record) {
+std::string makeFrameLine(const FrameRecord& record) {
     Json json{{"frame", record.frame},
               {"display_time_ns", record.display_time_ns},
               {"period_ns", record.period_ns},
@@ -76,7 +76,7 @@ std::string frameLine(const FrameRecord& record) {
     return textOf(json);
 }
 
-std::string betweenLine(const BetweenRecord& record) {
+std::string makeBetweenLine(const BetweenRecord& record) {
     Json json;
     if (!record.refused.empty()) { json = {{"refused", record.refused}, {"reason", record.reason}}; }
     json["session_state"] = record.session_state;

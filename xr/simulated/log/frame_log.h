@@ -75,9 +75,9 @@ struct BetweenRecord {
 };
 
 // One line without its end; numbers are written so that reading them gives the same number, quaternions as x, y, z, w, angles in radians.
-[[nodiscard]] std::string frameLine(const FrameRecord& record);
+[[nodiscard]] std::string makeFrameLine(const FrameRecord& record);
 // Such a line has no "frame".
-[[nodiscard]] std::string betweenLine(const BetweenRecord& record);
+[[nodiscard]] std::string makeBetweenLine(const BetweenRecord& record);
 
 // Lines are there as soon as they are written, so that a program that dies leaves a log of all frames before.
 class FrameLog {

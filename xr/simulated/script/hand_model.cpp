@@ -36,7 +36,7 @@ glm::dvec3 mirrored(const glm::dvec3& place, Side side) { return {side == kLeft 
 
 }  // namespace
 
-std::array<HandJoint, kHandJoints> handJoints(Side side, const Pose& stage_from_grip, double index_curl, double others_curl) {
+std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl, double others_curl) {
     const Pose stage_from_wrist = compose(stage_from_grip, gripFromWrist(side));
     std::array<HandJoint, kHandJoints> joints;
     std::size_t next = 0;

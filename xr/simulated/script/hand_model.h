@@ -15,6 +15,7 @@ struct HandJoint {
 inline constexpr std::size_t kHandJoints = 26;
 
 // Curls are from 0, the finger is straight, to 1: the index finger's own, and that of the other three; the thumb stays.
-[[nodiscard]] std::array<HandJoint, kHandJoints> handJoints(Side side, const Pose& stage_from_grip, double index_curl, double others_curl);
+[[nodiscard]] std::array<HandJoint, kHandJoints> makeHandJoints(Side side, const Pose& stage_from_grip, double index_curl,
+                                                                double others_curl);
 
 }  // namespace simulated

@@ -40,7 +40,7 @@ void setPress(ControllerState& state, const Script::Hand::Press& press) {
     if (kind == InputKind::kAnalog || kind == InputKind::kStick) { state.inputs[press.input + "/force"] = 1.0; }
 }
 
-ControllerState controllerAt(const Script::Hand& hand, double time_s) {
+ControllerState findController(const Script::Hand& hand, double time_s) {
     ControllerState state;
     state.tracked = hand.tracked.at(time_s);
     state.stage_from_grip = hand.stage_from_grip.at(time_s);
@@ -102,7 +102,7 @@ State Script::at(double time_s) const {
     state.stage_from_head = stage_from_head.at(time_s);
     for (const Side side : kSides) {
         state.eyes[side] = {compose(state.stage_from_head, headFromEye(side, eye_distance_m, cant_rad[side])), fovs[side].at(time_s)};
-        state.controllers[side] = controllerAt(hands[side], time_s);
+        state.controllers[side] = findController(hands[side], time_s);
     }
     state.head_turn_known = head_turn_known.at(time_s);
     state.head_place_known = head_place_known.at(time_s) && state.head_turn_known;
@@ -129,8 +129,8 @@ std::vector<ScriptEvent> Script::eventsIn(double from_s, double to_s) const {
 
 Pose Script::stageFromLocal(double time_s) const {
     const auto next = std::ranges::upper_bound(recentres_s, time_s);
-    if (next != recentres_s.begin()) { return levelled(stage_from_head.at(*std::prev(next))); }
-    return stage_from_local ? *stage_from_local : levelled(stage_from_head.at(0.0));
+    if (next != recentres_s.begin()) { return makeLevel(stage_from_head.at(*std::prev(next))); }
+    return stage_from_local ? *stage_from_local : makeLevel(stage_from_head.at(0.0));
 }
 
 Pose Script::stageFromLocalFloor(double time_s) const {

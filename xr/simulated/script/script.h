@@ -115,8 +115,7 @@ struct FrameChoice {
     [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
 };
 
-class Script {
-public:
+struct Script {
     // The headset without a script: the head at rest at (0, 1.6, 0) looking along -z, eyes 0.063 m apart with 90 degree views, controllers
     // held in front, 90 Hz, 1024 x 1024, no mask, every frame written.
     Script();

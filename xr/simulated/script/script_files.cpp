@@ -39,7 +39,7 @@ files::HeadsetFile readHeadset(const std::string& text, const std::string& name)
     } catch (const files::Error& error) { throw ScriptError(error.what()); }
 }
 
-Track<Pose> headTrack(std::string_view text, const std::string& name, MotionAxes axes) {
+Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes) {
     Track<Pose> track;
     const std::vector<files::MotionSample> samples = [&] {
         try {

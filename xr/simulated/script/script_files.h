@@ -23,6 +23,6 @@ enum class MotionAxes {
     kUnity,   // left-handed, the wearer looks along +z
 };
 // Head poses by time from the first one on, of a text as motion_file.h describes it. Throws ScriptError with the file's own line.
-[[nodiscard]] Track<Pose> headTrack(std::string_view text, const std::string& name, MotionAxes axes);
+[[nodiscard]] Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes);
 
 }  // namespace simulated

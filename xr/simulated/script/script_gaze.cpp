@@ -18,13 +18,13 @@ GazeTracking GazeScript::trackedAt(double time_s) const { return tracker == EyeT
 
 void parseEyeTracking(Words& words, GazeScript& gaze) {
     gaze.tracker = std::array{EyeTracking::kOn, EyeTracking::kOff, EyeTracking::kRefused}.at(
-        words.choice("whether eyes are tracked", {"on", "off", "refused"}));
+        words.takeChoice("whether eyes are tracked", {"on", "off", "refused"}));
 }
 
 void parseGazeKey(Words& words, GazeScript& gaze) {
-    const double time_s = words.time();
-    const double yaw = words.number("the turn to the left in degrees", -90.0, 90.0);
-    const double pitch = words.number("the turn upwards in degrees", -90.0, 90.0);
+    const double time_s = words.takeTime();
+    const double yaw = words.takeNumber("the turn to the left in degrees", -90.0, 90.0);
+    const double pitch = words.takeNumber("the turn upwards in degrees", -90.0, 90.0);
     const glm::dvec2 turn_rad = glm::radians(glm::dvec2(yaw, pitch));
     if (!gaze.turn_rad.add(time_s, turn_rad)) {
         words.fail("the time is {}, must be after the key before, at {}", time_s, gaze.turn_rad.lastTime());
@@ -33,7 +33,7 @@ void parseGazeKey(Words& words, GazeScript& gaze) {
 
 void parseGazeTracking(Words& words, double time_s, GazeScript& gaze) {
     const auto tracking = std::array{GazeTracking::kOn, GazeTracking::kOff, GazeTracking::kDegraded}.at(
-        words.choice("whether the gaze is tracked", {"on", "off", "degraded"}));
+        words.takeChoice("whether the gaze is tracked", {"on", "off", "degraded"}));
     if (!gaze.tracked.add(time_s, tracking)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
 }
 

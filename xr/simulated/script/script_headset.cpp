@@ -16,40 +16,40 @@ namespace fs = std::filesystem;
 
 void Parser::parseRate(Words& words) {
     requireFirst(words, "rate");
-    script_.rate_hz = words.number(kRateMeaning, kLeastRate, kMostRate);
+    script_.rate_hz = words.takeNumber(kRateMeaning, kLeastRate, kMostRate);
     script_.rate_is_fixed = words.takeIf("fixed");
 }
 
 void Parser::parseIrregular(Words& words) {
     requireFirst(words, "irregular");
-    script_.irregularity = 0.01 * words.number("how much periods differ, in percent", 0.0, 90.0);
+    script_.irregularity = 0.01 * words.takeNumber("how much periods differ, in percent", 0.0, 90.0);
 }
 
 void Parser::parsePeriod(Words& words) {
     requireFirst(words, "period");
-    script_.stretches_period = words.choice("the stated period", {"steady", "stretched"}) == 1;
+    script_.stretches_period = words.takeChoice("the stated period", {"steady", "stretched"}) == 1;
 }
 
 void Parser::parseSize(Words& words) {
     requireFirst(words, "size");
-    const auto width = static_cast<std::uint32_t>(words.count("the width in pixels", 1, 16384));
-    script_.size_px = {width, static_cast<std::uint32_t>(words.count("the height in pixels", 1, 16384))};
+    const auto width = static_cast<std::uint32_t>(words.takeCount("the width in pixels", 1, 16384));
+    script_.size_px = {width, static_cast<std::uint32_t>(words.takeCount("the height in pixels", 1, 16384))};
 }
 
 void Parser::parseIpd(Words& words) {
     requireFirst(words, "ipd");
-    script_.eye_distance_m = words.number("the eye distance in metres", 0.0, 1.0);
+    script_.eye_distance_m = words.takeNumber("the eye distance in metres", 0.0, 1.0);
 }
 
 void Parser::parseEye(Words& words) {
-    const Side side = words.side();
+    const Side side = words.takeSide();
     const std::string eye = side == kLeft ? "eye left " : "eye right ";
-    if (words.choice("what is set", {"angles", "cant"}) == 0) {
+    if (words.takeChoice("what is set", {"angles", "cant"}) == 0) {
         requireFirst(words, eye + "angles");
-        script_.fovs[side].setInitial(words.angles());
+        script_.fovs[side].setInitial(words.takeAngles());
     } else {
         requireFirst(words, eye + "cant");
-        script_.cant_rad[side] = glm::radians(words.number("the turn outwards in degrees", -45.0, 45.0));
+        script_.cant_rad[side] = glm::radians(words.takeNumber("the turn outwards in degrees", -45.0, 45.0));
     }
 }
 
@@ -63,7 +63,7 @@ void Parser::parseHeadsetLine(Words& words) {
         if (seen_.contains(set_by_it)) { words.fail("headset sets {}, too, must stand before it", set_by_it); }
     }
     requireFirst(words, "headset");
-    const fs::path path = folder_ / words.text("the headset's file");
+    const fs::path path = folder_ / words.takeText("the headset's file");
     const files::HeadsetFile headset = readHeadset(readText(path, words.place() + ": ", "a TOML file of a headset"), path.string());
     script_.system_name = headset.name;
     script_.size_px = {headset.size_px[0], headset.size_px[1]};
@@ -79,7 +79,7 @@ void Parser::parseBlendModes(Words& words) {
     requireFirst(words, "blend-modes");
     script_.blend_modes.clear();
     do {
-        const auto mode = static_cast<Script::BlendMode>(words.choice("a blend mode", {"opaque", "additive", "alpha-blend"}));
+        const auto mode = static_cast<Script::BlendMode>(words.takeChoice("a blend mode", {"opaque", "additive", "alpha-blend"}));
         if (std::ranges::find(script_.blend_modes, mode) != script_.blend_modes.end()) {
             words.fail("a blend mode stands there twice, must be named once");
         }
@@ -89,12 +89,12 @@ void Parser::parseBlendModes(Words& words) {
 
 void Parser::parseRoomColour(Words& words) {
     requireFirst(words, "room-colour");
-    for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.number("the room's colour", 0.0, 1.0); }
+    for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.takeNumber("the room's colour", 0.0, 1.0); }
 }
 
 void Parser::parseMask(Words& words) {
     requireFirst(words, "visibility-mask");
-    const std::size_t choice = words.choice("whether there is a mask", {"on", "off", "broken"});
+    const std::size_t choice = words.takeChoice("whether there is a mask", {"on", "off", "broken"});
     script_.visibility_mask = choice == 0;
     script_.visibility_mask_is_broken = choice == 2;
 }
@@ -106,7 +106,7 @@ void Parser::parseLocal(Words& words) {
 
 void Parser::parseStage(Words& words) {
     requireFirst(words, "stage");
-    script_.has_stage = words.onOff("whether there is a STAGE");
+    script_.has_stage = words.takeOnOff("whether there is a STAGE");
 }
 
 }  // namespace simulated

@@ -57,7 +57,7 @@ void Parser::parseLine(Words& words) {
                                                                        {"touch", &Parser::parseTouch},
                                                                        {"visibility-mask", &Parser::parseMask},
                                                                        {"vulkan-additions", &Parser::parseVulkanAdditions}};
-    const std::string command = words.text("the command");
+    const std::string command = words.takeText("the command");
     const auto found = kCommands.find(command);
     if (found == kCommands.end()) {
         std::string known;

@@ -44,7 +44,7 @@ private:
     void parseImages(Words& words);
     void parseStateChanges(Words& words);
     void parseExtension(Words& words);
-    std::string profileName(Words& words);
+    std::string takeProfileName(Words& words);
     void parseProfile(Words& words);
     void parsePlugged(Words& words);
     void parseVulkanAdditions(Words& words);
@@ -65,7 +65,7 @@ private:
     void finishPoses();
 
     // script_presses.cpp
-    std::string inputName(Words& words, Script::Hand& hand);
+    std::string takeInputName(Words& words, Script::Hand& hand);
     void addPress(Words& words, bool touch_only);
     void parsePress(Words& words);
     void parseTouch(Words& words);

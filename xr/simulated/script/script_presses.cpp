@@ -4,8 +4,8 @@
 
 namespace simulated {
 
-std::string Parser::inputName(Words& words, Script::Hand& hand) {
-    const std::string name = words.text("the input");
+std::string Parser::takeInputName(Words& words, Script::Hand& hand) {
+    const std::string name = words.takeText("the input");
     if (!kindOfInput(name)) {
         std::string known;
         for (const auto& [one, kind] : kInputs) { known += (known.empty() ? "" : ", ") + std::string(one); }
@@ -16,10 +16,10 @@ std::string Parser::inputName(Words& words, Script::Hand& hand) {
 }
 
 void Parser::addPress(Words& words, bool touch_only) {
-    Script::Hand& hand = script_.hands[words.side()];
-    std::string input = inputName(words, hand);
-    const double from_s = words.time("the time from which on");
-    const double to_s = words.time("the time until which");
+    Script::Hand& hand = script_.hands[words.takeSide()];
+    std::string input = takeInputName(words, hand);
+    const double from_s = words.takeTime("the time from which on");
+    const double to_s = words.takeTime("the time until which");
     if (from_s >= to_s) { words.fail("it lasts from {} to {}, must end after it begins", from_s, to_s); }
     hand.presses.push_back({std::move(input), from_s, to_s, touch_only});
 }
@@ -28,20 +28,20 @@ void Parser::parsePress(Words& words) { addPress(words, false); }
 void Parser::parseTouch(Words& words) { addPress(words, true); }
 
 void Parser::parseAxis(Words& words) {
-    Script::Hand& hand = script_.hands[words.side()];
-    const std::string input = inputName(words, hand);
+    Script::Hand& hand = script_.hands[words.takeSide()];
+    const std::string input = takeInputName(words, hand);
     const InputKind kind = *kindOfInput(input);
     if (kind == InputKind::kButton) {
         words.fail("{} has no axis, must be trigger, squeeze, select, pinch_ext, aim_activate_ext, grasp_ext, thumbstick or trackpad",
                    input);
     }
-    const double time_s = words.time();
+    const double time_s = words.takeTime();
     glm::dvec2 value(0.0);
     if (kind == InputKind::kStick) {
-        value.x = words.number("the axis to the right", -1.0, 1.0);
-        value.y = words.number("the axis upwards", -1.0, 1.0);
+        value.x = words.takeNumber("the axis to the right", -1.0, 1.0);
+        value.y = words.takeNumber("the axis upwards", -1.0, 1.0);
     } else {
-        value.x = words.number("the value", 0.0, 1.0);
+        value.x = words.takeNumber("the value", 0.0, 1.0);
     }
     Track<glm::dvec2>& track = hand.axes[input];
     if (!track.add(time_s, value)) { words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime()); }

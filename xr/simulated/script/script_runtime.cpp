@@ -9,53 +9,53 @@ namespace simulated {
 
 void Parser::parseImages(Words& words) {
     requireFirst(words, "images");
-    script_.images = static_cast<std::uint32_t>(words.count("the number of images", 1, 16));
+    script_.images = static_cast<std::uint32_t>(words.takeCount("the number of images", 1, 16));
     if (words.isAtEnd()) { return; }
     constexpr std::array kOrders{Script::ImageOrder::kInTurn, Script::ImageOrder::kReversed, Script::ImageOrder::kShuffled};
-    script_.image_order = kOrders.at(words.choice("the order", {"in-turn", "reversed", "shuffled"}));
+    script_.image_order = kOrders.at(words.takeChoice("the order", {"in-turn", "reversed", "shuffled"}));
 }
 
 void Parser::parseStateChanges(Words& words) {
     requireFirst(words, "state-changes");
-    script_.changes_state_at_begin = words.choice("when states change", {"at-begin", "at-end"}) == 0;
+    script_.changes_state_at_begin = words.takeChoice("when states change", {"at-begin", "at-end"}) == 0;
 }
 
 void Parser::parseExtension(Words& words) {
-    const std::string name = words.text("the extension's name");
+    const std::string name = words.takeText("the extension's name");
     if (!isExtension(name)) {
         std::string known;
         for (const Extension& extension : kExtensions) { known += (known.empty() ? "" : ", ") + std::string(extension.name); }
         words.fail("{} is no extension of this runtime, must be one of: {}", shown(name), known);
     }
-    (void)words.choice("what to do with it", {"off"});
+    (void)words.takeChoice("what to do with it", {"off"});
     if (!script_.extensions_off.insert(name).second) { words.fail("{} is off already, must be named once", shown(name)); }
 }
 
-std::string Parser::profileName(Words& words) {
-    std::string name = words.text("the controllers' profile");
+std::string Parser::takeProfileName(Words& words) {
+    std::string name = words.takeText("the controllers' profile");
     if (findHandProfile(name) == nullptr) {
-        words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), handProfiles());
+        words.fail("{} is not a profile of controllers, must be one of: {}", shown(name), listHandProfiles());
     }
     return name;
 }
 
 void Parser::parseProfile(Words& words) {
     requireFirst(words, "profile");
-    script_.profile = profileName(words);
+    script_.profile = takeProfileName(words);
 }
 
 void Parser::parsePlugged(Words& words) {
     requireFirst(words, "plugged");
-    script_.plugged = words.onOff("whether the headset is plugged in");
+    script_.plugged = words.takeOnOff("whether the headset is plugged in");
 }
 
 void Parser::parseVulkanAdditions(Words& words) {
     requireFirst(words, "vulkan-additions");
-    script_.adds_vulkan_features = words.onOff("whether the runtime asks for Vulkan features of its own");
+    script_.adds_vulkan_features = words.takeOnOff("whether the runtime asks for Vulkan features of its own");
 }
 
 void Parser::parseNoHeadset(Words& words) {
-    const auto calls = static_cast<std::uint32_t>(words.count("the number of calls", 1, 1000000));
+    const auto calls = static_cast<std::uint32_t>(words.takeCount("the number of calls", 1, 1000000));
     const bool after_loss = words.takeIf("after-loss");
     requireFirst(words, after_loss ? "no-headset-for ... after-loss" : "no-headset-for");
     (after_loss ? script_.calls_after_loss : script_.calls_without_headset) = calls;
@@ -63,7 +63,7 @@ void Parser::parseNoHeadset(Words& words) {
 
 void Parser::parseRefusedDepth(Words& words) {
     requireFirst(words, "refuse-depth");
-    const bool images = words.choice("what is refused", {"images", "layers"}) == 0;
+    const bool images = words.takeChoice("what is refused", {"images", "layers"}) == 0;
     script_.depth = images ? Script::Depth::kNoImages : Script::Depth::kNoLayers;
 }
 
@@ -77,13 +77,13 @@ void Parser::parseFrames(Words& words) {
     if (words.takeIf("all")) { return; }
     bool is_given = false;
     if (words.takeIf("from")) {
-        script_.frames.first = words.count("the first frame", 0, kMost);
+        script_.frames.first = words.takeCount("the first frame", 0, kMost);
         if (!words.takeIf("to")) { words.fail("the last frame is missing, must be from A to B"); }
-        script_.frames.last = words.count("the last frame", script_.frames.first, kMost);
+        script_.frames.last = words.takeCount("the last frame", script_.frames.first, kMost);
         is_given = true;
     }
     if (words.takeIf("every")) {
-        script_.frames.every = words.count("how many frames apart", 1, kMost);
+        script_.frames.every = words.takeCount("how many frames apart", 1, kMost);
         is_given = true;
     }
     if (!is_given) { words.fail("the frames are missing, must be all, none, every N, or from A to B [every N]"); }

@@ -9,8 +9,8 @@ namespace {
 
 // "70 %", "8 ms" or "3 ms-per-megapixel".
 GpuLoad parseLoad(Words& words) {
-    const double amount = words.number("the load", 0.0, 1e5);
-    switch (words.choice("the load's unit", {"%", "ms", "ms-per-megapixel"})) {
+    const double amount = words.takeNumber("the load", 0.0, 1e5);
+    switch (words.takeChoice("the load's unit", {"%", "ms", "ms-per-megapixel"})) {
         case 0:
             return {GpuLoad::Unit::kShareOfPeriod, amount / 100.0};
         case 1:
@@ -36,24 +36,24 @@ void addRecentring(Script& script, double time_s) {
 }  // namespace
 
 void Parser::parseAt(Words& words) {
-    const double time_s = words.time();
+    const double time_s = words.takeTime();
     if (last_at_s_ && time_s < *last_at_s_) {
         words.fail("the time is {}, must not be before the `at` before, at {}", time_s, *last_at_s_);
     }
     last_at_s_ = time_s;
     const auto addEvent = [&](ScriptEvent::Kind kind, std::uint32_t count = 1) { script_.events.push_back({time_s, kind, count}); };
-    switch (
-        words.choice("what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit", "eye",
-                                      "controller", "worn", "head", "recentre", "present", "rate", "gpu-load", "profile", "gaze"})) {
+    switch (words.takeChoice(
+        "what happens", {"should-render", "visible", "focused", "slow-images", "lose-session", "lose-instance", "exit", "eye", "controller",
+                         "worn", "head", "recentre", "present", "rate", "gpu-load", "profile", "gaze"})) {
         case 0:
-            return addStep(words, script_.should_render, time_s, words.onOff("whether to render"));
+            return addStep(words, script_.should_render, time_s, words.takeOnOff("whether to render"));
         case 1:
-            return addStep(words, script_.visible, time_s, words.onOff("whether it is visible"));
+            return addStep(words, script_.visible, time_s, words.takeOnOff("whether it is visible"));
         case 2:
-            return addStep(words, script_.focused, time_s, words.onOff("whether it has the focus"));
+            return addStep(words, script_.focused, time_s, words.takeOnOff("whether it has the focus"));
         case 3:
             return addEvent(ScriptEvent::Kind::kSlowImages,
-                            static_cast<std::uint32_t>(words.count("the number of slow images", 1, 1000000)));
+                            static_cast<std::uint32_t>(words.takeCount("the number of slow images", 1, 1000000)));
         case 4:
             return addEvent(ScriptEvent::Kind::kLoseSession);
         case 5:
@@ -61,32 +61,32 @@ void Parser::parseAt(Words& words) {
         case 6:
             return addEvent(ScriptEvent::Kind::kExit);
         case 7: {
-            const Side side = words.side();
-            (void)words.choice("what changes", {"angles"});
-            return addStep(words, script_.fovs[side], time_s, words.angles());
+            const Side side = words.takeSide();
+            (void)words.takeChoice("what changes", {"angles"});
+            return addStep(words, script_.fovs[side], time_s, words.takeAngles());
         }
         case 8: {
-            const Side side = words.side();
-            return addStep(words, script_.hands[side].tracked, time_s, words.onOff("whether it is tracked"));
+            const Side side = words.takeSide();
+            return addStep(words, script_.hands[side].tracked, time_s, words.takeOnOff("whether it is tracked"));
         }
         case 9:
-            return addStep(words, script_.worn, time_s, words.onOff("whether it is worn"));
+            return addStep(words, script_.worn, time_s, words.takeOnOff("whether it is worn"));
         case 10: {
-            const std::size_t known = words.choice("whether it is tracked", {"on", "off", "turn-only"});
+            const std::size_t known = words.takeChoice("whether it is tracked", {"on", "off", "turn-only"});
             addStep(words, script_.head_turn_known, time_s, known != 1);
             return addStep(words, script_.head_place_known, time_s, known == 0);
         }
         case 11:
             return addRecentring(script_, time_s);
         case 12:
-            return addStep(words, script_.present, time_s, words.onOff("whether somebody wears the headset"));
+            return addStep(words, script_.present, time_s, words.takeOnOff("whether somebody wears the headset"));
         case 13:
-            script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.number(kRateMeaning, kLeastRate, kMostRate)});
+            script_.events.push_back({time_s, ScriptEvent::Kind::kRate, 1, words.takeNumber(kRateMeaning, kLeastRate, kMostRate)});
             return;
         case 14:
             return addStep(words, script_.gpu_load, time_s, parseLoad(words));
         case 15:
-            return addStep(words, script_.later_profiles, time_s, profileName(words));
+            return addStep(words, script_.later_profiles, time_s, takeProfileName(words));
         default:
             return parseGazeTracking(words, time_s, script_.gaze);
     }

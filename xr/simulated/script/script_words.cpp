@@ -10,7 +10,7 @@
 
 namespace simulated {
 
-std::string listed(std::initializer_list<std::string_view> choices) {
+std::string listWords(std::initializer_list<std::string_view> choices) {
     std::string result;
     for (const std::string_view& choice : choices) {
         const bool is_first = &choice == choices.begin(), is_last = &choice + 1 == choices.end();
@@ -45,13 +45,13 @@ bool Words::takeIf(std::string_view word) {
     return is_next;
 }
 
-std::string Words::text(std::string_view meaning) {
+std::string Words::takeText(std::string_view meaning) {
     if (isAtEnd()) { fail("{} is missing", meaning); }
     if (words_[next_].empty()) { fail("{} is empty, must be a word", meaning); }
     return words_[next_++];
 }
 
-double Words::number(std::string_view meaning, double least, double most) {
+double Words::takeNumber(std::string_view meaning, double least, double most) {
     if (isAtEnd()) { fail("{} is missing, must be a number from {} to {}", meaning, least, most); }
     const std::string& word = words_[next_++];
     const std::optional<double> value = parseNumber(word);
@@ -59,7 +59,7 @@ double Words::number(std::string_view meaning, double least, double most) {
     return *value;
 }
 
-std::uint64_t Words::count(std::string_view meaning, std::uint64_t least, std::uint64_t most) {
+std::uint64_t Words::takeCount(std::string_view meaning, std::uint64_t least, std::uint64_t most) {
     if (isAtEnd()) { fail("{} is missing, must be a whole number from {} to {}", meaning, least, most); }
     const std::string& word = words_[next_++];
     std::uint64_t value = 0;
@@ -70,36 +70,36 @@ std::uint64_t Words::count(std::string_view meaning, std::uint64_t least, std::u
     return value;
 }
 
-std::size_t Words::choice(std::string_view meaning, std::initializer_list<std::string_view> choices) {
-    if (isAtEnd()) { fail("{} is missing, must be {}", meaning, listed(choices)); }
+std::size_t Words::takeChoice(std::string_view meaning, std::initializer_list<std::string_view> choices) {
+    if (isAtEnd()) { fail("{} is missing, must be {}", meaning, listWords(choices)); }
     const std::string& word = words_[next_++];
     const auto* const found = std::ranges::find(choices, word);
-    if (found == choices.end()) { fail("{} is {}, must be {}", meaning, shown(word), listed(choices)); }
+    if (found == choices.end()) { fail("{} is {}, must be {}", meaning, shown(word), listWords(choices)); }
     return static_cast<std::size_t>(found - choices.begin());
 }
 
-glm::dvec3 Words::position() {
+glm::dvec3 Words::takePosition() {
     constexpr double kFarthest = 1e5;
-    const double x = number("position x", -kFarthest, kFarthest);
-    const double y = number("position y", -kFarthest, kFarthest);
-    return {x, y, number("position z", -kFarthest, kFarthest)};
+    const double x = takeNumber("position x", -kFarthest, kFarthest);
+    const double y = takeNumber("position y", -kFarthest, kFarthest);
+    return {x, y, takeNumber("position z", -kFarthest, kFarthest)};
 }
 
-glm::dquat Words::rotation() {
+glm::dquat Words::takeRotation() {
     std::array<double, 4> parts{};  // x, y, z, w
-    for (std::size_t i = 0; i < parts.size(); ++i) { parts[i] = number(fmt::format("rotation {}", "xyzw"[i]), -1e6, 1e6); }
+    for (std::size_t i = 0; i < parts.size(); ++i) { parts[i] = takeNumber(fmt::format("rotation {}", "xyzw"[i]), -1e6, 1e6); }
     const glm::dquat quaternion(parts[3], parts[0], parts[1], parts[2]);
     const double length = glm::length(quaternion);
     if (length < 1e-3) { fail("the rotation's length is {}, must be 1 (or at least 0.001 to be made so)", length); }
     return quaternion / length;
 }
 
-Fov Words::angles() {
+Fov Words::takeAngles() {
     constexpr double kWidest = 85.0;
-    const double left = number("the angle to the left in degrees", -kWidest, kWidest);
-    const double right = number("the angle to the right in degrees", -kWidest, kWidest);
-    const double up = number("the angle up in degrees", -kWidest, kWidest);
-    const double down = number("the angle down in degrees", -kWidest, kWidest);
+    const double left = takeNumber("the angle to the left in degrees", -kWidest, kWidest);
+    const double right = takeNumber("the angle to the right in degrees", -kWidest, kWidest);
+    const double up = takeNumber("the angle up in degrees", -kWidest, kWidest);
+    const double down = takeNumber("the angle down in degrees", -kWidest, kWidest);
     if (left >= right) { fail("the angles are {} to the left and {} to the right, left must be less", left, right); }
     if (down >= up) { fail("the angles are {} up and {} down, down must be less", up, down); }
     return {glm::radians(left), glm::radians(right), glm::radians(up), glm::radians(down)};

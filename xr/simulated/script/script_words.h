@@ -34,18 +34,18 @@ public:
     bool takeIf(std::string_view word);
 
     // `meaning` is what a message calls the word.
-    std::string text(std::string_view meaning);
-    double number(std::string_view meaning, double least, double most);
-    std::uint64_t count(std::string_view meaning, std::uint64_t least, std::uint64_t most);
+    std::string takeText(std::string_view meaning);
+    double takeNumber(std::string_view meaning, double least, double most);
+    std::uint64_t takeCount(std::string_view meaning, std::uint64_t least, std::uint64_t most);
     // The index of the next word in `choices`.
-    std::size_t choice(std::string_view meaning, std::initializer_list<std::string_view> choices);
-    bool onOff(std::string_view meaning) { return choice(meaning, {"on", "off"}) == 0; }
-    Side side() { return choice("the side", {"left", "right"}) == 0 ? kLeft : kRight; }
-    double time(std::string_view meaning = "the time in seconds") { return number(meaning, -1e6, 1e6); }
-    glm::dvec3 position();
-    glm::dquat rotation();
+    std::size_t takeChoice(std::string_view meaning, std::initializer_list<std::string_view> choices);
+    bool takeOnOff(std::string_view meaning) { return takeChoice(meaning, {"on", "off"}) == 0; }
+    Side takeSide() { return takeChoice("the side", {"left", "right"}) == 0 ? kLeft : kRight; }
+    double takeTime(std::string_view meaning = "the time in seconds") { return takeNumber(meaning, -1e6, 1e6); }
+    glm::dvec3 takePosition();
+    glm::dquat takeRotation();
     // left right up down in degrees, within 85 degrees.
-    Fov angles();
+    Fov takeAngles();
 
     template <typename... Args>
     [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
@@ -60,6 +60,6 @@ private:
 };
 
 // "one, two or three"
-[[nodiscard]] std::string listed(std::initializer_list<std::string_view> choices);
+[[nodiscard]] std::string listWords(std::initializer_list<std::string_view> choices);
 
 }  // namespace simulated
