@@ -122,6 +122,26 @@ TEST_CASE("poses that went through single precision still give the same bytes") 
     CHECK(compose(eye, {projection(canvas, submitted)}) == compose(eye, {projection(canvas, eye)}));
 }
 
+TEST_CASE("an inset and its view are one picture: what shows through the inset is not the view") {
+    const EyeView eye = eyeOf({4, 4});
+    const Canvas red({4, 4}, {255, 0, 0, 255}), clear({2, 2}, {0, 0, 0, 0});
+    ProjectionLayer layer = projection(red, eye);
+    // The middle half, each way.
+    const double half = std::atan(0.5);
+    layer.insets[kLeft] = ProjectionView{clear.picture(), clear.whole(), {}, {-half, half, half, -half}};
+    layer.blending = {true, false};
+    const Canvas white({4, 4}, {255, 255, 255, 255});
+    const RgbPicture seen = compose(eye, {projection(white, eye), layer});
+    CHECK(at(seen, 0, 1) == Rgb{255, 0, 0});
+    CHECK(at(seen, 1, 1) == Rgb{255, 255, 255});
+    CHECK(at(seen, 2, 2) == Rgb{255, 255, 255});
+    CHECK(at(seen, 2, 3) == Rgb{255, 0, 0});
+    CHECK(at(compose(eye, {layer}, kRight), 1, 1) == Rgb{255, 0, 0});
+    // An empty one is none.
+    layer.insets[kLeft]->rect.extent = {0, 2};
+    CHECK(at(compose(eye, {layer}), 1, 1) == Rgb{255, 0, 0});
+}
+
 TEST_CASE("each eye sees its own view") {
     const EyeView eye = eyeOf({2, 2});
     const Canvas red({2, 2}, {255, 0, 0, 255}), green({2, 2}, {0, 255, 0, 255});

@@ -78,6 +78,26 @@ TEST_CASE("the left eye is on the left and turns left") {
     CHECK((right.orientation * glm::dvec3(0, 0, -1)).x == doctest::Approx(std::sin(0.1)));
 }
 
+TEST_CASE("an inset lies about its middle, and in its view") {
+    const Fov view{-0.8, 0.6, 0.5, -0.7};
+    const auto isInset = [&](const glm::dvec2& middle_rad, double half_rad, const Fov& expected) {
+        const Fov found = makeInset(view, middle_rad, half_rad);
+        CHECK(found.left_rad == doctest::Approx(expected.left_rad));
+        CHECK(found.right_rad == doctest::Approx(expected.right_rad));
+        CHECK(found.up_rad == doctest::Approx(expected.up_rad));
+        CHECK(found.down_rad == doctest::Approx(expected.down_rad));
+        CHECK(found.left_rad >= view.left_rad);
+        CHECK(found.right_rad <= view.right_rad);
+        CHECK(found.up_rad <= view.up_rad);
+        CHECK(found.down_rad >= view.down_rad);
+    };
+    isInset({0.1, -0.2}, 0.3, {-0.2, 0.4, 0.1, -0.5});
+    isInset({0.5, 0.0}, 0.3, {0.0, 0.6, 0.3, -0.3});
+    isInset({-3.0, -1.0}, 0.3, {-0.8, -0.2, -0.1, -0.7});
+    isInset({0.5, 0.4}, 0.65, {-0.7, 0.6, 0.5, -0.7});
+    isInset({0.5, 0.4}, 2.0, view);
+}
+
 TEST_CASE("hidden and visible mesh fill the view together") {
     const Mesh hidden = makeHiddenMesh(kFov), visible = makeVisibleMesh(kFov);
     REQUIRE(hidden.indices.size() % 3 == 0);

@@ -189,6 +189,39 @@ TEST_CASE("files that cannot be read are said with the line that names them") {
     CHECK_THROWS_AS((void)Script::load("/dev/zero"), ScriptError);
 }
 
+TEST_CASE("insets with mistakes are refused") {
+    refuses("inset", "half of the inset's angle in degrees is missing, must be a number from 1 to 85");
+    refuses("inset 0.5", "half of the inset's angle in degrees is 0.5, must be a number from 1 to 85");
+    refuses("inset 20 size 0 10", "the width in pixels is 0, must be a whole number from 1 to 16384");
+    refuses("inset 20 context 10", "the height in pixels is missing");
+    refuses("inset 20\ninset 10", "a.script:2: inset is set again, first on line 1");
+    refuses("inset 20 10", "unexpected 10 at the end of the line");
+}
+
+TEST_CASE("a headset's inset is read, and its mistakes are named") {
+    const Folder folder;
+    const auto readWith = [&](const std::string& inset) {
+        folder.write("h.toml", kHeadset + inset);
+        return Script::parse("headset h.toml", (folder.path / "a.script").string());
+    };
+    const Script full = readWith("[inset]\nhalf_angle_deg = 15\nsize = \"60x50\"\ncontext_size = \"40x30\"\n");
+    CHECK(full.inset.half_angle_rad == doctest::Approx(0.2617994));
+    CHECK(full.insetSizePx() == glm::uvec2(60, 50));
+    CHECK(full.contextSizePx() == glm::uvec2(40, 30));
+    CHECK(readWith("[inset]\nhalf_angle_deg = 15\n").contextSizePx() == glm::uvec2(50, 50));
+    CHECK(readWith("").inset.half_angle_rad == doctest::Approx(0.3490659));
+    const auto refusesInset = [&](const std::string& inset, const std::string& part) {
+        folder.write("h.toml", kHeadset + inset);
+        folder.refuses("headset h.toml", part);
+    };
+    refusesInset("[inset]\nhalf_angle_deg = 90\n", "h.toml:17: inset.half_angle_deg is 90, must be a number from 1 to 85");
+    refusesInset("[inset]\nsize = \"60x50\"\n", "inset.half_angle_deg is missing, must be given");
+    refusesInset("[inset]\nhalf_angle_deg = 9\nsize = \"60\"\n", "h.toml:18: inset.size is 60, must be WxH");
+    refusesInset("[inset]\nhalf_angle = 9\n", "inset.half_angle is not a key of a headset");
+    folder.write("h.toml", kHeadset);
+    folder.refuses("inset 20\nheadset h.toml", "a.script:2: headset sets inset, too, must stand before it");
+}
+
 TEST_CASE("a headset stands before what changes it") {
     const Folder folder;
     folder.write("h.toml", kHeadset);

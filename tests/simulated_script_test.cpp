@@ -310,6 +310,26 @@ TEST_CASE("headset files give size, distance, canting and angles") {
     CHECK(isNear(forwardOf(state.eyes[kLeft].stage_from_eye), {-std::sin(5 * kDegree), 0.0, -std::cos(5 * kDegree)}));
 }
 
+TEST_CASE("an inset has an angle and sizes, which follow from the eyes' where nobody says them") {
+    const Script usual = Script::parse("size 1000 800", "a.script");
+    CHECK(usual.contextSizePx() == glm::uvec2(500, 400));
+    // tan 20 is 0.36397.
+    CHECK(usual.insetSizePx() == glm::uvec2(364, 292));
+    const Script small = Script::parse("size 1000 800\ninset 10 context 300 200", "a.script");
+    CHECK(small.contextSizePx() == glm::uvec2(300, 200));
+    CHECK(small.insetSizePx() == glm::uvec2(177, 142));
+    CHECK(Script::parse("inset 10 size 300 200", "a.script").insetSizePx() == glm::uvec2(300, 200));
+}
+
+TEST_CASE("insets lie where a headset's lenses have their middles, while there is no gaze") {
+    Script script = Script::parse("eye-tracking off", "a.script");
+    script.lens_centres_rad = {glm::dvec2(0.1, -0.2), glm::dvec2(-0.1, -0.2)};
+    const Fov left = script.findInset(script.at(0.0), kLeft), right = script.findInset(script.at(0.0), kRight);
+    CHECK(0.5 * (left.left_rad + left.right_rad) == doctest::Approx(0.1));
+    CHECK(0.5 * (left.up_rad + left.down_rad) == doctest::Approx(-0.2));
+    CHECK(0.5 * (right.left_rad + right.right_rad) == doctest::Approx(-0.1));
+}
+
 TEST_CASE("every headset of the project is read") {
     std::size_t headsets = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/headsets")) {
@@ -440,7 +460,7 @@ TEST_CASE("the documented example is the file") {
         CHECK(page.find("`" + command + " ") != std::string::npos);
         begin = end + 2;
     }
-    CHECK(commands == 31);
+    CHECK(commands == 32);
 }
 
 TEST_CASE("every extension of the runtime is documented") {

@@ -28,6 +28,7 @@ inline constexpr Extension kExtensions[] = {
     {"XR_EXT_user_presence", 1},
     {"XR_FB_display_refresh_rate", 1},
     {"XR_MND_headless", 2},
+    {"XR_VARJO_quad_views", 1},
     // Part of 1.1; for instances of 1.0.
     {"XR_KHR_locate_spaces", 1},
     {"XR_KHR_maintenance1", 1},

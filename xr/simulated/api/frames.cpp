@@ -1,4 +1,4 @@
-// Sections 10.3 to 10.5: xrLocateViews and the frame loop. In lock-step xrWaitFrame moves time on by one period and does not sleep.
+// Sections 10.4 and 10.5: the frame loop. In lock-step xrWaitFrame moves time on by one period and does not sleep.
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
@@ -6,7 +6,6 @@
 
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/layers.h"
-#include "xr/simulated/api/poses.h"
 #include "xr/simulated/api/session.h"
 #include "xr/simulated/api/spaces.h"
 #include "xr/simulated/api/structures.h"
@@ -15,9 +14,6 @@
 
 namespace simulated {
 namespace {
-
-constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
-                           kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
 
 // An xrWaitFrame on another thread waits here for xrBeginFrame.
 std::condition_variable& getFrameBegun() {
@@ -79,38 +75,6 @@ void loadGpu(Session& session, const XrFrameEndInfo& info) {
 }  // namespace
 
 void wakeFrameWaiters() { getFrameBegun().notify_all(); }
-
-XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
-                       uint32_t* viewCountOutput, XrView* views) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
-        const XrViewLocateInfo& info = checkStruct(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
-        XrViewState& output = checkStruct(viewState, XR_TYPE_VIEW_STATE);
-        checkViewConfiguration(owner.instance, info.viewConfigurationType);
-        const Space& space = getSpace(owner, info.space);
-        checkTime(info.displayTime);
-        output.viewStateFlags = 0;
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) { return successOf(owner); }
-        for (std::size_t eye = 0; eye < kEyes; ++eye) { checkType(views[eye], XR_TYPE_VIEW); }
-        const State state = owner.at(info.displayTime);
-        const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
-        for (std::size_t eye = 0; eye < kEyes; ++eye) {
-            const EyeState& seen = state.eyes[eye];
-            Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
-            // Unknown values are not reported.
-            if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
-                if (!state.head_place_known) { pose.position = glm::dvec3(0.0); }
-                if (!state.head_turn_known) { pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0); }
-            }
-            views[eye].pose = toXr(pose);
-            views[eye].fov = toXr(seen.fov);
-        }
-        const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
-        if (stage_from_space && (state.head_turn_known || is_in_head)) { output.viewStateFlags = kTurnsKnown; }
-        if (stage_from_space && (state.head_place_known || is_in_head)) { output.viewStateFlags |= kPlacesKnown; }
-        return successOf(owner);
-    });
-}
 
 XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, XrFrameState* frameState) {
     Clock::Frame frame{};

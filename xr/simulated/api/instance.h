@@ -59,7 +59,5 @@ constexpr std::uint32_t kMostSwapchainPixels = 16384;
 
 // XR_ERROR_SYSTEM_INVALID.
 void checkSystem(XrSystemId system);
-// XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED for mono, XR_ERROR_VALIDATION_FAILURE for unknown values.
-void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type);
 
 }  // namespace simulated

@@ -1,6 +1,7 @@
 // Projections and quads: checked, composed and logged. Layers that surround the wearer are in surrounding_layers.cpp.
 #include "xr/simulated/api/layers.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 #include "xr/simulated/api/structures.h"
 #include "xr/simulated/api/surrounding_layers.h"
 #include "xr/simulated/api/swapchains.h"
+#include "xr/simulated/api/views.h"
 
 namespace simulated {
 namespace {
@@ -16,6 +18,8 @@ namespace {
 constexpr XrCompositionLayerFlags kKnownLayerFlags = XR_COMPOSITION_LAYER_CORRECT_CHROMATIC_ABERRATION_BIT |
                                                      XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT |
                                                      XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
+
+constexpr std::array<const char*, kMostViews> kViewNames{"left", "right", "left_inset", "right_inset"};
 
 Swapchain& checkSubImage(const Session& session, const XrSwapchainSubImage& image) {
     Swapchain& swapchain = getSwapchain(session, image.swapchain);
@@ -68,9 +72,10 @@ void checkView(const Session& session, const XrCompositionLayerProjectionView& v
 }
 
 void checkProjection(const Session& session, const XrCompositionLayerProjection& layer) {
-    require(layer.viewCount == kEyes && layer.views != nullptr, XR_ERROR_VALIDATION_FAILURE, layer.viewCount,
-            " views, must be one for each eye");
-    for (std::size_t eye = 0; eye < kEyes; ++eye) { checkView(session, layer.views[eye]); }
+    const std::size_t count = countViews(session.view_configuration);
+    require(layer.viewCount == count && layer.views != nullptr, XR_ERROR_VALIDATION_FAILURE, layer.viewCount, " views, must be ",
+            count == kEyes ? "one for each eye" : "four: the eyes' and their insets'");
+    for (std::size_t i = 0; i < count; ++i) { checkView(session, layer.views[i]); }
 }
 
 void checkQuad(const Session& session, const XrCompositionLayerQuad& layer) {
@@ -216,9 +221,17 @@ std::vector<Layer> makeLayers(const Session& session, const XrFrameEndInfo& info
                                           visibilityOf(quad.eyeVisibility),
                                           blending});
         } else {
-            const auto& views = as<XrCompositionLayerProjection>(layer).views;
-            layers.emplace_back(ProjectionLayer{
-                {makeView(session, views[kLeft], *stage_from_space), makeView(session, views[kRight], *stage_from_space)}, blending});
+            const auto& projection = as<XrCompositionLayerProjection>(layer);
+            ProjectionLayer composed{{}, blending};
+            for (std::size_t v = 0; v < projection.viewCount; ++v) {
+                const ProjectionView view = makeView(session, projection.views[v], *stage_from_space);
+                if (isInset(v)) {
+                    composed.insets[sideOf(v)] = view;
+                } else {
+                    composed.views[sideOf(v)] = view;
+                }
+            }
+            layers.emplace_back(composed);
         }
     }
     return layers;
@@ -245,7 +258,10 @@ std::vector<LoggedLayer> loggedLayers(const Session& session, const XrFrameEndIn
         } else {
             const auto& projection = as<XrCompositionLayerProjection>(layer);
             entry.type = "projection";
-            for (std::size_t eye = 0; eye < kEyes; ++eye) { entry.views.push_back(loggedView(session, projection.views[eye])); }
+            for (std::size_t v = 0; v < projection.viewCount; ++v) {
+                entry.views.push_back(loggedView(session, projection.views[v]));
+                if (projection.viewCount == kMostViews) { entry.views.back().name = kViewNames[v]; }
+            }
         }
     }
     return logged;

@@ -178,8 +178,7 @@ void Session::announceMasks(const State& now) {
     for (const Side side : kSides) {
         if (!masked || (*masked)[side] == now.eyes[side].fov) { continue; }
         instance.events.push(XrEventDataVisibilityMaskChangedKHR{XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, handleOf(*this),
-                                                                 XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
-                                                                 static_cast<std::uint32_t>(side)});
+                                                                 view_configuration, static_cast<std::uint32_t>(side)});
     }
     masked = {now.eyes[kLeft].fov, now.eyes[kRight].fov};
 }

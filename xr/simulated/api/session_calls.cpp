@@ -2,6 +2,7 @@
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/session.h"
 #include "xr/simulated/api/structures.h"
+#include "xr/simulated/api/views.h"
 #include "xr/simulated/compose/show.h"
 #include "xr/simulated/names.h"
 
@@ -75,6 +76,7 @@ XrResult xrBeginSession(XrSession session, const XrSessionBeginInfo* beginInfo) 
         require(begun.state == XR_SESSION_STATE_READY, XR_ERROR_SESSION_NOT_READY, "the session is ", wordOf(begun.state),
                 ", must be READY");
         begun.is_running = true;
+        if (!begun.isHeadless()) { begun.view_configuration = info.primaryViewConfigurationType; }
         begun.frames = {};
         begun.announced_presence.reset();
         begun.announcePresence(begun.instance.simulation->at(begun.instance.simulation->clock.now()));

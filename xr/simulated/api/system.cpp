@@ -1,15 +1,10 @@
-// Chapters 5 and 8: the headset as a system, its views and blend modes.
-#include <algorithm>
-
+// Chapters 5 and 10: the headset as a system, and its blend modes.
 #include "xr/simulated/api/api.h"
-#include "xr/simulated/api/instance.h"
 #include "xr/simulated/api/structures.h"
+#include "xr/simulated/api/views.h"
 
 namespace simulated {
 namespace {
-
-// Three images of this size fit on small devices; a script may recommend larger ones.
-constexpr std::uint32_t kMostViewPixels = 4096;
 
 // An extension's structure to fill, if it is there and the extension is enabled.
 template <class Structure>
@@ -22,15 +17,6 @@ Structure* findChained(const Instance& instance, void* next, XrStructureType typ
 
 void checkSystem(XrSystemId system) {
     require(system == kSystemId, XR_ERROR_SYSTEM_INVALID, "the system is ", system, ", must be ", kSystemId);
-}
-
-void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
-    // Values of extensions that this runtime does not have are no view configurations at all.
-    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
-                          (type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET && instance.is_1_1);
-    require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is no view configuration");
-    require(type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "the view configuration is ",
-            type, ", there is only primary stereo");
 }
 
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
@@ -78,51 +64,6 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         if (auto* presence = findChained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
                                                                             XR_EXT_USER_PRESENCE_EXTENSION_NAME)) {
             presence->supportsUserPresence = XR_TRUE;
-        }
-        return XR_SUCCESS;
-    });
-}
-
-XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId, uint32_t viewConfigurationTypeCapacityInput,
-                                       uint32_t* viewConfigurationTypeCountOutput, XrViewConfigurationType* viewConfigurationTypes) {
-    return answer(__func__, [&] {
-        getInstance(instance);
-        checkSystem(systemId);
-        return fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes,
-                         {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO});
-    });
-}
-
-XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
-                                          XrViewConfigurationProperties* configurationProperties) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
-        checkSystem(systemId);
-        checkViewConfiguration(owner, viewConfigurationType);
-        XrViewConfigurationProperties& output = checkStruct(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
-        output.viewConfigurationType = viewConfigurationType;
-        // Scripts change the angles during a run.
-        output.fovMutable = XR_TRUE;
-        return XR_SUCCESS;
-    });
-}
-
-XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
-                                           uint32_t viewCapacityInput, uint32_t* viewCountOutput, XrViewConfigurationView* views) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
-        checkSystem(systemId);
-        checkViewConfiguration(owner, viewConfigurationType);
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, kEyes)) { return XR_SUCCESS; }
-        for (std::size_t eye = 0; eye < kEyes; ++eye) { checkType(views[eye], XR_TYPE_VIEW_CONFIGURATION_VIEW); }
-        const glm::uvec2 size_px = owner.simulation->script.size_px;
-        for (std::size_t eye = 0; eye < kEyes; ++eye) {
-            views[eye].recommendedImageRectWidth = size_px.x;
-            views[eye].recommendedImageRectHeight = size_px.y;
-            views[eye].maxImageRectWidth = std::max(kMostViewPixels, size_px.x);
-            views[eye].maxImageRectHeight = std::max(kMostViewPixels, size_px.y);
-            views[eye].recommendedSwapchainSampleCount = 1;
-            views[eye].maxSwapchainSampleCount = 1;
         }
         return XR_SUCCESS;
     });

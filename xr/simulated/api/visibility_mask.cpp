@@ -2,8 +2,8 @@
 #include <cstdlib>
 
 #include "xr/simulated/api/api.h"
-#include "xr/simulated/api/session.h"
 #include "xr/simulated/api/structures.h"
+#include "xr/simulated/api/views.h"
 
 namespace simulated {
 namespace {
@@ -28,12 +28,14 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
     return answer(__func__, [&] {
         const Session& owner = getSession(session);
         checkViewConfiguration(owner.instance, viewConfigurationType);
-        require(viewIndex < kEyes, XR_ERROR_VALIDATION_FAILURE, "the view is ", viewIndex, ", must be 0 or 1");
+        const std::size_t count = countViews(viewConfigurationType);
+        require(viewIndex < count, XR_ERROR_VALIDATION_FAILURE, "the view is ", viewIndex, ", must be less than ", count);
         XrVisibilityMaskKHR& output = checkStruct(visibilityMask, XR_TYPE_VISIBILITY_MASK_KHR);
         const Simulation& simulation = *owner.instance.simulation;
-        Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[viewIndex].fov, visibilityMaskType);
+        Mesh mesh = meshOf(simulation.at(simulation.clock.now()).eyes[sideOf(viewIndex)].fov, visibilityMaskType);
         if (simulation.script.visibility_mask_is_broken) { std::abort(); }
-        if (!simulation.script.visibility_mask) { mesh = {}; }
+        // No lens hides anything of an inset.
+        if (!simulation.script.visibility_mask || isInset(viewIndex)) { mesh = {}; }
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
         if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) { return successOf(owner); }

@@ -36,6 +36,9 @@ glm::dvec2 pixelCentre(const glm::uvec2& size_px, std::uint32_t x, std::uint32_t
     return glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(size_px);
 }
 
+// Of an empty rectangle there is nothing to see.
+bool isEmpty(const Rect& rect) { return rect.extent.x == 0 || rect.extent.y == 0; }
+
 // A layer as one eye sees it: linear light and alpha where a pixel's ray meets it.
 class SeenView {
 public:
@@ -73,6 +76,26 @@ private:
     bool is_same_grid_ = false;
 };
 
+// An eye's view with the inset in it, if there is one.
+class SeenProjection {
+public:
+    SeenProjection(const EyeView& eye, const ProjectionLayer& layer, Side side) {
+        if (const auto& inset = layer.insets[side]; inset && !isEmpty(inset->rect)) { views_.emplace_back(eye, *inset); }
+        if (!isEmpty(layer.views[side].rect)) { views_.emplace_back(eye, layer.views[side]); }
+    }
+
+    [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
+        std::optional<glm::dvec4> texel;
+        for (const SeenView& view : views_) {
+            if (!texel) { texel = view.at(x, y, direction_eye); }
+        }
+        return texel;
+    }
+
+private:
+    std::vector<SeenView> views_;  // the first that shows something counts
+};
+
 class SeenQuad {
 public:
     SeenQuad(const EyeView& eye, const QuadLayer& quad) : sampler_(quad.picture, quad.rect), size_m_(quad.size_m) {
@@ -100,7 +123,7 @@ private:
 };
 
 struct SeenLayer {
-    std::variant<SeenView, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
+    std::variant<SeenProjection, SeenQuad, SeenCylinder, SeenSphere, SeenCube> shape;
     Blending blending;
 };
 
@@ -108,15 +131,11 @@ bool isShownTo(Side side, Visibility visibility) {
     return visibility == Visibility::kBoth || (visibility == Visibility::kLeft) == (side == kLeft);
 }
 
-// Of an empty rectangle there is nothing to see.
-bool isEmpty(const Rect& rect) { return rect.extent.x == 0 || rect.extent.y == 0; }
-
 std::vector<SeenLayer> listSeen(const EyeView& eye, Side side, std::span<const Layer> layers) {
     std::vector<SeenLayer> seen;
     for (const Layer& layer : layers) {
         if (const auto* projection = std::get_if<ProjectionLayer>(&layer)) {
-            const ProjectionView& view = projection->views[side];
-            if (!isEmpty(view.rect)) { seen.push_back({SeenView(eye, view), projection->blending}); }
+            seen.push_back({SeenProjection(eye, *projection, side), projection->blending});
         } else if (const auto* quad = std::get_if<QuadLayer>(&layer)) {
             if (isShownTo(side, quad->visibility) && !isEmpty(quad->rect)) { seen.push_back({SeenQuad(eye, *quad), quad->blending}); }
         } else if (const auto* cylinder = std::get_if<CylinderLayer>(&layer)) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -53,6 +54,7 @@ struct ProjectionView {
 struct ProjectionLayer {
     std::array<ProjectionView, 2> views;  // by Side
     Blending blending;
+    std::array<std::optional<ProjectionView>, 2> insets{};  // by Side: in the place of what its view shows there, where a program drew one
 };
 
 enum class Visibility { kBoth, kLeft, kRight };
@@ -120,7 +122,8 @@ struct Backdrop {
 };
 
 // Layers in submission order over the backdrop. A projection layer is turned from its own view's orientation to the eye's, through
-// directions; nothing is drawn where the view had no picture. With equal orientation, angles and size an sRGB picture comes through byte
+// directions; nothing is drawn where the view had no picture. An inset takes the place of what its eye's view shows there, edges
+// included; the two are blended as one picture. With equal orientation, angles and size an sRGB picture comes through byte
 // for byte.
 [[nodiscard]] RgbPicture composeEye(const EyeView& eye, Side side, std::span<const Layer> layers, const Backdrop& backdrop = {});
 

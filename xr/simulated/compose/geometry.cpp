@@ -3,6 +3,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +14,17 @@ namespace {
 // Enough that a polygon differs from the ellipse by less than a pixel of 4096: 1 - cos(pi / 64) is 0.0012 of the radius; a multiple of 4,
 // so that each corner of the view has its own quarter.
 constexpr std::uint32_t kOutlineCorners = 64;
+
+struct Span {
+    double low, high;
+};
+
+Span makeSpan(double middle, double half, const Span& whole) {
+    if (whole.high - whole.low <= 2.0 * half) { return whole; }
+    const double nearest = std::clamp(middle, whole.low + half, whole.high - half);
+    // Not a rounding error outside.
+    return {std::max(nearest - half, whole.low), std::min(nearest + half, whole.high)};
+}
 
 std::vector<glm::vec2> ellipse(const Fov& fov) {
     const double left = std::tan(fov.left_rad), right = std::tan(fov.right_rad), up = std::tan(fov.up_rad), down = std::tan(fov.down_rad);
@@ -49,6 +61,12 @@ Pose makeLevel(const Pose& pose) {
     const bool is_vertical = std::hypot(forward.x, forward.z) < 1e-6;
     const double heading = is_vertical ? std::atan2(-right.z, right.x) : std::atan2(-forward.x, -forward.z);
     return {glm::angleAxis(heading, glm::dvec3(0.0, 1.0, 0.0)), pose.position};
+}
+
+Fov makeInset(const Fov& fov, const glm::dvec2& middle_rad, double half_angle_rad) {
+    const Span across = makeSpan(middle_rad.x, half_angle_rad, {fov.left_rad, fov.right_rad});
+    const Span upright = makeSpan(middle_rad.y, half_angle_rad, {fov.down_rad, fov.up_rad});
+    return {across.low, across.high, upright.high, upright.low};
 }
 
 Pose headFromEye(Side side, double eye_distance_m, double cant_rad) {

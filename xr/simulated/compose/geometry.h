@@ -41,6 +41,10 @@ struct Fov {
     bool operator==(const Fov&) const = default;
 };
 
+// The part of a view within `half_angle_rad` of a direction, each way; moved as far as it has to be to lie in the view. The direction is an
+// angle to the right of the view's axis and one above it.
+[[nodiscard]] Fov makeInset(const Fov& fov, const glm::dvec2& middle_rad, double half_angle_rad);
+
 // Where an eye sits on the head: half the eye distance to its side, its axis turned outwards by `cant_rad`.
 [[nodiscard]] Pose headFromEye(Side side, double eye_distance_m, double cant_rad);
 

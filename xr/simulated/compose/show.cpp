@@ -2,6 +2,7 @@
 #include "xr/simulated/compose/show.h"
 
 #include "xr/simulated/api/layers.h"
+#include "xr/simulated/api/views.h"
 #include "xr/simulated/compose/old_output.h"
 #include "xr/simulated/compose/picture_file.h"
 #include "xr/simulated/names.h"
@@ -20,7 +21,12 @@ FrameRecord recordOf(Session& session, const XrFrameEndInfo& info, const State& 
     record.session_state = wordOf(session.state);
     record.blend_mode = wordOf(info.environmentBlendMode);
     record.stage_from_head = state.stage_from_head;
-    for (std::size_t eye = 0; eye < kEyes; ++eye) { record.eyes[eye] = {state.eyes[eye].stage_from_eye, state.eyes[eye].fov}; }
+    const bool has_insets = countViews(session.view_configuration) == kMostViews;
+    for (const Side side : kSides) {
+        const EyeState& eye = state.eyes[side];
+        record.eyes[side] = {eye.stage_from_eye, eye.fov, {}};
+        if (has_insets) { record.eyes[side].inset = simulation.script.findInset(state, side); }
+    }
     record.layers = loggedLayers(session, info, state);
     record.events = std::exchange(session.log_events, {});
     return record;

@@ -112,8 +112,8 @@ private:
     std::string prefix_;  // "left." or nothing
 };
 
-std::array<std::uint32_t, 2> sizeOf(const Table& table) {
-    const std::string text = table.text("size");
+std::array<std::uint32_t, 2> sizeOf(const Table& table, std::string_view key = "size") {
+    const std::string text = table.text(key);
     const auto side = [](std::string_view digits) {
         std::uint32_t value = 0;
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -123,7 +123,7 @@ std::array<std::uint32_t, 2> sizeOf(const Table& table) {
     const std::string_view all = text;
     const std::array<std::uint32_t, 2> size_px{side(all.substr(0, cross)), side(all.substr(std::min(cross + 1, all.size())))};
     if (size_px[0] == 0 || size_px[1] == 0) {
-        table.fail(table.require("size"), "size is ", shown(text), ", must be WxH with 1 to 16384 per side");
+        table.fail(table.require(key), table.prefix(), key, " is ", shown(text), ", must be WxH with 1 to 16384 per side");
     }
     return size_px;
 }
@@ -156,6 +156,15 @@ Lens lensOf(const Table& root, std::string_view side) {
     return {angles, lensCentreOf(table, angles)};
 }
 
+HeadsetInset insetOf(const Table& root, const toml::node& node) {
+    if (!node.is_table()) { root.fail(node, "inset must be a table"); }
+    const Table table(*node.as_table(), root.file(), "inset.", {"half_angle_deg", "size", "context_size"});
+    HeadsetInset inset{radians(table.number("half_angle_deg", 1.0, 85.0)), {}, {}};
+    if (table.find("size") != nullptr) { inset.size_px = sizeOf(table); }
+    if (table.find("context_size") != nullptr) { inset.context_size_px = sizeOf(table, "context_size"); }
+    return inset;
+}
+
 }  // namespace
 
 HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
@@ -164,7 +173,7 @@ HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
     try {
         root = toml::parse(text, file);
     } catch (const toml::parse_error& error) { failAt(file, error.source().begin.line, error.description(), ", must be valid TOML"); }
-    const Table table(root, file, "", {"name", "source", "size", "canting_deg", "eye_distance_m", "left", "right"});
+    const Table table(root, file, "", {"name", "source", "size", "canting_deg", "eye_distance_m", "left", "right", "inset"});
     HeadsetFile headset;
     headset.name = table.text("name");
     headset.source = table.text("source");
@@ -176,6 +185,7 @@ HeadsetFile parseHeadset(const std::string& text, const std::string& file) {
         headset.angles[side] = lens.angles;
         headset.lens_centres_rad[side] = lens.centre_rad;
     }
+    if (const toml::node* const inset = table.find("inset")) { headset.inset = insetOf(table, *inset); }
     return headset;
 }
 

@@ -25,11 +25,13 @@ Json jsonOf(const Pose& pose) {
 Json jsonOf(const Fov& fov) { return {{"left", fov.left_rad}, {"right", fov.right_rad}, {"up", fov.up_rad}, {"down", fov.down_rad}}; }
 
 Json jsonOf(const LoggedView& view) {
-    Json json{{"swapchain", view.swapchain},
-              {"image", view.image_index},
-              {"array_layer", view.array_index},
-              {"format", view.format},
-              {"rect", {view.x, view.y, view.width, view.height}}};
+    Json json;
+    if (!view.name.empty()) { json["view"] = view.name; }
+    json["swapchain"] = view.swapchain;
+    json["image"] = view.image_index;
+    json["array_layer"] = view.array_index;
+    json["format"] = view.format;
+    json["rect"] = {view.x, view.y, view.width, view.height};
     if (view.pose) { json["pose"] = jsonOf(*view.pose); }
     if (view.fov) { json["fov"] = jsonOf(*view.fov); }
     if (view.depth) {
@@ -67,7 +69,10 @@ std::string makeFrameLine(const FrameRecord& record) {
               {"blend_mode", record.blend_mode},
               {"head", jsonOf(record.stage_from_head)}};
     json["eyes"] = Json::array();
-    for (const LoggedEye& eye : record.eyes) { json["eyes"].push_back({{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}}); }
+    for (const LoggedEye& eye : record.eyes) {
+        Json& logged = json["eyes"].emplace_back(Json{{"pose", jsonOf(eye.stage_from_eye)}, {"fov", jsonOf(eye.fov)}});
+        if (eye.inset) { logged["inset"] = jsonOf(*eye.inset); }
+    }
     json["layers"] = Json::array();
     for (const LoggedLayer& layer : record.layers) { json["layers"].push_back(jsonOf(layer)); }
     json["events"] = record.events;

@@ -22,6 +22,7 @@ struct LoggedDepth {
 
 // An XrSwapchainSubImage, and for projection views where and how it was seen.
 struct LoggedView {
+    std::string name;  // where there are insets: "left", "right", "left_inset", "right_inset"
     std::uint64_t swapchain = 0;
     std::uint32_t image_index = 0;  // the image last released
     std::uint32_t array_index = 0;
@@ -37,7 +38,7 @@ struct LoggedLayer {
     std::vector<std::string> flags;                            // "blend_texture_source_alpha" ...
     std::string space;                                         // "LOCAL", "STAGE", "VIEW", "action"
     Pose stage_from_space;                                     // at the display time
-    std::vector<LoggedView> views;                             // two of a projection layer, one of others
+    std::vector<LoggedView> views;                             // two or four of a projection layer, one of others
     std::optional<Pose> pose;                                  // quads: in the layer's space
     std::optional<glm::dvec2> size_m;                          // quads
     std::string eye_visibility;                                // quads and all that surrounds: "both", "left", "right"
@@ -47,6 +48,7 @@ struct LoggedLayer {
 struct LoggedEye {
     Pose stage_from_eye;
     Fov fov;
+    std::optional<Fov> inset;  // where the session draws insets
 };
 
 struct FrameRecord {

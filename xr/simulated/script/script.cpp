@@ -3,9 +3,11 @@
 
 #include "xr/simulated/script/script_inputs.h"
 
+#include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace simulated {
 
@@ -137,6 +139,33 @@ Pose Script::stageFromLocalFloor(double time_s) const {
     Pose floor = stageFromLocal(time_s);
     floor.position.y = 0.0;
     return floor;
+}
+
+Fov Script::findInset(const State& state, Side side) const {
+    const EyeState& eye = state.eyes[side];
+    const ControllerState& gazing = state.device(kGaze);
+    glm::dvec2 middle_rad = lens_centres_rad[side];
+    if (gazing.tracked && state.gaze_is_good) {
+        const glm::dvec3 ahead = gazing.stage_from_aim.orientation * glm::dvec3(0.0, 0.0, -1.0);
+        const glm::dvec3 direction = glm::conjugate(eye.stage_from_eye.orientation) * ahead;
+        middle_rad = {std::atan2(direction.x, -direction.z), std::atan2(direction.y, -direction.z)};
+    }
+    return makeInset(eye.fov, middle_rad, inset.half_angle_rad);
+}
+
+glm::uvec2 Script::contextSizePx() const { return inset.context_px.value_or((size_px + 1u) / 2u); }
+
+glm::uvec2 Script::insetSizePx() const {
+    if (inset.size_px) { return *inset.size_px; }
+    const auto extentOf = [](const Fov& fov) {
+        return glm::dvec2(std::tan(fov.right_rad) - std::tan(fov.left_rad), std::tan(fov.up_rad) - std::tan(fov.down_rad));
+    };
+    glm::dvec2 share(0.0);
+    for (const Side side : kSides) {
+        const Fov& whole = fovs[side].initial();
+        share = glm::max(share, extentOf(makeInset(whole, lens_centres_rad[side], inset.half_angle_rad)) / extentOf(whole));
+    }
+    return glm::uvec2(glm::ceil(share * glm::dvec2(size_px) - 1e-9));
 }
 
 std::optional<InputPath> parseInputPath(std::string_view path) {

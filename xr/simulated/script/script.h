@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -115,6 +116,12 @@ struct FrameChoice {
     [[nodiscard]] bool contains(std::uint64_t frame) const { return frame >= first && frame <= last && (frame - first) % every == 0; }
 };
 
+// A foveated inset (XR_VARJO_quad_views): a small picture about the gaze, over a coarser one of all that the eye sees, the context.
+struct InsetScript {
+    double half_angle_rad = 20.0 * std::numbers::pi / 180.0;
+    std::optional<glm::uvec2> size_px, context_px;  // recommended; none: as many pixels a degree as `size`, and half of `size`
+};
+
 struct Script {
     // The headset without a script: the head at rest at (0, 1.6, 0) looking along -z, eyes 0.063 m apart with 90 degree views, controllers
     // held in front, 90 Hz, 1024 x 1024, no mask, every frame written.
@@ -133,6 +140,10 @@ struct Script {
     [[nodiscard]] Pose stageFromLocal(double time_s = 0.0) const;
     // LOCAL's, brought down to the floor.
     [[nodiscard]] Pose stageFromLocalFloor(double time_s = 0.0) const;
+    // The angles of an eye's inset: about the gaze, or about the lens's middle while the gaze is not known well.
+    [[nodiscard]] Fov findInset(const State& state, Side side) const;
+    [[nodiscard]] glm::uvec2 contextSizePx() const;
+    [[nodiscard]] glm::uvec2 insetSizePx() const;
 
     [[nodiscard]] bool allowsExtension(std::string_view name) const { return !extensions_off.contains(name); }
 
@@ -146,6 +157,8 @@ struct Script {
     glm::uvec2 size_px{1024, 1024};       // recommended, per eye
     double eye_distance_m = 0.063;
     std::array<double, 2> cant_rad{0.0, 0.0};
+    std::array<glm::dvec2, 2> lens_centres_rad{glm::dvec2(0.0), glm::dvec2(0.0)};  // by Side: to the right of the eye's axis, and above it
+    InsetScript inset;
     std::string system_name = "Simulated headset";  // or the headset file's name
     bool visibility_mask = false;                   // whether XR_KHR_visibility_mask gives triangles
     bool visibility_mask_is_broken = false;         // the function is there and ends the program

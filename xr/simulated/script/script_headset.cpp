@@ -12,6 +12,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+glm::uvec2 takeSize(Words& words) {
+    const auto width = static_cast<std::uint32_t>(words.takeCount("the width in pixels", 1, 16384));
+    return {width, static_cast<std::uint32_t>(words.takeCount("the height in pixels", 1, 16384))};
+}
+
+std::optional<glm::uvec2> sizeOf(const std::optional<std::array<std::uint32_t, 2>>& size_px) {
+    if (!size_px) { return std::nullopt; }
+    return glm::uvec2((*size_px)[0], (*size_px)[1]);
+}
+
 }  // namespace
 
 void Parser::parseRate(Words& words) {
@@ -32,8 +42,7 @@ void Parser::parsePeriod(Words& words) {
 
 void Parser::parseSize(Words& words) {
     requireFirst(words, "size");
-    const auto width = static_cast<std::uint32_t>(words.takeCount("the width in pixels", 1, 16384));
-    script_.size_px = {width, static_cast<std::uint32_t>(words.takeCount("the height in pixels", 1, 16384))};
+    script_.size_px = takeSize(words);
 }
 
 void Parser::parseIpd(Words& words) {
@@ -59,7 +68,7 @@ void Parser::parseEyeTrackingLine(Words& words) {
 }
 
 void Parser::parseHeadsetLine(Words& words) {
-    for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant"}) {
+    for (const char* set_by_it : {"size", "ipd", "eye left angles", "eye left cant", "eye right angles", "eye right cant", "inset"}) {
         if (seen_.contains(set_by_it)) { words.fail("headset sets {}, too, must stand before it", set_by_it); }
     }
     requireFirst(words, "headset");
@@ -69,10 +78,21 @@ void Parser::parseHeadsetLine(Words& words) {
     script_.size_px = {headset.size_px[0], headset.size_px[1]};
     script_.eye_distance_m = headset.eye_distance_m;
     script_.cant_rad = {headset.canting_rad, headset.canting_rad};
+    if (headset.inset) {
+        script_.inset = {headset.inset->half_angle_rad, sizeOf(headset.inset->size_px), sizeOf(headset.inset->context_size_px)};
+    }
     for (const Side side : kSides) {
         const auto& [left_rad, right_rad, up_rad, down_rad] = headset.angles[side];
         script_.fovs[side].setInitial({left_rad, right_rad, up_rad, down_rad});
+        script_.lens_centres_rad[side] = {headset.lens_centres_rad[side][0], headset.lens_centres_rad[side][1]};
     }
+}
+
+void Parser::parseInset(Words& words) {
+    requireFirst(words, "inset");
+    script_.inset.half_angle_rad = glm::radians(words.takeNumber("half of the inset's angle in degrees", 1.0, 85.0));
+    if (words.takeIf("size")) { script_.inset.size_px = takeSize(words); }
+    if (words.takeIf("context")) { script_.inset.context_px = takeSize(words); }
 }
 
 void Parser::parseBlendModes(Words& words) {

@@ -40,6 +40,7 @@ void Parser::parseLine(Words& words) {
                                                                        {"head-motion", &Parser::parseHeadMotionLine},
                                                                        {"headset", &Parser::parseHeadsetLine},
                                                                        {"images", &Parser::parseImages},
+                                                                       {"inset", &Parser::parseInset},
                                                                        {"ipd", &Parser::parseIpd},
                                                                        {"irregular", &Parser::parseIrregular},
                                                                        {"local", &Parser::parseLocal},

@@ -34,6 +34,7 @@ private:
     void parseEye(Words& words);
     void parseEyeTrackingLine(Words& words);
     void parseHeadsetLine(Words& words);
+    void parseInset(Words& words);
     void parseBlendModes(Words& words);
     void parseRoomColour(Words& words);
     void parseMask(Words& words);

@@ -1,0 +1,123 @@
+// Which views there are, how large their pictures should be, and where they are: section 10.3's xrLocateViews.
+#include "xr/simulated/api/views.h"
+
+#include <algorithm>
+
+#include "xr/simulated/api/api.h"
+#include "xr/simulated/api/poses.h"
+#include "xr/simulated/api/spaces.h"
+#include "xr/simulated/api/structures.h"
+
+namespace simulated {
+namespace {
+
+constexpr auto kInset = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO_WITH_FOVEATED_INSET;
+// Three images of this size fit on small devices; a script may recommend larger ones.
+constexpr std::uint32_t kMostViewPixels = 4096;
+constexpr XrViewStateFlags kTurnsKnown = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_ORIENTATION_TRACKED_BIT,
+                           kPlacesKnown = XR_VIEW_STATE_POSITION_VALID_BIT | XR_VIEW_STATE_POSITION_TRACKED_BIT;
+
+// Whether the program may name the inset; the script can take it from the headset, also where 1.1 has its name in the core.
+bool knowsInset(const Instance& instance) { return instance.has1_1Or(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME); }
+bool hasInset(const Instance& instance) {
+    return knowsInset(instance) && instance.simulation->script.allowsExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
+}
+
+glm::uvec2 sizePxOf(const Script& script, XrViewConfigurationType type, std::size_t view) {
+    if (type != kInset) { return script.size_px; }
+    return isInset(view) ? script.insetSizePx() : script.contextSizePx();
+}
+
+}  // namespace
+
+void checkViewConfiguration(const Instance& instance, XrViewConfigurationType type) {
+    // Values of extensions that are not enabled are no view configurations at all.
+    const bool is_known = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_MONO ||
+                          (type == kInset && knowsInset(instance));
+    require(is_known, XR_ERROR_VALIDATION_FAILURE, type, " is no view configuration");
+    const bool is_there = type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO || (type == kInset && hasInset(instance));
+    require(is_there, XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED, "the view configuration is ", type,
+            hasInset(instance) ? ", there are primary stereo and that with a foveated inset" : ", there is only primary stereo");
+}
+
+XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId, uint32_t viewConfigurationTypeCapacityInput,
+                                       uint32_t* viewConfigurationTypeCountOutput, XrViewConfigurationType* viewConfigurationTypes) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        std::vector<XrViewConfigurationType> types{XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+        if (hasInset(owner)) { types.push_back(kInset); }
+        return fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes, types);
+    });
+}
+
+XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                          XrViewConfigurationProperties* configurationProperties) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(owner, viewConfigurationType);
+        XrViewConfigurationProperties& output = checkStruct(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
+        output.viewConfigurationType = viewConfigurationType;
+        // Scripts change the angles during a run.
+        output.fovMutable = XR_TRUE;
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
+                                           uint32_t viewCapacityInput, uint32_t* viewCountOutput, XrViewConfigurationView* views) {
+    return answer(__func__, [&] {
+        const Instance& owner = getInstance(instance);
+        checkSystem(systemId);
+        checkViewConfiguration(owner, viewConfigurationType);
+        const std::size_t count = countViews(viewConfigurationType);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return XR_SUCCESS; }
+        for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW); }
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::uvec2 size_px = sizePxOf(owner.simulation->script, viewConfigurationType, i);
+            views[i].recommendedImageRectWidth = size_px.x;
+            views[i].recommendedImageRectHeight = size_px.y;
+            views[i].maxImageRectWidth = std::max(kMostViewPixels, size_px.x);
+            views[i].maxImageRectHeight = std::max(kMostViewPixels, size_px.y);
+            views[i].recommendedSwapchainSampleCount = 1;
+            views[i].maxSwapchainSampleCount = 1;
+        }
+        return XR_SUCCESS;
+    });
+}
+
+XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
+                       uint32_t* viewCountOutput, XrView* views) {
+    return answer(__func__, [&] {
+        const Session& owner = getSession(session);
+        const XrViewLocateInfo& info = checkStruct(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
+        XrViewState& output = checkStruct(viewState, XR_TYPE_VIEW_STATE);
+        checkViewConfiguration(owner.instance, info.viewConfigurationType);
+        const Space& space = getSpace(owner, info.space);
+        checkTime(info.displayTime);
+        output.viewStateFlags = 0;
+        const std::size_t count = countViews(info.viewConfigurationType);
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return successOf(owner); }
+        for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW); }
+        const State state = owner.at(info.displayTime);
+        const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
+        for (std::size_t i = 0; i < count; ++i) {
+            const EyeState& seen = state.eyes[sideOf(i)];
+            Pose pose = stage_from_space ? compose(inverse(*stage_from_space), seen.stage_from_eye) : Pose{};
+            // Unknown values are not reported.
+            if (space.reference != XR_REFERENCE_SPACE_TYPE_VIEW) {
+                if (!state.head_place_known) { pose.position = glm::dvec3(0.0); }
+                if (!state.head_turn_known) { pose.orientation = glm::dquat(1.0, 0.0, 0.0, 0.0); }
+            }
+            views[i].pose = toXr(pose);
+            views[i].fov = toXr(isInset(i) ? owner.instance.simulation->script.findInset(state, sideOf(i)) : seen.fov);
+        }
+        const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
+        if (stage_from_space && (state.head_turn_known || is_in_head)) { output.viewStateFlags = kTurnsKnown; }
+        if (stage_from_space && (state.head_place_known || is_in_head)) { output.viewStateFlags |= kPlacesKnown; }
+        return successOf(owner);
+    });
+}
+
+}  // namespace simulated
