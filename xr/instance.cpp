@@ -40,6 +40,7 @@ std::vector<const char*> wantedExtensions(const InstanceOptions& options) {
     for (const ProfileBindings& profile : allProfileBindings()) {
         if (profile.extension != nullptr) { wanted.push_back(profile.extension); }
     }
+    if (options.foveated_inset) { wanted.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME); }
     if (options.visibility_mask) { wanted.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME); }
     return wanted;
 }

@@ -26,6 +26,7 @@ public:
 struct InstanceOptions {
     bool visibility_mask = true;  // some runtimes offer the function but crash in it
     bool eye_tracking = false;    // the wearer allows this program to see the gaze
+    bool foveated_inset = false;  // the program can draw insets, see extensions/foveated_inset.h
     // Called repeatedly, with a pause of its own, while the runtime knows of a headset that is not there yet. Without it there is no
     // wait.
     std::function<void(const std::string& runtime)> wait_for_headset;

@@ -6,16 +6,17 @@
 
 namespace binosplat::xr {
 
-void Layers::addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) {
-    for (std::size_t e = 0; e < 2; ++e) {
-        eyes_[e] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eyes[e].view.pose, eyes[e].view.fov,
-                    eyes[e].colour->subImage(eyes[e].part_px)};
-        if (eyes[e].depth == nullptr) { continue; }
-        depths_[e] = depthInfo(eyes[e].depth->subImage(eyes[e].part_px), eyes[e].near_m);
-        eyes_[e].next = &depths_[e];
+void Layers::addViews(std::span<const LayerEye> views, bool see_through) {
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const LayerEye& eye = views[v];
+        views_[v] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, eye.view.pose, eye.view.fov, eye.colour->subImage(eye.part_px)};
+        if (eye.depth == nullptr) { continue; }
+        depths_[v] = depthInfo(eye.depth->subImage(eye.part_px), eye.near_m);
+        views_[v].next = &depths_[v];
     }
     const XrCompositionLayerFlags flags = see_through ? XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT : 0;
-    scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, flags, session_.space(), 2, eyes_.data()};
+    const auto count = static_cast<std::uint32_t>(views.size());
+    scene_ = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, flags, session_.space(), count, views_.data()};
     list_.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&scene_));
 }
 

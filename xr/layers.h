@@ -36,7 +36,9 @@ public:
     Layers& operator=(const Layers&) = delete;
 
     // If `see_through`, the background shows as far as the pictures' alpha lets it; their colours are multiplied by alpha.
-    void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through);
+    void addEyes(const std::array<LayerEye, 2>& eyes, bool see_through) { addViews(eyes, see_through); }
+    // The same in a session with insets, which follow after the eyes.
+    void addEyesAndInsets(const std::array<LayerEye, 4>& eyes_and_insets, bool see_through) { addViews(eyes_and_insets, see_through); }
     // A panel whose middle is at `pose` (room axes, facing along -z of it) and that is size_m wide and high. Its picture is
     // blended over what lies behind; its colours are multiplied by alpha already.
     void addPanel(const Pose& room_from_panel, const glm::dvec2& size_m, const Swapchain& swapchain);
@@ -46,9 +48,11 @@ public:
     [[nodiscard]] std::span<const XrCompositionLayerBaseHeader* const> list() const { return list_; }
 
 private:
+    void addViews(std::span<const LayerEye> views, bool see_through);
+
     const Session& session_;
-    std::array<XrCompositionLayerProjectionView, 2> eyes_{};
-    std::array<XrCompositionLayerDepthInfoKHR, 2> depths_{};
+    std::array<XrCompositionLayerProjectionView, 4> views_{};
+    std::array<XrCompositionLayerDepthInfoKHR, 4> depths_{};
     XrCompositionLayerProjection scene_{};
     std::deque<XrCompositionLayerQuad> panels_;  // a deque keeps their addresses
     std::vector<const XrCompositionLayerBaseHeader*> list_;

@@ -33,13 +33,14 @@ Session::Handle Session::create(const Instance& instance, const Context& context
     return {session, {&context}};
 }
 
-Session::Session(const Instance& instance, const Context& context)
+Session::Session(const Instance& instance, const Context& context, XrViewConfigurationType views)
     : instance_(instance),
       context_(context),
+      views_(views),
       session_(create(instance, context)),
-      spaces_(handle()),
+      spaces_(handle(), views),
       floor_(instance, handle()),
-      hidden_meshes_(instance, handle()),
+      hidden_meshes_(instance, handle(), views),
       refresh_rate_(instance, handle()),
       blend_mode_(instance.blendMode(false)) {}
 
@@ -130,7 +131,7 @@ void Session::changeState(XrSessionState state) {
             break;
         case XR_SESSION_STATE_READY: {
             auto info = structure<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
-            info.primaryViewConfigurationType = kStereo;
+            info.primaryViewConfigurationType = views_;
             BINOSPLAT_XR(xrBeginSession(handle(), &info));
             running_ = true;
             last_display_time_ = 0;

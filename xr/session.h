@@ -27,8 +27,9 @@ enum class FrameOutcome {
 
 class Session {
 public:
-    // `context` must have been opened with deviceMaker(instance); both outlive the session.
-    Session(const Instance& instance, const Context& context);
+    // `context` must have been opened with deviceMaker(instance); both outlive the session. `views` is kStereo, or kStereoWithInset where
+    // findInset() found one.
+    Session(const Instance& instance, const Context& context, XrViewConfigurationType views = kStereo);
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
@@ -58,6 +59,7 @@ public:
     // See Spaces and Floor; for the open frame.
     bool settle(bool demanded) { return spaces_.settle(displayTime(), demanded); }
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes() { return spaces_.locateEyes(displayTime()); }
+    [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return spaces_.insets(); }
     [[nodiscard]] std::optional<double> floorBelowMetres() { return floor_.belowMetres(space(), displayTime()); }
     [[nodiscard]] XrSpace space() const { return spaces_.room(); }
     [[nodiscard]] XrSpace headSpace() const { return spaces_.head(); }
@@ -87,6 +89,7 @@ private:
 
     const Instance& instance_;
     const Context& context_;
+    XrViewConfigurationType views_;
     Handle session_;
     Spaces spaces_;
     Floor floor_;

@@ -2,7 +2,7 @@
 #include "xr/spaces.h"
 
 #include "xr/convert.h"
-#include "xr/instance.h"
+#include "xr/extensions/foveated_inset.h"
 
 #include <cmath>
 
@@ -36,24 +36,30 @@ OwnedSpace makeSpace(XrSession session, XrReferenceSpaceType type, const XrPosef
     return OwnedSpace(space);
 }
 
-Spaces::Spaces(XrSession session)
+Spaces::Spaces(XrSession session, XrViewConfigurationType views)
     : session_(session),
+      views_(views),
       local_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_LOCAL)),
       room_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_LOCAL)),
       head_(makeSpace(session, XR_REFERENCE_SPACE_TYPE_VIEW)) {}
 
 Spaces::Located Spaces::locate(XrSpace space, XrTime time) const {
     auto info = structure<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
-    info.viewConfigurationType = kStereo;
+    info.viewConfigurationType = views_;
     info.displayTime = time;
     info.space = space;
     auto state = structure<XrViewState>(XR_TYPE_VIEW_STATE);
-    std::array<XrView, 2> views{XrView{XR_TYPE_VIEW, nullptr, {}, {}}, XrView{XR_TYPE_VIEW, nullptr, {}, {}}};
+    std::array<XrView, 4> views;
+    views.fill({XR_TYPE_VIEW, nullptr, {}, {}});
+    const std::uint32_t wanted = views_ == kStereoWithInset ? 4 : 2;
     std::uint32_t count = 0;
-    BINOSPLAT_XR(xrLocateViews(session_, &info, &state, 2, &count, views.data()));
+    BINOSPLAT_XR(xrLocateViews(session_, &info, &state, wanted, &count, views.data()));
     Located located;
-    for (std::size_t e = 0; e < 2; ++e) { located.eyes[e] = {views[e].pose, views[e].fov}; }
-    located.turn_known = count == 2 && (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) != 0;
+    for (std::size_t e = 0; e < 2; ++e) {
+        located.eyes[e] = {views[e].pose, views[e].fov};
+        located.insets[e] = views[e + 2].fov;
+    }
+    located.turn_known = count == wanted && (state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT) != 0;
     located.place_known = located.turn_known && (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0;
     return located;
 }
@@ -61,6 +67,7 @@ Spaces::Located Spaces::locate(XrSpace space, XrTime time) const {
 std::optional<std::array<EyeView, 2>> Spaces::locateEyes(XrTime time) {
     Located located = locate(room(), time);
     if (!located.turn_known) { return std::nullopt; }
+    if (views_ == kStereoWithInset) { insets_ = located.insets; }
     if (located.place_known) {
         last_place_ = toXr(headOf(located.eyes).position);
         return located.eyes;

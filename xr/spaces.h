@@ -22,7 +22,7 @@ inline constexpr XrPosef kHere{{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
 // The room's origin is at the head, upright and facing its direction: the origins of the runtime's own spaces are arbitrary.
 class Spaces {
 public:
-    explicit Spaces(XrSession session);
+    Spaces(XrSession session, XrViewConfigurationType views);
 
     // Places the room for `time` and after, the first time that the head's pose is known, again when the runtime recentred its space, and
     // when `demanded`. Returns true if it did.
@@ -33,6 +33,9 @@ public:
     // used.
     [[nodiscard]] std::optional<std::array<EyeView, 2>> locateEyes(XrTime time);
 
+    // The angles of both insets as of the last locateEyes(), in a session with insets; their poses are the eyes'.
+    [[nodiscard]] const std::optional<std::array<XrFovf, 2>>& insets() const { return insets_; }
+
     // LOCAL until it is settled.
     [[nodiscard]] XrSpace room() const { return room_.get(); }
     // It moves with the head.
@@ -42,14 +45,17 @@ private:
     // Of xrLocateViews, with what is known of it.
     struct Located {
         std::array<EyeView, 2> eyes;
+        std::array<XrFovf, 2> insets;
         bool turn_known = false, place_known = false;
     };
     [[nodiscard]] Located locate(XrSpace space, XrTime time) const;
 
     XrSession session_;
+    XrViewConfigurationType views_;
     OwnedSpace local_, room_, head_;
     bool turn_settled_ = false, place_settled_ = false;
     std::optional<XrTime> recentred_from_;
+    std::optional<std::array<XrFovf, 2>> insets_;
     XrVector3f last_place_{};  // of the head in the room, as it was last known
 };
 

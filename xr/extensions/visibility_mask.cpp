@@ -3,7 +3,8 @@
 
 namespace binosplat::xr {
 
-HiddenMeshes::HiddenMeshes(const Instance& instance, XrSession session) : instance_(instance), session_(session) {
+HiddenMeshes::HiddenMeshes(const Instance& instance, XrSession session, XrViewConfigurationType views)
+    : instance_(instance), session_(session), views_(views) {
     for (std::uint32_t eye = 0; eye < 2; ++eye) { read(eye); }
 }
 
@@ -17,7 +18,7 @@ void HiddenMeshes::read(std::uint32_t eye) {
     if (XR_FAILED(xrGetInstanceProcAddr(instance_.handle(), "xrGetVisibilityMaskKHR", &found)) || found == nullptr) { return; }
     auto mask = structure<XrVisibilityMaskKHR>(XR_TYPE_VISIBILITY_MASK_KHR);
     const auto get = [&] {
-        return reinterpret_cast<PFN_xrGetVisibilityMaskKHR>(found)(session_, kStereo, eye, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR,
+        return reinterpret_cast<PFN_xrGetVisibilityMaskKHR>(found)(session_, views_, eye, XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR,
                                                                    &mask);
     };
     if (XR_FAILED(get()) || mask.indexCountOutput == 0) { return; }

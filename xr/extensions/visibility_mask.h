@@ -18,7 +18,7 @@ struct HiddenMesh {
 // Both eyes' of a session; empty without the extension.
 class HiddenMeshes {
 public:
-    HiddenMeshes(const Instance& instance, XrSession session);
+    HiddenMeshes(const Instance& instance, XrSession session, XrViewConfigurationType views);
 
     // After XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR.
     void read(std::uint32_t eye);
@@ -29,6 +29,7 @@ public:
 private:
     const Instance& instance_;
     XrSession session_;
+    XrViewConfigurationType views_;
     std::array<HiddenMesh, 2> meshes_;
     int version_ = 0;
 };
