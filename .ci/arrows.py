@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Which room may include which: `.ci/arrows.py` lists what goes against it, and ends with 1 then.
 
-A room is a folder, with those in it that have no line of their own. What it sees is on its right; tests see everything. No room sees one that
-sees it, but for the viewer's, which are one here."""
+A room is a folder, with those in it that have no line of their own, or the files of one name. What it sees is on its right, and stands above
+it, so that no room sees one that sees it; tests see everything."""
 
 import pathlib
 import re
@@ -26,12 +26,29 @@ ROOMS = {
     "engine/library": "engine engine/scene engine/picture engine/gpu engine/frame",
     "engine/stability": "engine engine/scene engine/reference engine/frame",
     "xr": "engine engine/gpu shaders/shared",
-    "app": "engine engine/* xr shaders",
+    "app/terminal": "engine",
+    "app/options": "engine engine/* app/terminal app/view/settings",
+    "app/load": "engine engine/* app/options app/terminal",
+    "app/plot": "engine",
+    "app/report": "engine engine/* app/options app/plot",
+    "app/bench": "engine engine/* app/load app/options app/plot app/report app/terminal",
+    "app/view/governor": "engine",
+    "app/view/files": "engine engine/frame engine/picture engine/setup",
+    "app/view/placement": "engine engine/scene xr",
+    "app/view/room": "engine engine/gpu xr app/view/placement",
+    "app/view/settings": "engine engine/scene engine/setup app/options app/view/governor",
+    "app/view/headset": "engine engine/gpu engine/passes xr app/terminal app/view/room",
+    "app/view/scenes": "engine engine/* app/load app/options app/terminal app/view/files app/view/placement app/view/settings",
+    "app/view/wearer": "engine engine/frame xr app/view/placement app/view/room app/view/settings",
+    "app/view/panel": "engine engine/* app/options app/report app/view/files app/view/headset app/view/room app/view/scenes app/view/settings",
+    "app/view/window": "engine engine/gpu app/view/panel app/view/placement app/view/room",
+    "app/view": "engine engine/* shaders xr app/options app/terminal app/view/*",
+    "app": "engine engine/* shaders app/*",
 }
 
 
 def room_of(path):
-    fitting = [room for room in ROOMS if path.startswith(room + "/")]
+    fitting = [room for room in ROOMS if path.startswith((room + "/", room + "."))]
     return max(fitting, key=len, default=None)
 
 

@@ -1,4 +1,4 @@
-// The subcommands. Each throws Error; none catches one.
+// The subcommands but `bench` and `view`, which have rooms of their own. Each throws Error; none catches one.
 #pragma once
 
 #include "app/options/options.h"
@@ -6,8 +6,6 @@
 namespace binosplat {
 
 void runRender(const RenderOptions& options);
-void runBench(const BenchOptions& options);
-void runView(const ViewOptions& options);
 void runInfo(const InfoOptions& options);
 void runScene(const SceneOptions& options);
 void runConvert(const ConvertOptions& options);

@@ -1,6 +1,6 @@
 // `binosplat compare`: how much two pictures differ, in the scores that `bench` has.
 #include "app/commands.h"
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/picture/flip.h"
 #include "engine/picture/image_io.h"

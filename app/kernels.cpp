@@ -1,8 +1,8 @@
 // `binosplat kernels`: what the driver makes of every kernel in every specialization that a mode uses. Makes pipelines and nothing else,
 // so that it runs on drivers of GPUs that are not there.
 #include "app/commands.h"
-#include "app/interrupt.h"
-#include "app/progress.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/passes/passes.h"
 #include "engine/passes/past_passes.h"

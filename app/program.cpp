@@ -1,8 +1,10 @@
 // Reads the options, runs one command, and turns what went wrong into one line and an exit code.
 #include "app/program.h"
+#include "app/bench/bench.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/options/options.h"
+#include "app/terminal/interrupt.h"
+#include "app/view/view.h"
 #include "engine/gpu/device_error.h"
 #include "engine/platform.h"
 

@@ -1,7 +1,6 @@
 // `binosplat render`: one frame, or those along a path, their pictures and the report.
 #include "app/blind_camera.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
@@ -9,6 +8,7 @@
 #include "app/progress.h"
 #include "app/render_path.h"
 #include "app/report/report.h"
+#include "app/terminal/interrupt.h"
 #include "engine/error.h"
 #include "engine/frame/stereo_frame.h"
 #include "engine/picture/image_io.h"

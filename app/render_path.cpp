@@ -1,8 +1,8 @@
 // Frames along a recorded way of the head.
 #include "app/render_path.h"
 
-#include "app/interrupt.h"
-#include "app/progress.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/roi_picture.h"

@@ -1,6 +1,6 @@
 // `binosplat scene`: a built-in scene as a 2DGS PLY file.
 #include "app/commands.h"
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"

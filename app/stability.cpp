@@ -1,7 +1,7 @@
 // `binosplat stability`: the stiff and extreme cases on the present device, beside their float64 twins.
 #include "app/commands.h"
-#include "app/progress.h"
 #include "app/report/stability_report.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 

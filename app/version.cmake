@@ -6,7 +6,7 @@ if(described AND NOT described STREQUAL "v${VERSION}")
     string(APPEND version " (${described})")
 endif()
 file(CONFIGURE OUTPUT ${FILE} CONTENT [[
-#include "app/version.h"
+#include "app/terminal/version.h"
 
 const char* const binosplat::kVersion = "@version@";
 ]] @ONLY)

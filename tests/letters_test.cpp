@@ -96,7 +96,7 @@ TEST_CASE("names bring their letters along, those that no font has stay boxes, a
     const std::string chinese = "\xe6\xa3\xae\xe6\x9e\x97.ply";
     write(work.path / chinese);
     sketch.settings.page = PanelPage::kScenes;
-    sketch.pages.chooser.showFolder(work.path.string());
+    sketch.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.contains(chinese));
     CHECK(isThere(0x5d0));
     const std::vector<fs::path> further = furtherSystemFonts();

@@ -7,7 +7,7 @@
 #include "app/options/modes.h"
 #include "app/options/option_documents.h"
 #include "app/options/option_table.h"
-#include "app/view/view_settings_table.h"
+#include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
 #include "tests/run_program.h"

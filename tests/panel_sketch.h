@@ -1,7 +1,7 @@
 // The viewer's panel without a device: what it would draw, where its widgets lie, and what a click on them does.
 #pragma once
 
-#include "app/view/panel/overlay.h"
+#include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_style.h"
 
@@ -33,9 +33,9 @@ public:
     ~PanelSketch() { ImGui::DestroyContext(); }
 
     // One frame, with something that points and presses, or nothing.
-    OverlayActions draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
-        if (const auto wish = pages.chooser.takeWish()) { pages.chooser.show(makeSceneList(*wish), *wish); }
-        bringLetters(namesOn(settings, pages, status), picturesOn(settings, pages));
+    PanelRequests draw(const glm::dvec2* pointer = nullptr, bool pressed = false) {
+        if (const auto wish = chooser.takeWish()) { chooser.show(makeSceneList(*wish), *wish); }
+        bringLetters(namesOn(settings, chooser, status), picturesOn(settings, chooser));
         status.pictures = &font->pictures();
         ImGuiIO& io = ImGui::GetIO();
         constexpr float kNowhere = -std::numeric_limits<float>::max();
@@ -44,7 +44,7 @@ public:
         io.MouseDown[0] = pressed;
         io.DeltaTime = 0.01f;
         ImGui::NewFrame();
-        OverlayActions actions = drawOverlay(kPanelPx, settings, pages, status);
+        PanelRequests actions = drawPanel(kPanelPx, settings, chooser, status);
         ImGui::Render();
         return actions;
     }
@@ -57,21 +57,21 @@ public:
         return true;
     }
     // What came of a press that is let go, and of the frame after that.
-    OverlayActions click(const std::string& name) {
-        const OverlayActions before = draw();
+    PanelRequests click(const std::string& name) {
+        const PanelRequests before = draw();
         REQUIRE_MESSAGE(before.places.contains(name), name);
         const glm::dvec2 place = before.places.at(name);
         draw(&place);
         draw(&place, true);
-        OverlayActions actions = draw(&place);
+        PanelRequests actions = draw(&place);
         draw();
         return actions;
     }
 
     std::unique_ptr<PanelFont> font;
     ViewSettings settings;
-    OverlayPages pages;
-    OverlayStatus status;
+    SceneChooser chooser;
+    PanelStatus status;
 
 private:
     // What makes a texture of them elsewhere.
@@ -109,7 +109,7 @@ inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { ret
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;
     sketch.settings.page = PanelPage::kScenes;
-    sketch.pages.chooser.showFolder(folder);
+    sketch.chooser.showFolder(folder);
     const WidgetPlaces all = sketch.draw().places;
     REQUIRE_MESSAGE(all.contains(name), name);
     return all.at(name) / glm::dvec2(kPanelPx);

@@ -1,10 +1,11 @@
 // Facts about the wearer's place in the scene, and about keeping it.
-#include "app/view/wearer/placement.h"
+#include "app/view/placement/placement.h"
+#include "app/options/start_view.h"
 #include "app/view/headset/losses.h"
-#include "app/view/panel/overlay_panel.h"
-#include "app/view/view_files.h"
-#include "app/view/view_settings.h"
-#include "app/view/wearer/view_eyes.h"
+#include "app/view/placement/view_eyes.h"
+#include "app/view/room/panel_in_room.h"
+#include "app/view/settings/view_files.h"
+#include "app/view/settings/view_settings.h"
 #include "engine/error.h"
 #include "xr/convert.h"
 
@@ -133,18 +134,17 @@ TEST_CASE("similarities compose") {
 }
 
 TEST_CASE("a wearer starts where the options put the eye, upright, metres as long as they say") {
-    RunOptions options;
-    options.camera.eye = glm::dvec3(1, 2, 3);
-    options.camera.look = glm::dvec3(1, 3, 5);  // down and ahead, for y points down
-    options.metres_per_unit = 0.5;
-    const Similarity start = startPlacement(options, emptyScene());
+    CameraOptions camera;
+    camera.eye = glm::dvec3(1, 2, 3);
+    camera.look = glm::dvec3(1, 3, 5);  // down and ahead, for y points down
+    const Similarity start = startPlacement(startView(emptyScene(), camera, 0.5), 0.5);
     checkNear(transform(start, glm::dvec3(0.0)), {1, 2, 3});
     checkNear(transform(start, {0, 0, 1}), {1, 2, 5});   // ahead is level
     checkNear(transform(start, {0, -1, 0}), {1, 0, 3});  // up is up
     // Looking straight down there is no level ahead; it is upright still.
-    options.camera.look = glm::dvec3(1, 2, 3) + glm::dvec3(0, 0.001, 5);
-    options.camera.up = glm::dvec3(0, 0, -1);
-    checkNear(startPlacement(options, emptyScene()).orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
+    camera.look = glm::dvec3(1, 2, 3) + glm::dvec3(0, 0.001, 5);
+    camera.up = glm::dvec3(0, 0, -1);
+    checkNear(startPlacement(startView(emptyScene(), camera, 0.5), 0.5).orientation * glm::dvec3(0, -1, 0), {0, 0, -1}, 1e-6);
 }
 
 TEST_CASE("a scene that would be looked at from nearer than half a metre is shown larger, and no other one is") {
@@ -266,7 +266,7 @@ TEST_CASE("a config that places the scene in part is refused with its line") {
 }
 
 TEST_CASE("a ray meets the panel where it points, from the front alone") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     const Pose& hung = panel.roomFromPanel();
     std::array<xr::Hand, 2> hands;
     // A quarter to the right and downwards of the panel's middle.
@@ -278,7 +278,7 @@ TEST_CASE("a ray meets the panel where it points, from the front alone") {
     CHECK_FALSE(panel.pointer().pressed);
     const auto rays = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(rays.size() == 1);
-    CHECK_FALSE(rays[0].fades);
+    CHECK(rays[0].sprite == Sprite::kRay);
     CHECK(rays[0].strip.size_m.y == doctest::Approx(0.5));
     checkNear(rays[0].strip.room_from_strip.position, transform(hung, {0.2, 0.1, -0.25}));
     hands[kRight].aim = compose(hung, {glm::dquat(0, 0, 1, 0), {0.2, 0.1, 0.5}});  // behind it, towards it
@@ -287,6 +287,6 @@ TEST_CASE("a ray meets the panel where it points, from the front alone") {
     // It fades before it is there.
     const auto behind = panel.rays(glm::dvec3(0.0), std::nullopt);
     REQUIRE(behind.size() == 1);
-    CHECK(behind[0].fades);
+    CHECK(behind[0].sprite == Sprite::kFadingRay);
     CHECK(behind[0].strip.size_m.y < 0.5);
 }

@@ -1,6 +1,6 @@
 // Facts about looking for a scene: what a folder holds, in which order, which scenes were shown last, and what is said of one.
 #include "app/view/scenes/scene_list.h"
-#include "app/view/file_worker.h"
+#include "app/view/files/file_worker.h"
 #include "app/view/scenes/natural_order.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/scene_facts.h"
@@ -153,23 +153,23 @@ TEST_CASE("recent scenes are kept in the user's folder, whole or as they were, a
 
 TEST_CASE("files are read beside whoever asks, who waits for nothing, and what is to be written is written") {
     std::promise<void> disk;
-    std::vector<std::string> obeyed;
+    std::vector<std::string> delivered;
     bool was_written = false;
     {
         FileWorker files;
         CHECK(files.now().empty());
         files.read("reading /far/away", [&, arrival = disk.get_future().share()]() -> FileWorker::Done {
             arrival.wait();
-            return [&, by = std::this_thread::get_id()] { obeyed.push_back(by == std::this_thread::get_id() ? "here" : "far"); };
+            return [&, by = std::this_thread::get_id()] { delivered.push_back(by == std::this_thread::get_id() ? "here" : "far"); };
         });
-        files.write("saving", [&]() -> FileWorker::Done { return [&] { obeyed.push_back("saved"); }; });
+        files.write("saving", [&]() -> FileWorker::Done { return [&] { delivered.push_back("saved"); }; });
         // However long that takes, frames go on, and say what they have not got yet.
-        files.obey();
-        CHECK(obeyed.empty());
+        files.deliver();
+        CHECK(delivered.empty());
         CHECK(files.now() == "reading /far/away");
         std::thread([&] { disk.set_value(); }).join();
         files.finish();
-        CHECK(obeyed == std::vector<std::string>{"far", "saved"});
+        CHECK(delivered == std::vector<std::string>{"far", "saved"});
         CHECK(files.now().empty());
         files.write("failing", []() -> FileWorker::Done { fail("no room on the disk"); });
         CHECK_THROWS_WITH_AS(files.finish(), "no room on the disk", Error);

@@ -2,9 +2,9 @@
 #include "app/view/scenes/shown_scene.h"
 #include "app/options/modes.h"
 #include "app/view/panel/canvas.h"
-#include "app/view/panel/overlay.h"
+#include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_style.h"
-#include "app/view/view_files.h"
+#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene.h"
@@ -223,11 +223,11 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
         using Usage = vk::ImageUsageFlagBits;
         Canvas canvas(context(), kPanelPx, format);
         ViewSettings settings;
-        OverlayPages pages;
-        OverlayStatus status;
+        SceneChooser chooser;
+        PanelStatus status;
         status.has_scene = true;
         canvas.begin({}, 0.01);
-        static_cast<void>(drawOverlay(kPanelPx, settings, pages, status));
+        static_cast<void>(drawPanel(kPanelPx, settings, chooser, status));
         canvas.end();
         const vk::raii::Image image(
             context().device(),

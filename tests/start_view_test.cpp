@@ -1,7 +1,7 @@
 // Where one stands at first: at a camera that lies with the scene, or where the options say.
 #include "app/options/start_view.h"
 #include "app/options/camera_options.h"
-#include "app/view/wearer/placement.h"
+#include "app/view/placement/placement.h"
 #include "engine/scene/scene_folder.h"
 #include "engine/setup/output_files.h"
 #include "tests/run_program.h"
@@ -108,8 +108,8 @@ TEST_CASE("a wearer starts at the camera that is asked for, upright") {
     writeText(
         work.path / "c.json",
         R"([{"position": [1, 2, 3], "rotation": [[1, 0, 0], [0, 0.8, 0.6], [0, -0.6, 0.8]], "width": 8, "height": 8, "fx": 9, "fy": 9}])");
-    RunOptions options = parse<ViewOptions>({"view", scene.name, "--cameras", (work.path / "c.json").string()}).run;
-    const Similarity start = startPlacement(options, scene);
+    const CameraOptions camera = parse<ViewOptions>({"view", scene.name, "--cameras", (work.path / "c.json").string()}).run.camera;
+    const Similarity start = startPlacement(startView(scene, camera, 1.0), 1.0);
     CHECK(glm::distance(start.position, glm::dvec3(1, 2, 3)) < 1e-12);
     // Up is the camera's.
     CHECK(glm::distance(start.orientation * glm::dvec3(0, -1, 0), glm::dvec3(0, -0.8, 0.6)) < 1e-6);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kTenth = 0.1;
 
 // A hand that points straight at a place of a panel, half a metre before it.
-xr::Hand pointingAt(const OverlayPanel& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
+xr::Hand pointingAt(const PanelInRoom& panel, const glm::dvec2& from_middle_m, bool clicks = false) {
     xr::Hand hand;
     hand.aim = compose(panel.roomFromPanel(), Pose{{1, 0, 0, 0}, {from_middle_m.x, from_middle_m.y, -0.5}});
     hand.clicks = clicks;
@@ -57,7 +57,7 @@ xr::HandJoints flatHand(const glm::dvec3& palm) {
 }  // namespace
 
 TEST_CASE("both hands point, and the one that clicked last is the pointer") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     const auto at = [&] { return panel.pointer().place_px.value_or(glm::dvec2(-1.0)).x; };
     std::array<xr::Hand, 2> hands{pointingAt(panel, {-0.2, 0.0}), pointingAt(panel, {0.2, 0.0})};
     panel.update(hands, true);
@@ -88,7 +88,7 @@ TEST_CASE("both hands point, and the one that clicked last is the pointer") {
 }
 
 TEST_CASE("a trigger that was pulled beside the panel does not click when the ray comes over it") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     std::array<xr::Hand, 2> hands{xr::Hand{}, pointingAway()};
     hands[kRight].clicks = true;
     panel.update(hands, true);
@@ -107,7 +107,7 @@ TEST_CASE("a trigger that was pulled beside the panel does not click when the ra
 }
 
 TEST_CASE("without a panel a hand shows its ray only while its trigger is pulled") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     std::array<xr::Hand, 2> hands{pointingAt(panel, {0.0, 0.0}), pointingAt(panel, {0.0, 0.0})};
     panel.update(hands, false);
     CHECK(panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt).empty());
@@ -116,7 +116,7 @@ TEST_CASE("without a panel a hand shows its ray only while its trigger is pulled
     panel.update(hands, false);
     const auto rays = panel.rays(glm::dvec3(0.1, -0.2, 0.0), std::nullopt);
     REQUIRE(rays.size() == 1);
-    CHECK(rays[0].fades);
+    CHECK(rays[0].sprite == Sprite::kFadingRay);
     CHECK(panel.rays(glm::dvec3(0.0), kLeft).empty());
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("a throw lands on the floor, where physics puts it") {
 }
 
 TEST_CASE("who teleports stands where the throw lands, once the stick is let go, and does not walk") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
     ViewSettings settings;
     settings.panel = false;
@@ -206,7 +206,7 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, and the
         for (const bool teleports : {false, true}) {
             CAPTURE(pointing);
             CAPTURE(teleports);
-            OverlayPanel panel({800, 400}, 0.8);
+            PanelInRoom panel({800, 400}, 0.8);
             WearerControls controls;
             ViewSettings settings;
             settings.teleport = teleports;
@@ -232,7 +232,7 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, and the
 }
 
 TEST_CASE("a throw that passes over the panel goes on") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
     ViewSettings settings;
     settings.teleport = true;
@@ -250,7 +250,7 @@ TEST_CASE("a throw that passes over the panel goes on") {
 }
 
 TEST_CASE("where one turns smoothly the stick turns a right angle in a second, and that counts as moving") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
     ViewSettings settings;
     settings.smooth_turn = true;
@@ -267,7 +267,7 @@ TEST_CASE("where one turns smoothly the stick turns a right angle in a second, a
 }
 
 TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left one to the one before") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
     ViewSettings settings;
     Similarity scene_from_room;
@@ -286,7 +286,7 @@ TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left 
 }
 
 TEST_CASE("a stick turns once until it comes back, also on a way round by ahead") {
-    OverlayPanel panel({800, 400}, 0.8);
+    PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
     ViewSettings settings;
     settings.panel = false;

@@ -2,11 +2,10 @@
 #include "app/bench/bench.h"
 
 #include "app/bench/bench_point.h"
-#include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/load.h"
 #include "app/options/device_options.h"
-#include "app/progress.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/scene/address.h"
 #include "engine/setup/output_files.h"

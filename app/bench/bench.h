@@ -1,9 +1,12 @@
-// The other kinds of bench, and what they have in common.
+// `binosplat bench`, its kinds, and what they have in common.
 #pragma once
 
 #include "app/bench/bench_plan.h"
 
 namespace binosplat {
+
+// Throws Error.
+void runBench(const BenchOptions& options);
 
 // A scene that is not there is found out before the others are measured. Throws Error naming it.
 void requireScenes(const BenchPlan& plan);

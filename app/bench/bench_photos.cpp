@@ -2,10 +2,10 @@
 // protocol, so that PSNR and SSIM are against the photograph).
 #include "app/bench/bench.h"
 #include "app/bench/bench_point.h"
-#include "app/interrupt.h"
 #include "app/load.h"
 #include "app/options/device_options.h"
-#include "app/progress.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/picture/metrics.h"

@@ -1,9 +1,9 @@
 // All methods at one scene, view and size.
 #include "app/bench/bench_point.h"
 
-#include "app/interrupt.h"
 #include "app/options/modes.h"
 #include "app/report/report.h"
+#include "app/terminal/interrupt.h"
 #include "engine/reference/reference.h"
 
 #include <algorithm>

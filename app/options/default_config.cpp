@@ -2,7 +2,7 @@
 #include "app/options/default_config.h"
 
 #include "app/options/option_table.h"
-#include "app/view/view_settings_table.h"
+#include "app/view/settings/view_settings_table.h"
 
 #include <algorithm>
 #include <array>
@@ -72,7 +72,8 @@ std::string defaultConfig() {
         }
         text += writeRow(row);
     }
-    text += "\n" + writeLine("[view]", "of `view` alone; its panel saves and loads these");
+    text += '\n';
+    text += writeLine("[view]", "of `view` alone; its panel saves and loads these");
     for (const OptionRow<ViewSettings>& row : viewSettingsRows()) { text += writeRow(row); }
     text += writeLine("# scene-position = [0.0, 0.0, 0.0]", "where the wearer's room begins in the scene, with the next two or not at all");
     text += writeLine("# scene-orientation = [1.0, 0.0, 0.0, 0.0]", "how it is turned: w, x, y, z of a quaternion");

@@ -4,8 +4,8 @@
 #include "app/options/default_config.h"
 #include "app/options/document_text.h"
 #include "app/options/shell_completions.h"
-#include "app/version.h"
-#include "app/view/view_settings_table.h"
+#include "app/terminal/version.h"
+#include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "app/options/commands_table.h"
 #include "app/options/option_layers.h"
 #include "app/options/option_table.h"
-#include "app/version.h"
+#include "app/terminal/version.h"
 #include "engine/error.h"
 #include "engine/scene/address.h"
 

@@ -1,5 +1,6 @@
 // `binosplat view` of a build without OpenXR.
-#include "app/commands.h"
+#include "app/view/view.h"
+
 #include "engine/error.h"
 
 namespace binosplat {

@@ -2,7 +2,7 @@
 #include "app/view/scene_renderer.h"
 
 #include "app/options/modes.h"
-#include "app/view/wearer/view_eyes.h"
+#include "app/view/placement/view_eyes.h"
 
 #include <utility>
 
@@ -27,30 +27,30 @@ SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& contex
 
 glm::uvec2 SceneRenderer::sizePx(const ViewSettings& settings) const { return scaledSize(instance_, settings.resolution_scale); }
 
-void SceneRenderer::fitImages(HeadsetStay& stay, const ViewSettings& settings) {
+void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings) {
     const glm::uvec2 size_px = sizePx(settings);
-    if (!stay.images) { return makeImages(stay, size_px); }
-    const glm::uvec2 before_px = stay.images->sizePx();
+    if (!headset.images) { return makeImages(headset, size_px); }
+    const glm::uvec2 before_px = headset.images->sizePx();
     if (before_px == size_px) { return; }
     try {
-        makeImages(stay, size_px);
+        makeImages(headset, size_px);
     } catch (const Error&) {
-        makeImages(stay, before_px);
+        makeImages(headset, before_px);
         throw;
     }
 }
 
-void SceneRenderer::makeImages(HeadsetStay& stay, glm::uvec2 size_px) {
-    stay.images.reset();  // first, since both may not fit
-    stay.images = std::make_unique<EyeImages>(stay.session, presenter_, format_, size_px);
-    if (!takes_depth_) { stay.images->dropDepth(); }
+void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px) {
+    headset.images.reset();  // first, since both may not fit
+    headset.images = std::make_unique<EyeImages>(headset.session, presenter_, format_, size_px);
+    if (!takes_depth_) { headset.images->dropDepth(); }
 }
 
-void SceneRenderer::govern(HeadsetStay& stay, const ViewSettings& settings) {
+void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
     governor_.wish(settings.quality, settings.stereo.mode, {settings.stereo.budget, settings.resolution_scale});
-    fitImages(stay, settings);
+    fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
-    stay.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
+    headset.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
 }
 
 ShownRate SceneRenderer::rate() const {
@@ -59,12 +59,12 @@ ShownRate SceneRenderer::rate() const {
     return rate;
 }
 
-void SceneRenderer::dropDepth(HeadsetStay& stay) {
+void SceneRenderer::dropDepth(ConnectedHeadset& headset) {
     takes_depth_ = false;
-    stay.images->dropDepth();
+    headset.images->dropDepth();
 }
 
-FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views,
+FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale, const FrameViews& views,
                                              Order usual_order) {
     StereoOptions stereo = settings.stereo;
     stereo.budget = governor_.settings().budget;
@@ -73,7 +73,7 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     frame.near = options_.camera.near * scale;
     frame.units_per_metre = scale;
     frame.dominant = settings.stereo.dominant;
-    frame.keep_depth = frame.keep_both_depths = stay.images->takesDepth();
+    frame.keep_depth = frame.keep_both_depths = headset.images->takesDepth();
     frame.half_floats = true;
     frame.keep_classes = settings.tint;
     frame.square_boxes = false;
@@ -84,68 +84,68 @@ FrameSettings SceneRenderer::settingsOfFrame(HeadsetStay& stay, const ViewSettin
     if (seesThrough(settings)) { frame.background = glm::dvec3(0.0); }
     // One eye's picture for both is seen through either lens.
     if (!settings.showsOneEye() && settings.visibility_mask) {
-        frame.hidden_tiles =
-            stay.lens_mask.update(stay.session.hiddenMeshes(), stay.session.hiddenMeshVersion(), views.eyes, stay.images->partPx());
+        frame.hidden_tiles = headset.lens_mask.update(headset.session.hiddenMeshes(), headset.session.hiddenMeshVersion(), views.eyes,
+                                                      headset.images->partPx());
     }
     return frame;
 }
 
-void SceneRenderer::prepare(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                             const FrameViews& views) {
-    frame_ = settingsOfFrame(stay, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
+    frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
     eyes_.clear();
     for (const int e : {kLeft, kRight}) {
         if (settings.showsOneEye() && e != frame_.dominant) { continue; }
         const auto at = static_cast<std::size_t>(e);
-        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, stay.images->partPx()));
+        eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, headset.images->partPx()));
     }
     try {
         scene.frame.makeRoom(eyes_, frame_);
-        presenter_.makeRoom(stay.images->partPx(), stay.images->takesDepth());
+        presenter_.makeRoom(headset.images->partPx(), headset.images->takesDepth());
     } catch (const Error&) {
         forgetLastFrame();
         throw;
     }
 }
 
-void SceneRenderer::render(HeadsetStay& stay, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
                            const std::function<void(Commands&)>& record_panel) {
     const bool one_eye = settings.showsOneEye();
-    stay.images->seeThrough(seesThrough(settings));
+    headset.images->seeThrough(seesThrough(settings));
     for (const int e : {kLeft, kRight}) {
-        if (!one_eye || e == frame_.dominant) { stay.images->acquire(e, true); }
+        if (!one_eye || e == frame_.dominant) { headset.images->acquire(e, true); }
     }
     std::optional<FrameResult> known = scene.frame.renderAhead(
         eyes_, frame_,
         [&](Commands& commands) {
-            recordEyes(commands, stay, scene, frame_, settings.tint, window);
+            recordEyes(commands, headset, scene, frame_, settings.tint, window);
             record_panel(commands);
         },
         window != nullptr ? window->drawn() : vk::Semaphore());
     const bool is_of_now = known && known->mark == governed_count_;
     if (known) { last_ = std::move(*known); }
-    met_.add(stay.session.periodMs(), stay.session.lostPeriods());
+    met_.add(headset.session.periodMs(), headset.session.lostPeriods());
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
-                       .period_ms = stay.session.periodMs(),
+                       .period_ms = headset.session.periodMs(),
                        .is_old = !is_of_now,
-                       .lost_periods = stay.session.lostPeriods(),
+                       .lost_periods = headset.session.lostPeriods(),
                        .work = last_.work_rendered});
     sayGoverned();
     sayHidden(one_eye);
-    sayShort();
+    sayCutShort();
 }
 
-void SceneRenderer::recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint,
+void SceneRenderer::recordEyes(Commands& commands, ConnectedHeadset& headset, LoadedScene& scene, const FrameSettings& frame, bool tint,
                                MirrorWindow* window) {
     for (const int e : {kLeft, kRight}) {
         const bool dominant = e == frame.dominant;
         if (frame.mode == Mode::kMono && !dominant) { continue; }
         const Picture& image = scene.frame.picture(frame.mode == Mode::kMono ? 0 : e);
-        stay.images->present(commands, e, image, tint ? scene.frame.chosenTiles(e) : nullptr, frame.near);
+        headset.images->present(commands, e, image, tint ? scene.frame.chosenTiles(e) : nullptr, frame.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = frame.mode == Mode::kMono || dominant != tint;
         if (window != nullptr && window->drawn() && shown) {
-            window->keepEye(commands, presenter_.pixels(), stay.images->partPx(), format_);
+            window->keepEye(commands, presenter_.pixels(), headset.images->partPx(), format_);
         }
     }
 }
@@ -157,7 +157,7 @@ void SceneRenderer::sayGoverned() {
     said_beaten_ = governor_.isBeaten() || (said_beaten_ && !is_other);
 }
 
-void SceneRenderer::sayShort() {
+void SceneRenderer::sayCutShort() {
     const std::uint64_t now = last_.counters.ahead ? last_.counters.ahead->frames_cut_short : 0;
     if (now > std::exchange(cut_short_, now)) { log_.say(fmt::format("frames shown incomplete because a list was full: {}", now)); }
 }

@@ -1,12 +1,12 @@
 // From the scene to the headset's images: resolution, method, both eyes' pictures.
 #pragma once
 
-#include "app/view/frame_log.h"
+#include "app/terminal/frame_log.h"
 #include "app/view/governor/met_displays.h"
-#include "app/view/headset/headset_stay.h"
-#include "app/view/panel/overlay.h"
+#include "app/view/headset/connected_headset.h"
+#include "app/view/panel/panel_content.h"
 #include "app/view/scenes/scene_loader.h"
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 #include "app/view/window/mirror_window.h"
 
 #include <array>
@@ -30,19 +30,19 @@ public:
 
     // Of an eye's images, as large as the wearer wants them.
     [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const;
-    // Images of the stay as large as the wearer wants them. Throws Error where there cannot be any; they are as large as before then.
-    void fitImages(HeadsetStay& stay, const ViewSettings& settings);
+    // Images of the headset as large as the wearer wants them. Throws Error where there cannot be any; they are as large as before then.
+    void fitImages(ConnectedHeadset& headset, const ViewSettings& settings);
     // What the governor makes of the wearer's settings, in images as large as that.
-    void govern(HeadsetStay& stay, const ViewSettings& settings);
+    void govern(ConnectedHeadset& headset, const ViewSettings& settings);
     // The runtime refuses depth after all.
-    void dropDepth(HeadsetStay& stay);
+    void dropDepth(ConnectedHeadset& headset);
 
     // What render() will show. Throws Error where there is no memory for it; nothing is shown then, until this succeeds with less.
-    void prepare(HeadsetStay& stay, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+    void prepare(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
                  const FrameViews& views);
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps
     // an eye for that.
-    void render(HeadsetStay& stay, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+    void render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
     // The wearer wants the room behind the scene, and the headset can show it.
@@ -61,12 +61,13 @@ public:
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
-    void makeImages(HeadsetStay& stay, glm::uvec2 size_px);
-    [[nodiscard]] FrameSettings settingsOfFrame(HeadsetStay& stay, const ViewSettings& settings, double scale, const FrameViews& views,
-                                                Order usual_order);
-    void recordEyes(Commands& commands, HeadsetStay& stay, LoadedScene& scene, const FrameSettings& frame, bool tint, MirrorWindow* window);
+    void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px);
+    [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
+                                                const FrameViews& views, Order usual_order);
+    void recordEyes(Commands& commands, ConnectedHeadset& headset, LoadedScene& scene, const FrameSettings& frame, bool tint,
+                    MirrorWindow* window);
     void sayHidden(bool one_eye);
-    void sayShort();
+    void sayCutShort();
     void sayGoverned();
 
     const xr::Instance& instance_;

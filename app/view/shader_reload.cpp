@@ -19,13 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // A folder of its own, gone with this.
-struct Workshop {
-    Workshop() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
+struct TemporaryFolder {
+    TemporaryFolder() : path(createFolder(fs::temp_directory_path(), "binosplat-shaders-")) {
         check(!path.empty(), "{}: cannot be written ({})", fs::temp_directory_path().string(), std::strerror(errno));
     }
-    Workshop(const Workshop&) = delete;
-    Workshop& operator=(const Workshop&) = delete;
-    ~Workshop() {
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
         std::error_code ignored;
         fs::remove_all(path, ignored);
     }
@@ -55,8 +55,8 @@ std::string firstError(const fs::path& log, const fs::path& source) {
 }
 
 std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::string& stage, const std::string& name,
-                                         const fs::path& workshop) {
-    const fs::path source = folder / stage / (name + ".comp"), words = workshop / (name + ".spv"), log = workshop / (name + ".log");
+                                         const fs::path& scratch) {
+    const fs::path source = folder / stage / (name + ".comp"), words = scratch / (name + ".spv"), log = scratch / (name + ".log");
     std::error_code ignored;
     check(fs::exists(source, ignored), "{} is not there", source.string());
     check(fs::is_regular_file(source, ignored), "{} is not a file", source.string());  // the compiler would wait for a pipe
@@ -73,11 +73,11 @@ std::vector<std::uint32_t> compileShader(const fs::path& folder, const std::stri
 fs::path shaderFolder(const fs::path& folder) { return folder.empty() ? fs::path(environment("BINOSPLAT_SHADERS")) : folder; }
 
 ShaderWords compileShaders(const fs::path& folder) {
-    const Workshop workshop;
+    const TemporaryFolder scratch;
     std::vector<std::pair<std::string, std::future<std::vector<std::uint32_t>>>> results;
     for (const auto& [stage, name] : embeddedShaderNames()) {
         results.emplace_back(name,
-                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), workshop.path));
+                             std::async(std::launch::async, compileShader, folder, std::string(stage), std::string(name), scratch.path));
     }
     ShaderWords shaders;
     for (auto& [name, words] : results) { shaders[name] = words.get(); }

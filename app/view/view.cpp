@@ -1,8 +1,9 @@
 // `binosplat view`: a scene in a headset.
-#include "app/commands.h"
-#include "app/interrupt.h"
+#include "app/view/view.h"
+
 #include "app/options/camera_options.h"
 #include "app/options/device_options.h"
+#include "app/terminal/interrupt.h"
 #include "app/view/simulate.h"
 #include "app/view/viewer.h"
 #include "app/view/window/mirror_window.h"

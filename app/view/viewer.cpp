@@ -1,10 +1,10 @@
 // The viewer's loop.
 #include "app/view/viewer.h"
 
-#include "app/interrupt.h"
+#include "app/terminal/interrupt.h"
 #include "app/view/panel/panel_style.h"
+#include "app/view/placement/view_eyes.h"
 #include "app/view/shader_reload.h"
-#include "app/view/wearer/view_eyes.h"
 #include "engine/error.h"
 
 #include <thread>
@@ -26,9 +26,9 @@ Viewer::Viewer(const ViewOptions& options, const ViewSettings& settings, xr::Ins
       context_(context),
       settings_(settings),
       drawn_(settings),
-      headset_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
-      renderer_(instance, context, options_.run, log_, headset_.format()),
-      panel_(context, headset_.format()),
+      connection_(instance, context, kPanelPx, [this](const std::string& message) { log_.say(message); }),
+      renderer_(instance, context, options_.run, log_, connection_.format()),
+      panel_(context, connection_.format()),
       commands_(context_),
       scenes_(context_, options_, log_,
               FramesAhead{settings.stereo, renderer_.sizePx(settings), instance.takesDepth(), settings.tint, {}}) {
@@ -41,8 +41,8 @@ void Viewer::run() {
     const Interrupt interrupt;
     try {
         try {
-            renderer_.fitImages(stay(), settings_);
-        } catch (const xr::Lost& lost) { loseStay(lost.what()); }
+            renderer_.fitImages(headset(), settings_);
+        } catch (const xr::Lost& lost) { loseHeadset(lost.what()); }
         while (options_.load_first && !scenes_.get() && !leaving_) {
             if (interrupt.came()) { leave(); }
             if (scenes_.isNextReady()) { takeScene(); }
@@ -52,10 +52,10 @@ void Viewer::run() {
         for (bool goes_on = true; goes_on;) {
             if (!leaving_ && (interrupt.came() || (options_.frames != 0 && log_.frame >= options_.frames))) { leave(); }
             try {
-                goes_on = headset_.stay() != nullptr ? step() : comeBack();
+                goes_on = connection_.headset() != nullptr ? step() : comeBack();
             } catch (const xr::Lost& lost) {
                 if (leaving_) { break; }
-                loseStay(lost.what());
+                loseHeadset(lost.what());
             }
         }
     } catch (const xr::InstanceLost& lost) {
@@ -65,13 +65,13 @@ void Viewer::run() {
     sayPicture(pictures_.finish());
     keepPictureOfScene();
     files_.finish();
-    const std::string why = headset_.stay() != nullptr ? stay().session.whyEnded() : "stopped while there was no headset";
+    const std::string why = connection_.headset() != nullptr ? headset().session.whyEnded() : "stopped while there was no headset";
     log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
 }
 
 bool Viewer::step() {
     for (const std::string& trouble : instance_.troubles().take()) { say(trouble); }
-    switch (stay().session.beginFrame()) {
+    switch (headset().session.beginFrame()) {
         case xr::FrameOutcome::kExit:
             return false;
         case xr::FrameOutcome::kWait:
@@ -80,11 +80,11 @@ bool Viewer::step() {
             return true;
         case xr::FrameOutcome::kRender:
             drawFrame();
-            headset_.showedFrame();
+            connection_.showedFrame();
             break;
         case xr::FrameOutcome::kSkip:
             drawWindowAlone("The headset is showing something else");
-            stay().session.endFrame({});
+            headset().session.endFrame({});
             break;
     }
     ++log_.frame;
@@ -93,32 +93,32 @@ bool Viewer::step() {
 
 void Viewer::leave() {
     if (std::exchange(leaving_, true)) { return; }
-    if (headset_.stay() != nullptr) { stay().session.requestExit(); }
+    if (connection_.headset() != nullptr) { headset().session.requestExit(); }
 }
 
-void Viewer::loseStay(const std::string& why) {
-    headset_.lose(why);
+void Viewer::loseHeadset(const std::string& why) {
+    connection_.lose(why);
     panel_.giveUp();
 }
 
 bool Viewer::comeBack() {
     if (leaving_) { return false; }
-    switch (headset_.search([this](const std::string& message) { say(message); })) {
-        case HeadsetLife::Search::kLater:
+    switch (connection_.search([this](const std::string& message) { say(message); })) {
+        case HeadsetConnection::Search::kLater:
             drawWindowAlone("The headset is unplugged: plug it in");
             std::this_thread::sleep_for(kIdle);
             break;
-        case HeadsetLife::Search::kNone:
+        case HeadsetConnection::Search::kNone:
             break;
-        case HeadsetLife::Search::kFound:
-            renderer_.fitImages(stay(), settings_);
+        case HeadsetConnection::Search::kFound:
+            renderer_.fitImages(headset(), settings_);
             break;
     }
     return true;
 }
 
 void Viewer::settle() {
-    xr::Session& session = stay().session;
+    xr::Session& session = headset().session;
     if (!session.settle(recentre_asked_)) { return; }
     recentre_asked_ = false;
     controls_.letGo();
@@ -130,31 +130,31 @@ void Viewer::settle() {
 
 void Viewer::drawFrame() {
     settle();
-    const std::optional<std::array<xr::EyeView, 2>> located = stay().session.locateEyes();
+    const std::optional<std::array<xr::EyeView, 2>> located = headset().session.locateEyes();
     if (!located) {
         drawWindowAlone("The headset cannot tell where it is");
-        stay().session.endFrame({});
+        headset().session.endFrame({});
         return;
     }
-    files_.obey();
+    files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
     FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
     room_from_head_ = views.room_from_head;
     const ViewSettings before = settings_;
-    const double step_seconds = stay().session.stepSeconds();
-    const WearerNow wearer{stay().input.read(), room_from_head_, stay().session.floorBelowMetres(), step_seconds};
+    const double step_seconds = headset().session.stepSeconds();
+    const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds};
     controls_.update(wearer, panel_.inRoom(), settings_, scenes_.scene_from_room);
     if (const double clear_deg = settings_.stereo.foveation_deg; clear_deg > 0.0) {
-        views.gazes = gaze_.update(stay().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+        views.gazes = gaze_.update(headset().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
     }
     if (const int step = controls_.viewpointStep(); step != 0) { goToViewpoint(step); }
     chooseThings(wearer, views);
-    obeyWindow(step_seconds);
-    if (const std::string complaint = stay().session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
+    takeWindowInput(step_seconds);
+    if (const std::string complaint = headset().session.askForRate(settings_.refresh_rate); !complaint.empty()) { say(complaint); }
     panel_.status().state.clear();
     panel_hangs_ = settings_.panel;
     if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
@@ -162,7 +162,7 @@ void Viewer::drawFrame() {
     const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
-        renderer_.render(stay(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        renderer_.render(headset(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         ++frames_of_scene_;
         if (picture_asked_) { takePicture(); }
     } else {
@@ -184,10 +184,10 @@ bool Viewer::prepareScene(const FrameViews& views) {
     if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(settings_.stereo.mode))); }
     drawn_ = drawable;
     try {
-        renderer_.govern(stay(), drawn_);
+        renderer_.govern(headset(), drawn_);
         ViewSettings wished = drawn_;
         if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
-        if (scene != nullptr) { renderer_.prepare(stay(), *scene, scenes_.scene_from_room, wished, views); }
+        if (scene != nullptr) { renderer_.prepare(headset(), *scene, scenes_.scene_from_room, wished, views); }
         settings_that_fit_ = drawn_;
         return true;
     } catch (const Error& error) {
@@ -196,40 +196,40 @@ bool Viewer::prepareScene(const FrameViews& views) {
         say(fmt::format("{} does not fit: {}", change, error.what()));
     }
     settings_ = drawn_ = *settings_that_fit_;
-    renderer_.govern(stay(), drawn_);
+    renderer_.govern(headset(), drawn_);
     return false;
 }
 
 void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     for (const int h : {kLeft, kRight}) {
-        if (panel_.inRoom().pulses(h)) { stay().input.pulse(h); }
+        if (panel_.inRoom().pulses(h)) { headset().input.pulse(h); }
     }
     vignette_.update(settings_.vignette && controls_.isMoving(), wearer.step_seconds);
     RoomSight sight;
     sight.eye = wearer.room_from_head.position;
     if (settings_.hands) { sight.hands = wearer.hands; }
-    sight.rays = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
-    sight.teleport = controls_.teleportAim();
+    sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
+    std::ranges::copy(thingsOf(controls_.teleportAim(), sight.eye), std::back_inserter(sight.things));
     sight.vignette_m = vignette_.widthMetres(views.eyes);
-    stay().things.choose(sight);
+    headset().things.choose(sight);
 }
 
 void Viewer::showFrame(const FrameViews& views) {
-    stay().images->release();
-    panel_.release(stay());
-    stay().things.release();
-    stay().session.seeThrough(renderer_.seesThrough(settings_));
+    headset().images->release();
+    panel_.release(headset());
+    headset().things.release();
+    headset().session.seeThrough(renderer_.seesThrough(settings_));
     submitFrame(views);
 }
 
 void Viewer::submitFrame(const FrameViews& views) {
     const auto submit = [&](bool with_things) {
-        xr::Layers layers(stay().session);
+        xr::Layers layers(headset().session);
         addEyes(layers, views);
-        if (with_things) { stay().things.addBehindPanel(layers); }
-        if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), stay().panel_images); }
-        if (with_things) { stay().things.addBeforePanel(layers); }
-        stay().session.endFrame(layers.list());
+        if (with_things) { headset().things.addBehindPanel(layers); }
+        if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), headset().panel_images); }
+        if (with_things) { headset().things.addBeforePanel(layers); }
+        headset().session.endFrame(layers.list());
     };
     std::string refusal;
     const auto isTaken = [&](bool with_things) {
@@ -241,14 +241,14 @@ void Viewer::submitFrame(const FrameViews& views) {
     };
     if (isTaken(true)) { return; }
     // What can be done without is left out, the cheaper first.
-    if (stay().things.areShown() && isTaken(false)) {
+    if (headset().things.areShown() && isTaken(false)) {
         instance_.troubles().add(refusal + "; on without hands, rays and the vignette");
-        stay().things.giveUp();
+        headset().things.giveUp();
         return;
     }
     if (std::exchange(takes_depth_, false)) {
         log_.say("the runtime refuses depth; on without depth");
-        renderer_.dropDepth(stay());
+        renderer_.dropDepth(headset());
     }
     submit(true);
 }
@@ -258,10 +258,10 @@ void Viewer::drawWindowAlone(const std::string& why) {
     if (!window_ || now - last_alone_ < kWindowAlone) { return; }
     const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
     last_alone_ = now;
-    files_.obey();
+    files_.deliver();
     if (scenes_.isNextReady()) { takeScene(); }
     const ViewSettings before = settings_;
-    obeyWindow(step_seconds);
+    takeWindowInput(step_seconds);
     panel_.status().state = why;
     layOutPanel(false, step_seconds);
     sayPicture(pictures_.takeOutcome());
@@ -298,12 +298,12 @@ void Viewer::onWindow(void (MirrorWindow::*act)()) {
 }
 
 void Viewer::renderWaiting() {
-    for (const int e : {kLeft, kRight}) { stay().images->acquire(e, false); }
+    for (const int e : {kLeft, kRight}) { headset().images->acquire(e, false); }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     const glm::vec4 colour = renderer_.seesThrough(settings_) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
-    for (const int e : {kLeft, kRight}) { stay().images->clear(commands_, e, colour); }
+    for (const int e : {kLeft, kRight}) { headset().images->clear(commands_, e, colour); }
     recordPanel(commands_);
     commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
     commands_.wait();
@@ -313,19 +313,19 @@ void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
     const auto layerEye = [&](int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
-        return stay().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
+        return headset().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
     layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(settings_));
 }
 
 void Viewer::layOutPanel(bool hung, double step_seconds) {
-    OverlayStatus& status = panel_.status();
+    PanelStatus& status = panel_.status();
     status.scene = scenes_.name();
     status.loading = scenes_.loading();
     status.rate = renderer_.rate();
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
-    if (headset_.stay() != nullptr) { status.refresh_rates = stay().refresh_rates; }
+    if (connection_.headset() != nullptr) { status.refresh_rates = headset().refresh_rates; }
     if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
     if (status.has_scene) {
         status.facts = describeFacts(scenes_.get()->facts, 1.0 / scenes_.scene_from_room.scale);
@@ -338,15 +338,17 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     if (status.files.empty() && scenes_.isMakingKernels()) {
         status.files = fmt::format("making ready: {}", nameOf(settings_.stereo.mode));
     }
-    obey(panel_.layOut(hung ? headset_.stay() : nullptr, window_input_, settings_, step_seconds));
+    followPanel(
+        panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, settings_, step_seconds));
 }
 
 void Viewer::recordPanel(Commands& commands) {
-    if (headset_.stay() != nullptr) { stay().things.record(commands); }
-    panel_.record(commands, headset_.stay(), window_.get());
+    if (connection_.headset() != nullptr) { headset().things.record(commands); }
+    panel_.record(commands, connection_.headset(), window_ != nullptr);
+    if (window_) { window_->record(commands); }
 }
 
-void Viewer::obeyWindow(double step_seconds) {
+void Viewer::takeWindowInput(double step_seconds) {
     if (!window_) { return; }
     window_input_ = window_->poll();
     if (window_input_.quit) { leave(); }
@@ -360,11 +362,11 @@ void Viewer::obeyWindow(double step_seconds) {
     scenes_.scene_from_room = movedByWindow(scenes_.scene_from_room, window_input_, room_from_head_, step_seconds);
 }
 
-void Viewer::obey(const OverlayActions& actions) {
+void Viewer::followPanel(const PanelRequests& actions) {
     if (actions.reload_shaders) { reloadShaders(); }
-    if (scenes_.get() != nullptr) { obeyPlace(actions); }
+    if (scenes_.get() != nullptr) { movePlace(actions); }
     recentre_asked_ = recentre_asked_ || actions.recentre;
-    obeyFiles(actions);
+    openAndSave(actions);
     if (actions.quit) { leave(); }
 }
 

@@ -1,13 +1,13 @@
 // The viewer's loop: what the wearer sees, frame by frame.
 #pragma once
 
-#include "app/view/headset/headset_life.h"
-#include "app/view/picture_pair.h"
+#include "app/view/files/picture_writer.h"
+#include "app/view/headset/headset_connection.h"
+#include "app/view/panel/panel.h"
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/scenes/shown_scene.h"
-#include "app/view/shown_panel.h"
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/wearer_controls.h"
 #include "app/view/window/mirror_window.h"
@@ -30,8 +30,8 @@ public:
 private:
     // One turn of the loop; false at its end.
     bool step();
-    [[nodiscard]] HeadsetStay& stay() const { return *headset_.stay(); }  // while there is one
-    void loseStay(const std::string& why);
+    [[nodiscard]] ConnectedHeadset& headset() const { return *connection_.headset(); }  // while there is one
+    void loseHeadset(const std::string& why);
     // Another session in place of one that was lost, if there is a headset; false at the end.
     bool comeBack();
     void drawFrame();
@@ -57,12 +57,12 @@ private:
     void addEyes(xr::Layers& layers, const FrameViews& views) const;
     // The widgets; takes an image for the panel where that is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
-    void obeyWindow(double step_seconds);
-    void obey(const OverlayActions& actions);
-    void obeyFiles(const OverlayActions& actions);
+    void takeWindowInput(double step_seconds);
+    void followPanel(const PanelRequests& actions);
+    void openAndSave(const PanelRequests& actions);
     // Where the wearer stands, in numbers, and moved from there.
     [[nodiscard]] ShownPlace shownPlace() const;
-    void obeyPlace(const OverlayActions& actions);
+    void movePlace(const PanelRequests& actions);
     void goToViewpoint(int step);
     void keepViewpointHere();
     void goBackToLastScene();
@@ -88,9 +88,9 @@ private:
     ViewSettings drawn_;                             // of this frame: those whose kernels are there
     std::optional<ViewSettings> settings_that_fit_;  // of the last frame there was memory for
     FrameLog log_;
-    HeadsetLife headset_;
+    HeadsetConnection connection_;
     SceneRenderer renderer_;
-    ShownPanel panel_;
+    Panel panel_;
     std::unique_ptr<MirrorWindow> window_;
     WindowInput window_input_;
     bool panel_hangs_ = false;  // in this frame

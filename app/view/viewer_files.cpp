@@ -1,7 +1,7 @@
 // What the viewer does with files: scenes, settings, pictures, shaders.
 #include "app/view/scenes/recent_scenes.h"
+#include "app/view/settings/view_files.h"
 #include "app/view/shader_reload.h"
-#include "app/view/view_files.h"
 #include "app/view/viewer.h"
 #include "engine/error.h"
 
@@ -32,7 +32,7 @@ void Viewer::remember(const std::string& complaint) {
     });
 }
 
-void Viewer::obeyFiles(const OverlayActions& actions) {
+void Viewer::openAndSave(const PanelRequests& actions) {
     if (actions.save) { save(); }
     if (actions.load) { load(); }
     if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step, files_); }

@@ -31,7 +31,7 @@ ShownPlace Viewer::shownPlace() const {
     return place;
 }
 
-void Viewer::obeyPlace(const OverlayActions& actions) {
+void Viewer::movePlace(const PanelRequests& actions) {
     LoadedScene& scene = *scenes_.get();
     Similarity& placement = scenes_.scene_from_room;
     if (actions.reset_scene) { placement = scene.start; }

@@ -18,14 +18,14 @@ namespace binosplat {
 
 namespace {
 
-void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the overlay cannot be drawn: {}", vk::to_string(vk::Result(result))); }
+void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the panel cannot be drawn: {}", vk::to_string(vk::Result(result))); }
 
 }  // namespace
 
 Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : context_(context), size_px_(size_px) {
     const auto families = context.physicalDevice().getQueueFamilyProperties();
     if (!(families[context.queueFamily()].queueFlags & vk::QueueFlagBits::eGraphics)) {
-        throw Error(ExitCode::kNoDevice, fmt::format("{}: the overlay needs a queue that draws", context.deviceName()));
+        throw Error(ExitCode::kNoDevice, fmt::format("{}: the panel needs a queue that draws", context.deviceName()));
     }
     const TexelLayout layout = texelLayoutOf(format);
     const vk::Format raw = layout.blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
@@ -100,7 +100,7 @@ void Canvas::startBackend() {
         const Context& my = *static_cast<const Context*>(context);
         return my.instance().getDispatcher()->vkGetInstanceProcAddr(*my.instance(), name);
     };
-    check(ImGui_ImplVulkan_LoadFunctions(find, const_cast<Context*>(&context_)), "the overlay cannot be drawn: Vulkan lacks a function");
+    check(ImGui_ImplVulkan_LoadFunctions(find, const_cast<Context*>(&context_)), "the panel cannot be drawn: Vulkan lacks a function");
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = *context_.instance();
     info.PhysicalDevice = *context_.physicalDevice();
@@ -138,7 +138,7 @@ void Canvas::takeLetters() {
     draw_list_.clear();  // letters may have moved
 }
 
-void Canvas::begin(const CanvasPointer& pointer, double step_seconds) {
+void Canvas::begin(const PanelPointer& pointer, double step_seconds) {
     ImGuiIO& io = ImGui::GetIO();
     constexpr float kNowhere = -std::numeric_limits<float>::max();
     io.MousePos = pointer.place_px ? ImVec2(static_cast<float>(pointer.place_px->x), static_cast<float>(pointer.place_px->y))

@@ -2,6 +2,7 @@
 // and a window, show them as they are.
 #pragma once
 
+#include "app/view/room/panel_pointer.h"
 #include "app/view/scenes/seen_scenes.h"
 #include "engine/gpu/commands.h"
 
@@ -9,7 +10,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,13 +18,6 @@ namespace binosplat {
 
 class PanelFont;
 struct PictureCorners;
-
-// What points at the canvas.
-struct CanvasPointer {
-    std::optional<glm::dvec2> place_px;  // empty: nowhere near
-    bool pressed = false;
-    double wheel = 0.0;
-};
 
 // One at a time: ImGui has one current context. Throws Error (exit code 3) where the queue cannot draw.
 class Canvas {
@@ -42,7 +35,7 @@ public:
     [[nodiscard]] const std::map<std::string, PictureCorners>& pictures() const;
     void takeLetters();
     // Widgets are drawn between this and end() or giveUp().
-    void begin(const CanvasPointer& pointer, double step_seconds);
+    void begin(const PanelPointer& pointer, double step_seconds);
     void end();
     // Nothing comes of the widgets, or of what was recorded last.
     void giveUp();

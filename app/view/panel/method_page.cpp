@@ -3,7 +3,7 @@
 #include "app/report/report.h"
 #include "app/view/panel/panel_pages.h"
 #include "app/view/panel/panel_style.h"
-#include "app/view/view_settings_table.h"
+#include "app/view/settings/view_settings_table.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -98,7 +98,7 @@ void drawResolution(PanelWidgets& widgets, ViewSettings& settings) {
 
 void drawQuality(PanelWidgets& widgets, ViewSettings& settings) { choose(widgets, "Frame rate", *findViewRow("quality"), settings, 4); }
 
-void drawTimes(const OverlayStatus& status) {
+void drawTimes(const PanelStatus& status) {
     const std::vector<float>& times = status.frame_ms;
     const float last = times.empty() ? 0.0f : times.back();
     const std::string label = last > 0.0f ? fmt::format("{:.1f} ms, {:.0f} frames/s", last, 1000.0f / last) : "";
@@ -125,7 +125,7 @@ void drawTimes(const OverlayStatus& status) {
                           static_cast<double>(splats) / 1000.0));
 }
 
-void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, OverlayActions& actions) {
+void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, PanelRequests& actions) {
     widgets.checkbox("Show how tiles were made", &settings.tint);
     ImGui::SameLine(0.5f * ImGui::GetContentRegionAvail().x);
     actions.save = widgets.button("Save");
@@ -137,7 +137,7 @@ void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_sh
 }
 
 // What is known of the scene, and the time of each pass.
-void drawFacts(const OverlayStatus& status) {
+void drawFacts(const PanelStatus& status) {
     const float width = ImGui::GetContentRegionAvail().x;
     for (const auto& [name, value] : status.facts) {
         writeLine(name);
@@ -166,7 +166,7 @@ void drawStages(const FrameResult& frame) {
 
 }  // namespace
 
-void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
     drawMethod(widgets, settings, status.usual_order);
     drawResolution(widgets, settings);

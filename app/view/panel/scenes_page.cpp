@@ -47,7 +47,7 @@ void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces
     ImGui::GetWindowDrawList()->AddImage(ImGui::GetIO().Fonts->TexID, at, ImVec2(at.x + width, at.y + height), corners.low, corners.high);
 }
 
-void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, OverlayActions& actions) {
+void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, PanelRequests& actions) {
     // As many lines as there may be entries, so that what is below stays where it is.
     const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
@@ -70,7 +70,7 @@ void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlac
     ImGui::EndChild();
 }
 
-void drawViewpoints(PanelWidgets& widgets, const OverlayStatus& status, OverlayActions& actions) {
+void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& actions) {
     static constexpr std::array kSteps{"Previous viewpoint", "Next viewpoint", "Keep this one"};
     if (const auto pressed = widgets.row(kSteps, {}, kTabPx)) {
         actions.viewpoint_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
@@ -85,7 +85,7 @@ void drawViewpoints(PanelWidgets& widgets, const OverlayStatus& status, OverlayA
 
 }  // namespace
 
-void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const OverlayStatus& status, OverlayActions& actions) {
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& actions) {
     drawPlaces(widgets, chooser);
     drawEntries(widgets, chooser, status.pictures, actions);
     static constexpr std::array kScenes{"Previous scene", "Next scene", "Last shown"};

@@ -61,7 +61,7 @@ std::string describeHeight(const ShownPlace& place) {
     return std::abs(place.eyes_m) < 0.005 ? "Height as at the start" : fmt::format("Height {:+.2f} m", place.eyes_m);
 }
 
-void drawPlace(PanelWidgets& widgets, const ShownPlace& place, OverlayActions& actions) {
+void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& actions) {
     static constexpr std::array kPlaces{"Recentre", "Level", "Reset"}, kSizes{"Smaller", "1:1", "Larger"};
     static constexpr std::array kHeights{"Lower", "Higher"};
     if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
@@ -126,7 +126,7 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
 
 }  // namespace
 
-void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const OverlayStatus& status, OverlayActions& actions) {
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions) {
     drawQualityRow(widgets, settings, status.rate);
     drawPlace(widgets, status.place, actions);
     drawMoving(widgets, settings, status.can_pass_through);

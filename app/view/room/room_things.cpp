@@ -9,7 +9,6 @@ namespace binosplat {
 
 namespace {
 
-constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 // A controller of no particular make: a handle in the fist, and a knob before it.
 constexpr double kHandleWidthMetres = 0.035, kHandleBehindMetres = 0.07, kHandleAheadMetres = 0.045, kKnobMetres = 0.055;
 
@@ -53,10 +52,6 @@ void RoomThings::add(Sprite sprite, const Strip& strip) {
     quads_.push_back({strip.room_from_strip, strip.size_m, &sheet_, place.from_px, place.size_px});
 }
 
-void RoomThings::add(Sprite sprite, const std::optional<Strip>& strip) {
-    if (strip) { add(sprite, *strip); }
-}
-
 void RoomThings::choose(const RoomSight& sight) {
     quads_.clear();
     vignette_.reset();
@@ -70,12 +65,7 @@ void RoomThings::choose(const RoomSight& sight) {
                                   true};
     }
     for (std::size_t h = 0; sight.hands && h < 2; ++h) { chooseHand((*sight.hands)[h], hands_[h], sight.eye); }
-    for (const OverlayPanel::Ray& ray : sight.rays) { add(ray.fades ? Sprite::kFadingRay : Sprite::kRay, ray.strip); }
-    const std::vector<glm::dvec3>& arc = sight.teleport.arc;
-    for (std::size_t i = 0; i + 1 < arc.size(); ++i) { add(Sprite::kRay, stripBetween(arc[i], arc[i + 1], kArcWidthMetres, sight.eye)); }
-    if (sight.teleport.target) {
-        add(Sprite::kTarget, lying(*sight.teleport.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres));
-    }
+    for (const Thing& thing : sight.things) { add(thing.sprite, thing.strip); }
 }
 
 void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye) {
@@ -94,7 +84,7 @@ void RoomThings::chooseHand(const xr::Hand& hand, HandImage& image, const glm::d
         // The farther one first.
         const bool knob_is_behind = glm::distance(along(kHandleAheadMetres), eye) > glm::distance(along(-kHandleBehindMetres), eye);
         if (knob_is_behind) { add(Sprite::kKnob, knob); }
-        add(Sprite::kHandle, handle);
+        if (handle) { add(Sprite::kHandle, *handle); }
         if (!knob_is_behind) { add(Sprite::kKnob, knob); }
     }
 }

@@ -2,9 +2,8 @@
 // their own, which the runtime blends over the scene: no frame of ours takes longer for them.
 #pragma once
 
-#include "app/view/panel/overlay_panel.h"
 #include "app/view/room/hand_picture.h"
-#include "app/view/wearer/teleport.h"
+#include "app/view/room/thing.h"
 #include "engine/gpu/commands.h"
 #include "xr/input.h"
 #include "xr/layers.h"
@@ -15,9 +14,8 @@ namespace binosplat {
 struct RoomSight {
     glm::dvec3 eye{0.0};                           // the middle between the wearer's
     std::optional<std::array<xr::Hand, 2>> hands;  // absent: not to be drawn
-    std::vector<OverlayPanel::Ray> rays;
-    TeleportAim teleport;              // empty: nobody aims
-    std::optional<double> vignette_m;  // how wide
+    std::vector<Thing> things;                     // rays and what else there is
+    std::optional<double> vignette_m;              // how wide
 };
 
 // At most so many layers, of 16 that every runtime takes: the vignette, two parts of each controller, a ray, the arc and its end.
@@ -50,7 +48,6 @@ private:
     void makeSheet(const xr::Session& session, const Context& context, vk::Format format);
     void chooseHand(const xr::Hand& hand, HandImage& image, const glm::dvec3& eye);
     void add(Sprite sprite, const Strip& strip);
-    void add(Sprite sprite, const std::optional<Strip>& strip);
 
     xr::Troubles& troubles_;
     TexelLayout layout_;

@@ -1,7 +1,7 @@
 // How far the vignette is closed.
 #include "app/view/room/vignette.h"
 
-#include "app/view/wearer/view_eyes.h"
+#include "app/view/placement/view_eyes.h"
 #include "xr/convert.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // A text file with a path in each line.
 #include "app/view/scenes/recent_scenes.h"
 
-#include "app/view/view_files.h"
+#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/address.h"
 #include "engine/scene/procedural.h"

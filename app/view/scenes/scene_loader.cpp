@@ -4,7 +4,7 @@
 #include "app/load.h"
 #include "app/options/start_view.h"
 #include "app/view/scenes/scene_up.h"
-#include "app/view/view_files.h"
+#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "engine/scene/address.h"
 #include "engine/scene/procedural.h"

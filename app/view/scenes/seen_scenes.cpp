@@ -1,7 +1,7 @@
 // A PNG and a line of text for each scene.
 #include "app/view/scenes/seen_scenes.h"
 
-#include "app/view/view_files.h"
+#include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
 #include "engine/setup/output_files.h"

@@ -1,10 +1,10 @@
 // The scene that is shown, where the wearer stands in it, and the one on its way to take its place.
 #pragma once
 
-#include "app/view/file_worker.h"
-#include "app/view/frame_log.h"
+#include "app/terminal/frame_log.h"
+#include "app/view/files/file_worker.h"
 #include "app/view/scenes/scene_loader.h"
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 
 #include <map>
 #include <memory>

@@ -8,6 +8,7 @@ namespace binosplat {
 namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
+constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
 
 }  // namespace
 
@@ -26,6 +27,15 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
     }
     aim.target = aim.arc.back();
     return aim;
+}
+
+std::vector<Thing> thingsOf(const TeleportAim& aim, const glm::dvec3& eye) {
+    std::vector<Thing> things;
+    for (std::size_t i = 0; i + 1 < aim.arc.size(); ++i) {
+        if (const auto strip = stripBetween(aim.arc[i], aim.arc[i + 1], kArcWidthMetres, eye)) { things.push_back({Sprite::kRay, *strip}); }
+    }
+    if (aim.target) { things.push_back({Sprite::kTarget, lying(*aim.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
+    return things;
 }
 
 }  // namespace binosplat

@@ -1,7 +1,7 @@
 // Where a wearer who points at the floor will stand. Room axes: x right, y down, z forward; metres.
 #pragma once
 
-#include "engine/geometry.h"
+#include "app/view/room/thing.h"
 
 #include <optional>
 #include <vector>
@@ -17,5 +17,8 @@ constexpr std::size_t kTeleportStrips = 6;
 // What is thrown from the hand along its aim falls there: the higher one points, the farther, up to some six metres. The floor's y is
 // `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
+
+// The arc and its end, as `eye` sees them.
+std::vector<Thing> thingsOf(const TeleportAim& aim, const glm::dvec3& eye);
 
 }  // namespace binosplat

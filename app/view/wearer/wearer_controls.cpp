@@ -24,7 +24,7 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 
 }  // namespace
 
-void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSettings& settings, Similarity& scene_from_room) {
+void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewSettings& settings, Similarity& scene_from_room) {
     const bool menu = now.hands[kLeft].menu || now.hands[kRight].menu;
     if (menu && !menu_) {
         settings.panel = !settings.panel;
@@ -49,7 +49,7 @@ void WearerControls::update(const WearerNow& now, OverlayPanel& panel, ViewSetti
     hold(now, panel, settings.tilt, scene_from_room);
 }
 
-void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool teleports, Similarity& scene_from_room) {
+void WearerControls::walk(const WearerNow& now, const PanelInRoom& panel, bool teleports, Similarity& scene_from_room) {
     const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
     const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
@@ -61,7 +61,7 @@ void WearerControls::walk(const WearerNow& now, const OverlayPanel& panel, bool 
     if (moves_) { scene_from_room = movedBy(scene_from_room, now.step_seconds * step_m); }
 }
 
-void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, Similarity& scene_from_room) {
+void WearerControls::teleport(const WearerNow& now, const PanelInRoom& panel, Similarity& scene_from_room) {
     const auto aims = [&](int h) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
         // Who aims may pass over the panel.
@@ -85,7 +85,7 @@ void WearerControls::teleport(const WearerNow& now, const OverlayPanel& panel, S
     if (aiming_) { teleport_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
 }
 
-void WearerControls::turn(const WearerNow& now, const OverlayPanel& panel, bool smoothly, Similarity& scene_from_room) {
+void WearerControls::turn(const WearerNow& now, const PanelInRoom& panel, bool smoothly, Similarity& scene_from_room) {
     const glm::dvec2& stick = now.hands[kRight].stick;
     const double turn = dominantAxis(stick).x;
     if (smoothly) {
@@ -104,7 +104,7 @@ void WearerControls::turn(const WearerNow& now, const OverlayPanel& panel, bool 
     }
 }
 
-void WearerControls::hold(const WearerNow& now, const OverlayPanel& panel, bool may_tilt, Similarity& scene_from_room) {
+void WearerControls::hold(const WearerNow& now, const PanelInRoom& panel, bool may_tilt, Similarity& scene_from_room) {
     std::array<std::optional<glm::dvec3>, 2> holding;
     for (const int h : {kLeft, kRight}) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];

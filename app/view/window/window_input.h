@@ -1,8 +1,8 @@
 // Mouse and keyboard of the window.
 #pragma once
 
-#include "app/view/panel/canvas.h"
-#include "app/view/wearer/placement.h"
+#include "app/view/placement/placement.h"
+#include "app/view/room/panel_pointer.h"
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace binosplat {
 
 // What came from mouse and keyboard since the last time.
 struct WindowInput {
-    CanvasPointer pointer;     // on the panel
+    PanelPointer pointer;      // on the panel
     bool uses_panel = false;   // the mouse was moved, pressed, let go or turned there
     glm::dvec3 walk{0.0};      // right, down, forward; -1 to 1
     double turn_rad = 0.0;     // to the right

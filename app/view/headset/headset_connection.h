@@ -1,7 +1,7 @@
 // A headset's sessions, one after the other: a lost one is followed by the next, once there is a headset.
 #pragma once
 
-#include "app/view/headset/headset_stay.h"
+#include "app/view/headset/connected_headset.h"
 #include "app/view/headset/losses.h"
 
 #include <chrono>
@@ -11,16 +11,16 @@
 
 namespace binosplat {
 
-class HeadsetLife {
+class HeadsetConnection {
 public:
     using Say = std::function<void(const std::string&)>;
 
     // Begins the first one; where that is lost before it is there, waits for the next as ever. `instance` and `context` outlive this;
     // `panel_px` is the size of the panel's picture. Throws Interrupted as it waits, and what search() throws.
-    HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
+    HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say);
 
     // The present one; null while there is none.
-    [[nodiscard]] HeadsetStay* stay() const { return stay_.get(); }
+    [[nodiscard]] ConnectedHeadset* headset() const { return headset_.get(); }
     // Of every session's images.
     [[nodiscard]] vk::Format format() const { return format_; }
 
@@ -40,7 +40,7 @@ private:
     xr::Instance& instance_;
     const Context& context_;
     glm::uvec2 panel_px_;
-    std::unique_ptr<HeadsetStay> stay_;
+    std::unique_ptr<ConnectedHeadset> headset_;
     vk::Format format_ = vk::Format::eUndefined;
     Losses losses_;     // since a frame was shown
     int failures_ = 0;  // of sessions that were to come after it, in a row

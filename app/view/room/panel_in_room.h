@@ -1,8 +1,8 @@
 // The panel as a thing in the room: where it hangs, who points at it, who carries it. Room axes: x right, y down, z forward; metres.
 #pragma once
 
-#include "app/view/panel/canvas.h"
-#include "app/view/room/strips.h"
+#include "app/view/room/panel_pointer.h"
+#include "app/view/room/thing.h"
 #include "xr/input.h"
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace binosplat {
 
-class OverlayPanel {
+class PanelInRoom {
 public:
     // A canvas of `size_px`, `width_m` wide.
-    OverlayPanel(glm::uvec2 size_px, double width_m);
+    PanelInRoom(glm::uvec2 size_px, double width_m);
 
     // Follows the hands while it is `shown`. Both may point; the one that clicked last is the pointer, as long as it meets the panel. A
     // hand that squeezes while it points carries the panel until it lets go.
@@ -24,7 +24,7 @@ public:
 
     [[nodiscard]] const Pose& roomFromPanel() const { return room_from_panel_; }
     [[nodiscard]] glm::dvec2 sizeMetres() const { return size_m_; }
-    [[nodiscard]] const CanvasPointer& pointer() const { return pointer_; }
+    [[nodiscard]] const PanelPointer& pointer() const { return pointer_; }
     // Whether this hand is the pointer.
     [[nodiscard]] bool isPointedAtBy(int hand) const { return pointing_hand_ == hand; }
     // Whether this hand has just met the panel or clicked on it.
@@ -34,13 +34,9 @@ public:
     // Whether the squeeze of this hand is the panel's business.
     [[nodiscard]] bool isCarriedBy(int hand) const { return carrier_ == hand; }
 
-    // A ray that is drawn: to the panel; or, where it misses that, a little way, and then it fades.
-    struct Ray {
-        Strip strip;
-        bool fades;
-    };
-    // Of each hand that points, while the panel is shown or its trigger is pulled; but of `without`.
-    [[nodiscard]] std::vector<Ray> rays(const glm::dvec3& eye, std::optional<int> without) const;
+    // Of each hand that points, while the panel is shown or its trigger is pulled, but of `without`: to the panel; or, where it misses
+    // that, a little way, and then it fades.
+    [[nodiscard]] std::vector<Thing> rays(const glm::dvec3& eye, std::optional<int> without) const;
 
 private:
     // Where on the canvas and how far along the ray; empty if it misses.
@@ -61,7 +57,7 @@ private:
 
     glm::dvec2 size_px_, size_m_;
     Pose room_from_panel_;
-    CanvasPointer pointer_;
+    PanelPointer pointer_;
     std::array<HandNow, 2> hands_;
     int clicked_last_ = kRight;
     std::optional<int> pointing_hand_, carrier_;

@@ -1,9 +1,9 @@
 // A session and its images.
-#include "app/view/headset/headset_stay.h"
+#include "app/view/headset/connected_headset.h"
 
 namespace binosplat {
 
-HeadsetStay::HeadsetStay(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
+ConnectedHeadset::ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
     : session(instance, context),
       format(chooseEyeFormat(session)),
       refresh_rates(session.refreshRates()),

@@ -1,5 +1,5 @@
 // A queue and its thread.
-#include "app/view/file_worker.h"
+#include "app/view/files/file_worker.h"
 
 #include <algorithm>
 #include <exception>
@@ -58,7 +58,7 @@ std::string FileWorker::now() const {
     return tasks_.empty() ? std::string() : tasks_.front().what;
 }
 
-void FileWorker::obey() {
+void FileWorker::deliver() {
     std::vector<Done> done;
     {
         const std::lock_guard lock(mutex_);
@@ -75,7 +75,7 @@ void FileWorker::finish() {
         dropReading();
         changed_.wait(lock, [this] { return tasks_.empty(); });
     }
-    obey();
+    deliver();
 }
 
 }  // namespace binosplat

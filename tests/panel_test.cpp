@@ -2,7 +2,7 @@
 #include "app/options/option_table.h"
 #include "app/view/panel/shown_text.h"
 #include "app/view/scenes/recent_scenes.h"
-#include "app/view/view_settings_table.h"
+#include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/platform.h"
 #include "tests/panel_sketch.h"
@@ -17,7 +17,7 @@
 #include <fstream>
 #include <iterator>
 
-TEST_SUITE_BEGIN("overlay");
+TEST_SUITE_BEGIN("panel");
 
 namespace fs = std::filesystem;
 using namespace binosplat;
@@ -38,7 +38,7 @@ TEST_CASE("every widget lies on the panel, none on another, on each page") {
         if (shaders) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
         for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
             sketch.settings.page = page;
-            sketch.pages.chooser.showFolder(kBuiltinFolder);
+            sketch.chooser.showFolder(kBuiltinFolder);
             const WidgetPlaces places = sketch.draw().places;
             CHECK(places.size() >= 4);
             for (const auto& [name, place] : places) {
@@ -65,7 +65,7 @@ TEST_CASE("what one points at is 1.5 degrees high at least, and what is used mos
     };
     for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
         sketch.settings.page = page;
-        sketch.pages.chooser.showFolder(kBuiltinFolder);
+        sketch.chooser.showFolder(kBuiltinFolder);
         const WidgetPlaces places = sketch.draw().places;
         for (const auto& [name, place] : places) {
             const ImGuiID id = hoveredAt(place, 0.0);
@@ -146,7 +146,7 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
         double growth = 1.0, rise_m = 0.0;
         sketch.draw(&place);
         for (int frame = 0; frame < 100; ++frame) {
-            const OverlayActions actions = sketch.draw(&place, true);
+            const PanelRequests actions = sketch.draw(&place, true);
             times += actions.growth != 1.0 || actions.rise_m != 0.0;
             growth *= actions.growth;
             rise_m += actions.rise_m;
@@ -226,37 +226,37 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     sketch.status.scene = (work.path / "a##b.ply").string();
     // The page opens where the scene that is shown lies.
     sketch.click("Scenes");
-    CHECK(sketch.pages.chooser.list().title == work.path.string());
+    CHECK(sketch.chooser.list().title == work.path.string());
     CHECK(sketch.click("gone.ply").chosen_scene.empty());
     CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
     CHECK(sketch.click("inner/").chosen_scene.empty());
-    CHECK(sketch.pages.chooser.list().title == (work.path / "inner").string());
-    CHECK(sketch.pages.chooser.pageCount() == 2);
+    CHECK(sketch.chooser.list().title == (work.path / "inner").string());
+    CHECK(sketch.chooser.pageCount() == 2);
     CHECK_FALSE(sketch.draw().places.contains("room11.ply"));
     sketch.click(">");
     sketch.click(">");
-    CHECK(sketch.pages.chooser.page() == 1);
+    CHECK(sketch.chooser.page() == 1);
     CHECK(sketch.click("room11.ply").chosen_scene == (work.path / "inner" / "room11.ply").string());
     sketch.click("<");
     CHECK(sketch.click("room0.ply").chosen_scene == (work.path / "inner" / "room0.ply").string());
     sketch.click("Up");
-    CHECK(sketch.pages.chooser.list().title == work.path.string());
+    CHECK(sketch.chooser.list().title == work.path.string());
     sketch.click("Built-in");
     CHECK(sketch.click("fence").chosen_scene == "builtin:fence");
     sketch.click("Up");  // there is none above
-    CHECK(sketch.pages.chooser.list().title == "Built-in scenes");
+    CHECK(sketch.chooser.list().title == "Built-in scenes");
     sketch.click("Recent");
-    CHECK(sketch.pages.chooser.list().entries.empty());
+    CHECK(sketch.chooser.list().entries.empty());
     rememberScene((work.path / "a##b.ply").string());
     sketch.click("Recent");
     CHECK(sketch.click("a##b.ply").chosen_scene == (work.path / "a##b.ply").string());
     const std::string home = environment("HOME");
     setenv("HOME", work.base.c_str(), 1);
     sketch.click("Home");
-    CHECK(sketch.pages.chooser.list().title == work.base.string());
+    CHECK(sketch.chooser.list().title == work.base.string());
     setenv("HOME", home.c_str(), 1);
     // A file that came meanwhile is there when the page is opened again.
-    sketch.pages.chooser.showFolder(work.path.string());
+    sketch.chooser.showFolder(work.path.string());
     write(work.path / "new.ply");
     sketch.click("Scenes");
     CHECK(sketch.draw().places.contains("new.ply"));
@@ -269,7 +269,7 @@ TEST_CASE("no folder is read while the panel is drawn: it says that it reads unt
     write(work.path / "inner" / "a.ply");
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
-    SceneChooser& chooser = sketch.pages.chooser;
+    SceneChooser& chooser = sketch.chooser;
     chooser.showFolder(work.path.string());
     const std::optional<SceneListWish> first = chooser.takeWish();
     REQUIRE(first.has_value());
@@ -318,7 +318,7 @@ TEST_CASE("names of any bytes and of any length are shown, and a long message is
     }
     PanelSketch sketch;
     sketch.settings.page = Page::kScenes;
-    sketch.pages.chooser.showFolder(work.path.string());
+    sketch.chooser.showFolder(work.path.string());
     CHECK(sketch.draw().places.size() == 16 + 2 * 5);
     CHECK(sketch.click(longest).chosen_scene == (work.path / longest).string());
     CHECK(asShown("a\nb\x1b[1m\x7f") ==

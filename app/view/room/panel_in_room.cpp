@@ -1,5 +1,5 @@
 // Rays against the panel.
-#include "app/view/panel/overlay_panel.h"
+#include "app/view/room/panel_in_room.h"
 
 #include <cmath>
 
@@ -15,12 +15,12 @@ const glm::dvec3 kUp(0.0, -1.0, 0.0);
 
 }  // namespace
 
-OverlayPanel::OverlayPanel(glm::uvec2 size_px, double width_m)
+PanelInRoom::PanelInRoom(glm::uvec2 size_px, double width_m)
     : size_px_(size_px), size_m_(width_m, width_m * static_cast<double>(size_px.y) / static_cast<double>(size_px.x)) {
     hangBefore({});
 }
 
-void OverlayPanel::hangBefore(const Pose& room_from_head) {
+void PanelInRoom::hangBefore(const Pose& room_from_head) {
     const glm::dvec3 forward = room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0);
     const glm::dvec3 level(forward.x, 0.0, forward.z);
     const glm::dvec3 ahead = glm::length(level) > 1e-6 ? level : glm::dvec3(0.0, 0.0, 1.0);
@@ -29,7 +29,7 @@ void OverlayPanel::hangBefore(const Pose& room_from_head) {
     room_from_panel_ = lookAt(place, place + (place - room_from_head.position), kUp);
 }
 
-std::optional<OverlayPanel::Hit> OverlayPanel::meet(const Pose& room_from_aim) const {
+std::optional<PanelInRoom::Hit> PanelInRoom::meet(const Pose& room_from_aim) const {
     const Pose panel_from_aim = compose(inverse(room_from_panel_), room_from_aim);
     const glm::dvec3 direction = panel_from_aim.orientation * glm::dvec3(0.0, 0.0, 1.0), &from = panel_from_aim.position;
     if (direction.z < 1e-3 || from.z >= 0.0) { return std::nullopt; }  // from behind, or alongside
@@ -39,7 +39,7 @@ std::optional<OverlayPanel::Hit> OverlayPanel::meet(const Pose& room_from_aim) c
     return Hit{share * size_px_, distance};
 }
 
-void OverlayPanel::carry(const std::array<xr::Hand, 2>& hands) {
+void PanelInRoom::carry(const std::array<xr::Hand, 2>& hands) {
     if (!carrier_) { return; }
     const xr::Hand& hand = hands[static_cast<std::size_t>(*carrier_)];
     if (hand.grabs && hand.aim) {
@@ -49,7 +49,7 @@ void OverlayPanel::carry(const std::array<xr::Hand, 2>& hands) {
     }
 }
 
-void OverlayPanel::follow(const xr::Hand& hand, int h, bool shown) {
+void PanelInRoom::follow(const xr::Hand& hand, int h, bool shown) {
     HandNow& now = hands_[static_cast<std::size_t>(h)];
     const HandNow before = now;
     now = {};
@@ -68,7 +68,7 @@ void OverlayPanel::follow(const xr::Hand& hand, int h, bool shown) {
     }
 }
 
-void OverlayPanel::update(const std::array<xr::Hand, 2>& hands, bool shown) {
+void PanelInRoom::update(const std::array<xr::Hand, 2>& hands, bool shown) {
     if (shown) {
         carry(hands);
     } else {
@@ -84,14 +84,16 @@ void OverlayPanel::update(const std::array<xr::Hand, 2>& hands, bool shown) {
     pointer_ = {of(pointer).hit->place_px, of(pointer).clicks_here, std::abs(scroll) > kScrolls ? 0.2 * scroll : 0.0};
 }
 
-std::vector<OverlayPanel::Ray> OverlayPanel::rays(const glm::dvec3& eye, std::optional<int> without) const {
-    std::vector<Ray> rays;
+std::vector<Thing> PanelInRoom::rays(const glm::dvec3& eye, std::optional<int> without) const {
+    std::vector<Thing> rays;
     for (const int h : {kLeft, kRight}) {
         const HandNow& hand = of(h);
         if (!hand.aim || without == h) { continue; }
         const double length_m = hand.hit ? hand.hit->distance_m : kFadingRayMetres;
         const glm::dvec3 end = transform(*hand.aim, glm::dvec3(0.0, 0.0, length_m));
-        if (const auto strip = stripBetween(hand.aim->position, end, kRayWidthMetres, eye)) { rays.push_back({*strip, !hand.hit}); }
+        if (const auto strip = stripBetween(hand.aim->position, end, kRayWidthMetres, eye)) {
+            rays.push_back({hand.hit ? Sprite::kRay : Sprite::kFadingRay, *strip});
+        }
     }
     return rays;
 }

@@ -1,7 +1,7 @@
 // Where the viewer keeps what the wearer sets, and what becomes of it.
 #pragma once
 
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 
 #include <filesystem>
 #include <optional>

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-TEST_SUITE_BEGIN("view_overlay");
+TEST_SUITE_BEGIN("view_panel");
 
 using namespace binosplat;
 using namespace binosplat::test;

@@ -1,7 +1,7 @@
 // The next session.
-#include "app/view/headset/headset_life.h"
+#include "app/view/headset/headset_connection.h"
 
-#include "app/interrupt.h"
+#include "app/terminal/interrupt.h"
 #include "engine/error.h"
 
 #include <mutex>
@@ -20,24 +20,24 @@ constexpr std::chrono::milliseconds kBetweenFailures(1000);
 
 }  // namespace
 
-HeadsetLife::HeadsetLife(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say)
+HeadsetConnection::HeadsetConnection(xr::Instance& instance, const Context& context, glm::uvec2 panel_px, const Say& say)
     : instance_(instance), context_(context), panel_px_(panel_px) {
     const auto tryTo = [this](const auto& begin) {
         try {
             begin();
         } catch (const xr::Lost& lost) { lose(lost.what()); }
     };
-    tryTo([&] { stay_ = std::make_unique<HeadsetStay>(instance_, context_, panel_px_); });
-    while (!stay_) {
+    tryTo([&] { headset_ = std::make_unique<ConnectedHeadset>(instance_, context_, panel_px_); });
+    while (!headset_) {
         stopIfInterrupted();
         tryTo([&] {
             if (search(say) == Search::kLater) { std::this_thread::sleep_for(kPause); }
         });
     }
-    format_ = stay_->format;
+    format_ = headset_->format;
 }
 
-void HeadsetLife::lose(const std::string& why) {
+void HeadsetConnection::lose(const std::string& why) {
     if (!losses_.add(std::chrono::steady_clock::now())) {
         throw Error(ExitCode::kNoDevice, fmt::format("{}: {} times in a row before a frame was shown", why, losses_.count()));
     }
@@ -48,10 +48,10 @@ void HeadsetLife::lose(const std::string& why) {
         const std::lock_guard lock(context_.queueMutex());
         context_.queue().waitIdle();
     }
-    stay_.reset();
+    headset_.reset();
 }
 
-HeadsetLife::Search HeadsetLife::search(const Say& say) {
+HeadsetConnection::Search HeadsetConnection::search(const Say& say) {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_search_) { return Search::kLater; }
     next_search_ = now + kBetweenSearches;
@@ -61,7 +61,7 @@ HeadsetLife::Search HeadsetLife::search(const Say& say) {
     }
     say(is_gone_ ? "the headset is there again; a new session begins" : why_lost_ + "; another one begins");
     try {
-        stay_ = std::make_unique<HeadsetStay>(instance_, context_, panel_px_);
+        headset_ = std::make_unique<ConnectedHeadset>(instance_, context_, panel_px_);
         failures_ = 0;
     } catch (const Error& error) {
         // It was found, but is not awake yet.
@@ -70,7 +70,7 @@ HeadsetLife::Search HeadsetLife::search(const Say& say) {
         next_search_ = now + kBetweenFailures;
         return Search::kNone;
     }
-    if (format_ != vk::Format::eUndefined && stay_->format != format_) {
+    if (format_ != vk::Format::eUndefined && headset_->format != format_) {
         throw Error(ExitCode::kNoDevice, why_lost_ + ": the next one has other formats of images");
     }
     return Search::kFound;

@@ -3,7 +3,7 @@
 
 #include "app/options/options.h"
 #include "app/view/governor/governor.h"
-#include "app/view/wearer/placement.h"
+#include "engine/similarity.h"
 
 #include <optional>
 #include <string>

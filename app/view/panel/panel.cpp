@@ -1,5 +1,5 @@
 // The panel in a frame.
-#include "app/view/shown_panel.h"
+#include "app/view/panel/panel.h"
 
 #include "app/view/panel/panel_style.h"
 
@@ -15,10 +15,9 @@ constexpr double kTimesSeconds = 0.25;
 
 }  // namespace
 
-ShownPanel::ShownPanel(const Context& context, vk::Format format)
-    : canvas_(context, kPanelPx, format), in_room_(kPanelPx, kPanelWidthMetres) {}
+Panel::Panel(const Context& context, vk::Format format) : canvas_(context, kPanelPx, format), in_room_(kPanelPx, kPanelWidthMetres) {}
 
-void ShownPanel::keepFrameTime() {
+void Panel::keepFrameTime() {
     const auto now = std::chrono::steady_clock::now();
     if (last_end_ != std::chrono::steady_clock::time_point()) {
         frame_ms_.push_back(std::chrono::duration<float, std::milli>(now - last_end_).count());
@@ -27,7 +26,7 @@ void ShownPanel::keepFrameTime() {
     last_end_ = now;
 }
 
-void ShownPanel::showTimes(const FrameResult& last, const std::string& governor, double step_seconds) {
+void Panel::showTimes(const FrameResult& last, const std::string& governor, double step_seconds) {
     times_age_s_ += step_seconds;
     const bool has_times = !last.counters.targets.empty();
     if (has_times && status_.frame != nullptr && times_age_s_ < kTimesSeconds) { return; }
@@ -38,54 +37,54 @@ void ShownPanel::showTimes(const FrameResult& last, const std::string& governor,
     status_.governor = governor;
 }
 
-void ShownPanel::askFor(FileWorker& files, const ViewSettings& settings) {
+void Panel::askFor(FileWorker& files, const ViewSettings& settings) {
     status_.files = files.now();
     status_.pictures = &canvas_.pictures();
-    if (canvas_.wantsLetters(namesOn(settings, pages_, status_), picturesOn(settings, pages_))) {
+    if (canvas_.wantsLetters(namesOn(settings, chooser_, status_), picturesOn(settings, chooser_))) {
         files.read("reading fonts", [this]() -> FileWorker::Done {
             canvas_.buildLetters();
             return [this] { canvas_.takeLetters(); };
         });
     }
-    if (const std::optional<SceneListWish> wish = pages_.chooser.takeWish()) {
+    if (const std::optional<SceneListWish> wish = chooser_.takeWish()) {
         files.read(std::string("reading ") + wish->name(), [this, wish = *wish]() -> FileWorker::Done {
-            return [this, wish, list = makeSceneList(wish)] { pages_.chooser.show(list, wish); };
+            return [this, wish, list = makeSceneList(wish)] { chooser_.show(list, wish); };
         });
     }
 }
 
-OverlayActions ShownPanel::layOut(HeadsetStay* hung, const WindowInput& window, ViewSettings& settings, double step_seconds) {
+PanelRequests Panel::layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, ViewSettings& settings,
+                            double step_seconds) {
     // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
-    const CanvasPointer& hand = in_room_.pointer();
+    const PanelPointer& hand = in_room_.pointer();
     const bool mouse_pointed = mouse_points_;
-    mouse_points_ = hung != nullptr && hand.place_px ? window.uses_panel && !hand.pressed : mouse_points_ || window.uses_panel;
-    CanvasPointer pointer = mouse_points_ ? window.pointer : hand;
+    mouse_points_ = hung != nullptr && hand.place_px ? uses_mouse && !hand.pressed : mouse_points_ || uses_mouse;
+    PanelPointer pointer = mouse_points_ ? mouse : hand;
     if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
     canvas_.begin(pointer, step_seconds);
-    const OverlayActions actions = drawOverlay(kPanelPx, settings, pages_, status_);
+    const PanelRequests actions = drawPanel(kPanelPx, settings, chooser_, status_);
     canvas_.end();
     if (hung != nullptr && hung->panel_revision != canvas_.revision()) { image_ = hung->panel_images.acquire(); }
     return actions;
 }
 
-void ShownPanel::record(Commands& commands, HeadsetStay* stay, MirrorWindow* window) {
-    if (!image_ && window == nullptr) { return; }
+void Panel::record(Commands& commands, ConnectedHeadset* headset, bool copied) {
+    if (!image_ && !copied) { return; }
     commands.beginPass({Role::kNone, FrameStage::kPresent, "panel"});
     canvas_.record(commands);
     if (image_) {
         canvas_.copyTo(commands, image_);
-        commands.makeMips(image_, kPanelPx, stay->panel_images.levels());
+        commands.makeMips(image_, kPanelPx, headset->panel_images.levels());
     }
-    if (window != nullptr) { window->record(commands); }
 }
 
-void ShownPanel::release(HeadsetStay& stay) {
+void Panel::release(ConnectedHeadset& headset) {
     if (!std::exchange(image_, nullptr)) { return; }
-    stay.panel_images.release();
-    stay.panel_revision = canvas_.revision();
+    headset.panel_images.release();
+    headset.panel_revision = canvas_.revision();
 }
 
-void ShownPanel::giveUp() {
+void Panel::giveUp() {
     image_ = nullptr;
     canvas_.giveUp();
 }

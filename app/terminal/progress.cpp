@@ -1,7 +1,7 @@
 // One line on a terminal for work that takes longer than a second.
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 
-#include "app/interrupt.h"
+#include "app/terminal/interrupt.h"
 #include "engine/platform.h"
 
 #include <fmt/format.h>

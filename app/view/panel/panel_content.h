@@ -4,7 +4,7 @@
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_widgets.h"
 #include "app/view/panel/scene_chooser.h"
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 #include "engine/frame/stereo_frame.h"
 
 #include <glm/glm.hpp>
@@ -34,7 +34,7 @@ struct ShownRate {
 };
 
 // What the panel shows.
-struct OverlayStatus {
+struct PanelStatus {
     std::string scene;
     std::string state;                                       // why the headset shows nothing; empty: it does
     bool has_scene = false;                                  // there is something to see
@@ -56,13 +56,8 @@ struct OverlayStatus {
     const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
 };
 
-// What the wearer looks through; none of it is kept.
-struct OverlayPages {
-    SceneChooser chooser;
-};
-
 // What was asked for.
-struct OverlayActions {
+struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
          take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false;
     double growth = 1.0;       // of the scene about the wearer's feet
@@ -75,11 +70,11 @@ struct OverlayActions {
 };
 
 // All that a canvas shows of names and messages, a line each; see Canvas::wantsLetters.
-std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, const OverlayStatus& status);
+std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status);
 // Likewise the pictures.
-std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const OverlayPages& pages);
+std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
 
-// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `pages` as the wearer does.
-OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status);
+// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `chooser` as the wearer does.
+PanelRequests drawPanel(glm::uvec2 size_px, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status);
 
 }  // namespace binosplat

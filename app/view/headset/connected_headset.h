@@ -11,9 +11,9 @@
 
 namespace binosplat {
 
-struct HeadsetStay {
+struct ConnectedHeadset {
     // `panel_px` is the size of the panel's picture. Throws xr::Lost where the session is lost at once.
-    HeadsetStay(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
+    ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
 
     xr::Session session;
     vk::Format format;

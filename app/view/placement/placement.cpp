@@ -1,7 +1,5 @@
 // Placing the scene about the wearer.
-#include "app/view/wearer/placement.h"
-
-#include "app/options/start_view.h"
+#include "app/view/placement/placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,23 +30,6 @@ glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to) {
 double headingOf(const glm::dvec3& direction) { return std::atan2(direction.x, direction.z); }
 
 }  // namespace
-
-glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source) {
-    return target_from_source.scale * (target_from_source.orientation * point_source) + target_from_source.position;
-}
-
-Pose transform(const Similarity& target_from_source, const Pose& pose) {
-    return {glm::normalize(target_from_source.orientation * pose.orientation), transform(target_from_source, pose.position)};
-}
-
-Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c) {
-    return {glm::normalize(a_from_b.orientation * b_from_c.orientation), transform(a_from_b, b_from_c.position),
-            a_from_b.scale * b_from_c.scale};
-}
-
-Similarity startPlacement(const RunOptions& options, const Scene& scene) {
-    return startPlacement(startView(scene, options.camera, options.metres_per_unit), options.metres_per_unit);
-}
 
 Similarity startPlacement(const View& view, double metres_per_unit) {
     const Pose looking = lookAt(view.eye, view.look, view.up);

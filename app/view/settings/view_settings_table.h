@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/options/option_row.h"
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 
 #include <span>
 #include <string_view>

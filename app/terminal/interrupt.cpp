@@ -1,5 +1,5 @@
 // A signal handler may only set a mark, and only a global one.
-#include "app/interrupt.h"
+#include "app/terminal/interrupt.h"
 
 #include "engine/platform.h"
 

@@ -15,9 +15,9 @@ namespace binosplat {
 // One thread, which does one thing after the other.
 class FileWorker {
 public:
-    // What is to be done with what was read, by whoever calls obey().
+    // What is to be done with what was read, by whoever calls deliver().
     using Done = std::function<void()>;
-    // On the worker's thread. What it throws, obey() throws.
+    // On the worker's thread. What it throws, deliver() throws.
     using Work = std::function<Done()>;
 
     FileWorker();
@@ -33,9 +33,9 @@ public:
     // What goes on, in words; empty: nothing does.
     [[nodiscard]] std::string now() const;
 
-    // Between frames: obeys what is done. Waits for nothing.
-    void obey();
-    // Waits until all is written, without what else was only asked for, and obeys the rest.
+    // Between frames: what is done is handed over, to the functions that go with it. Waits for nothing.
+    void deliver();
+    // Waits until all is written, without what else was only asked for, and hands over what is done.
     void finish();
 
 private:

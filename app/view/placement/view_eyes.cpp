@@ -1,5 +1,5 @@
 // Eyes in the scene.
-#include "app/view/wearer/view_eyes.h"
+#include "app/view/placement/view_eyes.h"
 
 #include "xr/convert.h"
 

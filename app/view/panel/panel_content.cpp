@@ -1,5 +1,5 @@
 // The panel, top to bottom.
-#include "app/view/panel/overlay.h"
+#include "app/view/panel/panel_content.h"
 
 #include "app/view/panel/panel_pages.h"
 #include "app/view/panel/panel_style.h"
@@ -18,31 +18,31 @@ namespace {
 constexpr float kTabsShare = 0.64f;  // of the width; Quit stands at the right, away from what is pressed often
 
 // Which page is shown; each is drawn anew when it is asked for.
-void drawTabs(PanelWidgets& widgets, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status) {
+void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
     static constexpr std::array kTabs{"View", "Scenes", "Method"};
     const auto pressed = widgets.row(kTabs, static_cast<std::size_t>(settings.page), kTabPx, kTabsShare);
     if (pressed) { settings.page = static_cast<PanelPage>(*pressed); }
-    if (settings.page == PanelPage::kScenes && (pressed || pages.chooser.isNew())) { pages.chooser.refresh(status.scene); }
+    if (settings.page == PanelPage::kScenes && (pressed || chooser.isNew())) { chooser.refresh(status.scene); }
     ImGui::SameLine();
 }
 
 }  // namespace
 
-void drawSaid(const OverlayStatus& status) {
+void drawSaid(const PanelStatus& status) {
     writeWrapped(status.message.empty() ? "Trigger: click. Grip: move the scene. Both grips: turn it and make it larger or smaller."
                                         : status.message);
     if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     if (!status.files.empty()) { writeLine(endOf(asShown(status.files))); }
 }
 
-std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, const OverlayStatus& status) {
+std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, const PanelStatus& status) {
     std::string names;
     const auto add = [&](const std::string& name) { names += name + '\n'; };
     for (const std::string& name : {status.scene, status.message, status.files}) { add(name); }
     if (settings.page == PanelPage::kScenes) {
-        add(pages.chooser.list().title);
-        add(pages.chooser.list().trouble);
-        for (const SceneEntry& entry : pages.chooser.shown()) {
+        add(chooser.list().title);
+        add(chooser.list().trouble);
+        for (const SceneEntry& entry : chooser.shown()) {
             for (const std::string& name : {entry.name, entry.about, entry.trouble}) { add(name); }
         }
         add(status.viewpoint);
@@ -52,22 +52,22 @@ std::string namesOn(const ViewSettings& settings, const OverlayPages& pages, con
     return names;
 }
 
-std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const OverlayPages& pages) {
+std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser) {
     std::vector<ScenePicture> pictures;
     if (settings.page != PanelPage::kScenes) { return pictures; }
-    for (const SceneEntry& entry : pages.chooser.shown()) {
+    for (const SceneEntry& entry : chooser.shown()) {
         if (!entry.picture.key.empty()) { pictures.push_back(entry.picture); }
     }
     return pictures;
 }
 
-OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPages& pages, const OverlayStatus& status) {
-    OverlayActions actions;
+PanelRequests drawPanel(glm::uvec2 size_px, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
+    PanelRequests actions;
     PanelWidgets widgets;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
     ImGui::Begin("binosplat", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
-    if (status.has_scene) { drawTabs(widgets, settings, pages, status); }
+    if (status.has_scene) { drawTabs(widgets, settings, chooser, status); }
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.84f);
     static constexpr std::array kQuit{"Quit"};
     actions.quit = widgets.row(kQuit, {}, kTabPx).has_value();
@@ -77,7 +77,7 @@ OverlayActions drawOverlay(glm::uvec2 size_px, ViewSettings& settings, OverlayPa
     } else if (settings.page == PanelPage::kView) {
         drawViewPage(widgets, settings, status, actions);
     } else if (settings.page == PanelPage::kScenes) {
-        drawScenesPage(widgets, pages.chooser, status, actions);
+        drawScenesPage(widgets, chooser, status, actions);
     } else {
         drawMethodPage(widgets, settings, status, actions);
     }

@@ -1,8 +1,8 @@
 // The viewer's settings as TOML.
-#include "app/view/view_settings.h"
+#include "app/view/settings/view_settings.h"
 
 #include "app/options/option_table.h"
-#include "app/view/view_settings_table.h"
+#include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/setup/values.h"
 

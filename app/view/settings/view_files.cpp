@@ -1,5 +1,5 @@
 // Saving and loading from the panel.
-#include "app/view/view_files.h"
+#include "app/view/settings/view_files.h"
 
 #include "app/options/option_layers.h"
 #include "engine/error.h"

@@ -1,29 +1,12 @@
 // Where the wearer's room lies in the scene. Room axes are those of a camera that looks ahead (x right, y down, z forward), metres.
 #pragma once
 
-#include "app/options/camera_options.h"
-#include "engine/geometry.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/procedural.h"
+#include "engine/similarity.h"
 
 namespace binosplat {
 
-// A similarity target_from_source: p_target = scale * (orientation * p_source) + position.
-struct Similarity {
-    glm::dquat orientation{1.0, 0.0, 0.0, 0.0};
-    glm::dvec3 position{0.0};
-    double scale = 1.0;
-    bool operator==(const Similarity&) const = default;
-};
-
-glm::dvec3 transform(const Similarity& target_from_source, const glm::dvec3& point_source);
-// The pose of something that sits at `pose` in the source.
-Pose transform(const Similarity& target_from_source, const Pose& pose);
-// a_from_c out of a_from_b and b_from_c.
-Similarity compose(const Similarity& a_from_b, const Similarity& b_from_c);
-
-// The room's origin where the options put the eye, or where the scene is best seen from; upright, looking that way. A room metre is
-// 1 / metres_per_unit scene units.
-Similarity startPlacement(const RunOptions& options, const Scene& scene);
+// The room's origin where the view's eye is, upright, looking that way. A room metre is 1 / metres_per_unit scene units.
 Similarity startPlacement(const View& view, double metres_per_unit);
 // How many times as large as it is a scene is shown, so that what is looked at is no nearer than half a metre: nearer eyes would have to
 // squint, and what is nearer than the near plane is not there.

@@ -1,5 +1,5 @@
 // Side by side.
-#include "app/view/picture_pair.h"
+#include "app/view/files/picture_writer.h"
 
 #include "engine/error.h"
 #include "engine/picture/image_io.h"
