@@ -44,9 +44,10 @@ public:
         io.MouseDown[0] = pressed;
         io.DeltaTime = 0.01f;
         ImGui::NewFrame();
-        PanelRequests actions = drawPanel(kPanelPx, settings, chooser, status);
+        PanelRequests requests = drawPanel(kPanelPx, settings, chooser, status);
+        settings = requests.settings;
         ImGui::Render();
-        return actions;
+        return requests;
     }
     // As the viewer does beside its frames; false: there were no new ones.
     bool bringLetters(const std::string& text, const std::vector<ScenePicture>& shown = {}) {
@@ -63,9 +64,9 @@ public:
         const glm::dvec2 place = before.places.at(name);
         draw(&place);
         draw(&place, true);
-        PanelRequests actions = draw(&place);
+        PanelRequests requests = draw(&place);
         draw();
-        return actions;
+        return requests;
     }
 
     std::unique_ptr<PanelFont> font;

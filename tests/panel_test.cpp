@@ -146,10 +146,10 @@ TEST_CASE("size and height are changed while their buttons are held, and what mo
         double growth = 1.0, rise_m = 0.0;
         sketch.draw(&place);
         for (int frame = 0; frame < 100; ++frame) {
-            const PanelRequests actions = sketch.draw(&place, true);
-            times += actions.growth != 1.0 || actions.rise_m != 0.0;
-            growth *= actions.growth;
-            rise_m += actions.rise_m;
+            const PanelRequests requests = sketch.draw(&place, true);
+            times += requests.growth != 1.0 || requests.rise_m != 0.0;
+            growth *= requests.growth;
+            rise_m += requests.rise_m;
         }
         sketch.draw(&place);
         sketch.draw();

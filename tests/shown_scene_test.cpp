@@ -46,7 +46,7 @@ struct Shown : Gpu, Workplace {
         CAPTURE(place);
         const LoadedScene* before = scenes.get();
         scenes.begin(place.string());
-        const std::string complaint = scenes.take(settings);
+        const std::string complaint = scenes.take(state);
         INFO(complaint);
         CHECK(complaint.starts_with(place.string() + ": "));
         CHECK(complaint.find(part) != std::string::npos);
@@ -55,7 +55,7 @@ struct Shown : Gpu, Workplace {
     }
 
     ViewOptions options;
-    ViewSettings settings;
+    ViewState state;
     FrameLog log;
 };
 
@@ -68,7 +68,7 @@ bool same(const Similarity& a, const Similarity& b) {
 
 TEST_CASE_FIXTURE(Shown, "a file that is no scene gives one line, and what was shown stays") {
     ShownScene scenes(context(), options, log);
-    REQUIRE(scenes.take(settings).empty());
+    REQUIRE(scenes.take(state).empty());
     CHECK(scenes.name() == "builtin:step-edge");
     std::ofstream(path / "notes.txt") << "no scene";
     fs::create_directory(path / "pictures");
@@ -85,12 +85,12 @@ TEST_CASE_FIXTURE(Shown, "a folder of a SOG scene is shown like a file, with or 
     fs::create_directory(path / "statue");
     for (const auto& [name, bytes] : makeSog()) { std::ofstream(path / "statue" / name, std::ios::binary) << bytes; }
     ShownScene scenes(context(), options, log);
-    REQUIRE(scenes.take(settings).empty());
+    REQUIRE(scenes.take(state).empty());
     for (const std::string& place :
          {(path / "statue").string(), (path / "statue").string() + "/", (path / "statue" / "meta.json").string()}) {
         CAPTURE(place);
         scenes.begin(place);
-        CHECK(scenes.take(settings).empty());
+        CHECK(scenes.take(state).empty());
         CHECK(scenes.name() == place);
         CHECK(scenes.get()->facts.splats == 8);
         CHECK(scenes.get()->facts.file_bytes > 0);
@@ -103,19 +103,19 @@ TEST_CASE_FIXTURE(Shown,
     ShownScene scenes(context(), options, log);
     scenes.begin("builtin:fence");
     scenes.begin("builtin:slanted-wall");
-    CHECK(scenes.take(settings).empty());
+    CHECK(scenes.take(state).empty());
     CHECK(scenes.name() == "builtin:slanted-wall");
     CHECK_FALSE(scenes.loading().has_value());
     ShownScene others(context(), options, log);
     others.begin((path / "gone.ply").string());
-    CHECK(others.take(settings).find("gone.ply: no such file") != std::string::npos);
+    CHECK(others.take(state).find("gone.ply: no such file") != std::string::npos);
     CHECK(others.get() == nullptr);
-    CHECK(others.take(settings).empty());
+    CHECK(others.take(state).empty());
     CHECK(others.name() == "builtin:step-edge");
     // That of the command line has nothing to fall back to.
     options.scene = (path / "gone.ply").string();
     ShownScene none(context(), options, log);
-    CHECK_THROWS_AS(static_cast<void>(none.take(settings)), Error);
+    CHECK_THROWS_AS(static_cast<void>(none.take(state)), Error);
 }
 
 TEST_CASE_FIXTURE(
@@ -123,29 +123,24 @@ TEST_CASE_FIXTURE(
     const fs::path file = viewSettingsFile(options.scene);
     const auto showAgain = [&](std::string& complaint) {
         ShownScene scenes(context(), options, log);
-        complaint = scenes.take(settings);
-        const bool at_start = same(scenes.scene_from_room, scenes.get()->start);
-        scenes.scene_from_room.position += glm::dvec3(1.0, 2.0, 3.0);
-        settings.scene_from_room = scenes.scene_from_room;
-        return at_start;
+        complaint = scenes.take(state);
+        return same(state.sceneFromRoom(), scenes.get()->start);
     };
     std::string complaint;
     CHECK(showAgain(complaint));
     CHECK(complaint.empty());
-    const ViewSettings moved = settings;
-    settings.scene_from_room.reset();
+    ViewSettings moved = state.withPlacement();
+    moved.scene_from_room->position += glm::dvec3(1.0, 2.0, 3.0);
     const auto spoil = [&](const std::string& text) {
         fs::remove_all(file);
         fs::create_directories(file.parent_path());
         std::ofstream(file, std::ios::binary) << text;
     };
     const auto checkSaid = [&] {
-        settings.scene_from_room.reset();
         CHECK(showAgain(complaint));
         INFO(complaint);
         CHECK(complaint.find(file.string()) != std::string::npos);
         CHECK(complaint.find('\n') == std::string::npos);
-        settings.scene_from_room.reset();
     };
     for (const std::string& text :
          {std::string("[view\n"), std::string("[view]\nnonsense = 1\n"), std::string("[view]\nscene-position = [1, 2]\n"),
@@ -273,13 +268,14 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
 }
 
 TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
+    ViewSettings settings;
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;
     const glm::uvec2 size_px(64, 64);
     ShownScene scenes(context(), options, log, FramesAhead{settings.stereo, size_px, false, false, {}});
     // Chosen while the first one loads.
     settings.stereo.mode = Mode::kShared;
     scenes.expect(settings.stereo, size_px, false);
-    REQUIRE(scenes.take(settings).empty());
+    REQUIRE(scenes.take(state).empty());
     CHECK(scenes.drawable(settings) == settings);
     const auto drawsWithoutCompiling = [&] {
         Eye middle{};
@@ -324,6 +320,6 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     CHECK(scenes.drawable(settings) == settings);
     // Splats of another kind have other kernels.
     scenes.begin("builtin:atelier");
-    REQUIRE(scenes.take(settings).empty());
+    REQUIRE(scenes.take(state).empty());
     CHECK(drawsWithoutCompiling());
 }

@@ -163,42 +163,42 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
     ViewSettings settings;
     settings.panel = false;
     settings.teleport = true;
-    Similarity scene_from_room;
+    ViewState state(settings);
     WearerNow now;
     now.room_from_head.position = {0.3, 0.0, -0.2};
     now.floor_m = 1.6;
     now.step_seconds = kTenth;
     now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {-0.2, 0.4, 0.3}};
     now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK(controls.aimingHand() == kLeft);
     CHECK_FALSE(controls.isMoving());
-    CHECK(scene_from_room.position == glm::dvec3(0.0));
+    CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
     const glm::dvec3 target = controls.teleportAim().target.value();
     now.hands[kLeft].stick = {0.0, 0.0};
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK_FALSE(controls.aimingHand().has_value());
     CHECK(controls.teleportAim().arc.empty());
     // The head is above the target now, as high as before.
-    const glm::dvec3 head = transform(scene_from_room, now.room_from_head.position);
+    const glm::dvec3 head = transform(state.sceneFromRoom(), now.room_from_head.position);
     CHECK(head.x == doctest::Approx(target.x));
     CHECK(head.y == doctest::Approx(0.0));
     CHECK(head.z == doctest::Approx(target.z));
     // A hand that is lost while it aims moves nobody.
-    const Similarity before = scene_from_room;
+    const Similarity before = state.sceneFromRoom();
     now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     now.hands[kLeft] = {};
-    controls.update(now, panel, settings, scene_from_room);
-    CHECK(scene_from_room.position == before.position);
+    controls.update(now, panel, state);
+    CHECK(state.sceneFromRoom().position == before.position);
     // The trigger does it, too, where there is no stick.
     now.hands[kRight].aim = Pose{{1, 0, 0, 0}, {0.2, 0.4, 0.3}};
     now.hands[kRight].clicks = true;
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK(controls.aimingHand() == kRight);
     now.hands[kRight].clicks = false;
-    controls.update(now, panel, settings, scene_from_room);
-    CHECK(glm::distance(scene_from_room.position, before.position) > 1.0);
+    controls.update(now, panel, state);
+    CHECK(glm::distance(state.sceneFromRoom().position, before.position) > 1.0);
 }
 
 TEST_CASE("the stick of the hand that points at the panel scrolls there, and the other hand's moves the wearer") {
@@ -210,23 +210,23 @@ TEST_CASE("the stick of the hand that points at the panel scrolls there, and the
             WearerControls controls;
             ViewSettings settings;
             settings.teleport = teleports;
-            Similarity scene_from_room;
+            ViewState state(settings);
             WearerNow now;
             now.step_seconds = kTenth;
             now.hands[static_cast<std::size_t>(pointing)] = pointingAt(panel, {0.1, 0.1});
             now.hands[static_cast<std::size_t>(1 - pointing)] = pointingAway();
             now.hands[static_cast<std::size_t>(pointing)].stick = {0.0, 1.0};
-            controls.update(now, panel, settings, scene_from_room);
+            controls.update(now, panel, state);
             CHECK(panel.isPointedAtBy(pointing));
             CHECK_FALSE(panel.isPointedAtBy(1 - pointing));
             CHECK(panel.pointer().wheel > 0.0);
-            CHECK(scene_from_room.position == glm::dvec3(0.0));
+            CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
             CHECK_FALSE(controls.aimingHand().has_value());
             now.hands[static_cast<std::size_t>(pointing)].stick = {};
             now.hands[static_cast<std::size_t>(1 - pointing)].stick = {0.0, 1.0};
-            controls.update(now, panel, settings, scene_from_room);
+            controls.update(now, panel, state);
             CHECK(controls.aimingHand().has_value() == (teleports && pointing == kRight));
-            CHECK((scene_from_room.position != glm::dvec3(0.0)) == !(teleports && pointing == kRight));
+            CHECK((state.sceneFromRoom().position != glm::dvec3(0.0)) == !(teleports && pointing == kRight));
         }
     }
 }
@@ -236,17 +236,17 @@ TEST_CASE("a throw that passes over the panel goes on") {
     WearerControls controls;
     ViewSettings settings;
     settings.teleport = true;
-    Similarity scene_from_room;
+    ViewState state(settings);
     WearerNow now;
     now.hands[kLeft].aim = Pose{{1, 0, 0, 0}, {1.5, 0.4, 0.3}};
     now.hands[kLeft].stick = {0.0, 1.0};
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK(controls.aimingHand() == kLeft);
     now.hands[kLeft].aim = pointingAt(panel, {0.1, 0.1}).aim;
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK(panel.isPointedAtBy(kLeft));
     CHECK(controls.aimingHand() == kLeft);
-    CHECK(scene_from_room.position == glm::dvec3(0.0));
+    CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
 }
 
 TEST_CASE("where one turns smoothly the stick turns a right angle in a second, and that counts as moving") {
@@ -254,28 +254,28 @@ TEST_CASE("where one turns smoothly the stick turns a right angle in a second, a
     WearerControls controls;
     ViewSettings settings;
     settings.smooth_turn = true;
-    Similarity scene_from_room;
+    ViewState state(settings);
     WearerNow now;
     now.step_seconds = kTenth;
     now.hands[kRight].stick = {1.0, 0.0};
-    for (int i = 0; i < 10; ++i) { controls.update(now, panel, settings, scene_from_room); }
+    for (int i = 0; i < 10; ++i) { controls.update(now, panel, state); }
     CHECK(controls.isMoving());
-    CHECK(2.0 * std::atan2(scene_from_room.orientation.y, scene_from_room.orientation.w) == doctest::Approx(1.5707963).epsilon(1e-6));
+    CHECK(2.0 * std::atan2(state.sceneFromRoom().orientation.y, state.sceneFromRoom().orientation.w) ==
+          doctest::Approx(1.5707963).epsilon(1e-6));
     now.hands[kRight].stick = {0.0, 0.0};
-    controls.update(now, panel, settings, scene_from_room);
+    controls.update(now, panel, state);
     CHECK_FALSE(controls.isMoving());
 }
 
 TEST_CASE("a stick that is pressed in goes to the next viewpoint once, the left one to the one before") {
     PanelInRoom panel({800, 400}, 0.8);
     WearerControls controls;
-    ViewSettings settings;
-    Similarity scene_from_room;
+    ViewState state;
     WearerNow now;
     const auto steps = [&](bool left, bool right) {
         now.hands[kLeft].stick_presses = left;
         now.hands[kRight].stick_presses = right;
-        controls.update(now, panel, settings, scene_from_room);
+        controls.update(now, panel, state);
         return controls.viewpointStep();
     };
     CHECK(steps(false, true) == 1);
@@ -293,10 +293,10 @@ TEST_CASE("a stick turns once until it comes back, also on a way round by ahead"
     WearerNow now;
     // Turns by 30 degrees since the last one.
     const auto turns = [&](const glm::dvec2& stick) {
-        Similarity scene_from_room;
+        ViewState state(settings);
         now.hands[kRight].stick = stick;
-        controls.update(now, panel, settings, scene_from_room);
-        return std::lround(2.0 * std::atan2(scene_from_room.orientation.y, scene_from_room.orientation.w) / 0.5235987755982988);
+        controls.update(now, panel, state);
+        return std::lround(2.0 * std::atan2(state.sceneFromRoom().orientation.y, state.sceneFromRoom().orientation.w) / 0.5235987755982988);
     };
     CHECK(turns({0.9, 0.0}) == 1);
     CHECK(turns({0.6, 0.7}) == 0);  // rises and sinks here

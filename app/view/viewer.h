@@ -7,7 +7,7 @@
 #include "app/view/room/vignette.h"
 #include "app/view/scene_renderer.h"
 #include "app/view/scenes/shown_scene.h"
-#include "app/view/settings/view_settings.h"
+#include "app/view/settings/view_state.h"
 #include "app/view/wearer/gaze_follower.h"
 #include "app/view/wearer/wearer_controls.h"
 #include "app/view/window/mirror_window.h"
@@ -58,11 +58,11 @@ private:
     // The widgets; takes an image for the panel where that is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
     void takeWindowInput(double step_seconds);
-    void followPanel(const PanelRequests& actions);
-    void openAndSave(const PanelRequests& actions);
+    void followPanel(const PanelRequests& requests);
+    void openAndSave(const PanelRequests& requests);
     // Where the wearer stands, in numbers, and moved from there.
     [[nodiscard]] ShownPlace shownPlace() const;
-    void movePlace(const PanelRequests& actions);
+    void movePlace(const PanelRequests& requests);
     void goToViewpoint(int step);
     void keepViewpointHere();
     void goBackToLastScene();
@@ -77,16 +77,15 @@ private:
     void sayPicture(const std::optional<std::string>& outcome);
     // Also on the panel.
     void say(const std::string& message);
-    void sayChange(const ViewSettings& before) const;
+    void sayChange();
     void leave();
     void waitForQueue() const;
 
     ViewOptions options_;
     xr::Instance& instance_;
     const Context& context_;
-    ViewSettings settings_;
-    ViewSettings drawn_;                             // of this frame: those whose kernels are there
-    std::optional<ViewSettings> settings_that_fit_;  // of the last frame there was memory for
+    ViewState state_;
+    ViewSettings drawn_;  // of this frame: those whose kernels are there
     FrameLog log_;
     HeadsetConnection connection_;
     SceneRenderer renderer_;

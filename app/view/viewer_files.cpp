@@ -10,7 +10,7 @@ namespace binosplat {
 void Viewer::takeScene() {
     const LoadedScene* before = scenes_.get();
     keepPictureOfScene();
-    const std::string complaint = scenes_.take(settings_);
+    const std::string complaint = scenes_.take(state_);
     if (!complaint.empty()) { say(complaint); }
     if (scenes_.get() == before) { return; }
     renderer_.forgetScene();
@@ -32,15 +32,15 @@ void Viewer::remember(const std::string& complaint) {
     });
 }
 
-void Viewer::openAndSave(const PanelRequests& actions) {
-    if (actions.save) { save(); }
-    if (actions.load) { load(); }
-    if (actions.scene_step != 0) { scenes_.beginBeside(actions.scene_step, files_); }
-    if (!actions.chosen_scene.empty()) { scenes_.begin(actions.chosen_scene); }
-    picture_asked_ = picture_asked_ || actions.take_picture;
-    if (actions.last_scene) { goBackToLastScene(); }
-    if (!actions.favourite.empty()) {
-        files_.write("keeping a favourite", [this, scene = actions.favourite]() -> FileWorker::Done {
+void Viewer::openAndSave(const PanelRequests& requests) {
+    if (requests.save) { save(); }
+    if (requests.load) { load(); }
+    if (requests.scene_step != 0) { scenes_.beginBeside(requests.scene_step, files_); }
+    if (!requests.chosen_scene.empty()) { scenes_.begin(requests.chosen_scene); }
+    picture_asked_ = picture_asked_ || requests.take_picture;
+    if (requests.last_scene) { goBackToLastScene(); }
+    if (!requests.favourite.empty()) {
+        files_.write("keeping a favourite", [this, scene = requests.favourite]() -> FileWorker::Done {
             std::string trouble;
             try {
                 toggleFavourite(scene);
@@ -54,9 +54,7 @@ void Viewer::openAndSave(const PanelRequests& actions) {
 }
 
 void Viewer::save() {
-    ViewSettings saved = settings_;
-    saved.scene_from_room = scenes_.scene_from_room;
-    files_.write("saving", [this, scene = scenes_.name(), saved]() -> FileWorker::Done {
+    files_.write("saving", [this, scene = scenes_.name(), saved = state_.withPlacement()]() -> FileWorker::Done {
         return [this, outcome = saveViewSettings(scene, saved)] { say(outcome); };
     });
 }
@@ -65,12 +63,11 @@ void Viewer::load() {
     files_.read("loading what was saved", [this, scene = scenes_.name()]() -> FileWorker::Done {
         return [this, scene, saved = readSavedSettings(scene)] {
             if (scene != scenes_.name()) { return; }  // another one came meanwhile
-            const ViewSettings before = settings_;
-            say(takeSavedSettings(saved, settings_));
-            scenes_.scene_from_room = settings_.scene_from_room.value_or(scenes_.scene_from_room);
-            settings_.scene_from_room.reset();
-            settings_.panel = before.panel;  // it was just pressed
-            sayChange(before);
+            ViewSettings loaded = state_.settings();
+            say(takeSavedSettings(saved, loaded));
+            loaded.panel = state_.settings().panel;  // it was just pressed
+            state_.set(loaded);
+            sayChange();
         };
     });
 }

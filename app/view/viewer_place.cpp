@@ -20,7 +20,7 @@ constexpr std::uint64_t kLeastFramesSeen = 30;
 
 ShownPlace Viewer::shownPlace() const {
     const LoadedScene& scene = *scenes_.get();
-    const Similarity& placement = scenes_.scene_from_room;
+    const Similarity& placement = state_.sceneFromRoom();
     ShownPlace place;
     place.size_m = scene.facts.size_units / placement.scale;
     place.growth = 1.0 / (options_.run.metres_per_unit * placement.scale);
@@ -31,22 +31,21 @@ ShownPlace Viewer::shownPlace() const {
     return place;
 }
 
-void Viewer::movePlace(const PanelRequests& actions) {
-    LoadedScene& scene = *scenes_.get();
-    Similarity& placement = scenes_.scene_from_room;
-    if (actions.reset_scene) { placement = scene.start; }
-    if (actions.level_scene) { placement = levelledAlong(placement, scene.up, room_from_head_.position); }
-    const double growth = actions.natural_size ? options_.run.metres_per_unit * placement.scale : actions.growth;
+void Viewer::movePlace(const PanelRequests& requests) {
+    const LoadedScene& scene = *scenes_.get();
+    if (requests.reset_scene) { state_.place(scene.start); }
+    if (requests.level_scene) { state_.place(levelledAlong(state_.sceneFromRoom(), scene.up, room_from_head_.position)); }
+    const double growth = requests.natural_size ? options_.run.metres_per_unit * state_.sceneFromRoom().scale : requests.growth;
     if (growth != 1.0) {
         // About the feet, so that one stands on the same floor.
         const ShownPlace place = shownPlace();
         glm::dvec3 feet = room_from_head_.position;
         feet.y += place.has_floor && place.eyes_m > 0.0 ? place.eyes_m : kUsualEyesMetres;
-        placement = grownBy(placement, growth, feet);
+        state_.place(grownBy(state_.sceneFromRoom(), growth, feet));
     }
-    if (actions.rise_m != 0.0) { placement = movedBy(placement, {0.0, -actions.rise_m, 0.0}); }
-    if (actions.viewpoint_step != 0) { goToViewpoint(actions.viewpoint_step); }
-    if (actions.keep_viewpoint) { keepViewpointHere(); }
+    if (requests.rise_m != 0.0) { state_.place(movedBy(state_.sceneFromRoom(), {0.0, -requests.rise_m, 0.0})); }
+    if (requests.viewpoint_step != 0) { goToViewpoint(requests.viewpoint_step); }
+    if (requests.keep_viewpoint) { keepViewpointHere(); }
 }
 
 void Viewer::goToViewpoint(int step) {
@@ -60,14 +59,14 @@ void Viewer::goToViewpoint(int step) {
     const std::ptrdiff_t before = viewpoint_ ? static_cast<std::ptrdiff_t>(*viewpoint_) : step > 0 ? -1 : 0;
     viewpoint_ = static_cast<std::size_t>(((before + step) % count + count) % count);
     const Viewpoint& there = scene->viewpoints[*viewpoint_];
-    scenes_.scene_from_room = placedAt(there.view, scenes_.scene_from_room, room_from_head_);
+    state_.place(placedAt(there.view, state_.sceneFromRoom(), room_from_head_));
     controls_.letGo();
     log_.say(fmt::format("viewpoint {} of {}: {}", *viewpoint_ + 1, count, there.name));
 }
 
 void Viewer::keepViewpointHere() {
     LoadedScene& scene = *scenes_.get();
-    const View view = viewOf(scenes_.scene_from_room, room_from_head_);
+    const View view = viewOf(state_.sceneFromRoom(), room_from_head_);
     std::size_t number = 1;
     for (const Viewpoint& viewpoint : scene.viewpoints) { number += viewpoint.name.starts_with("your own "); }
     scene.viewpoints.push_back(ownViewpoint(number, view));
@@ -97,10 +96,7 @@ void Viewer::keepPictureOfScene() {
     LoadedScene* scene = scenes_.get();
     if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
     try {
-        {
-            const std::lock_guard lock(context_.queueMutex());
-            context_.queue().waitIdle();
-        }
+        waitForQueue();
         Image view = scene->frame.readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant));
         files_.write("keeping a picture of the scene",
                      [name = scene->name, about = describeBriefly(scene->facts), view = std::move(view)]() -> FileWorker::Done {

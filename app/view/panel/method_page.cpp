@@ -125,15 +125,15 @@ void drawTimes(const PanelStatus& status) {
                           static_cast<double>(splats) / 1000.0));
 }
 
-void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, PanelRequests& actions) {
+void drawFiles(PanelWidgets& widgets, ViewSettings& settings, bool can_reload_shaders, PanelRequests& requests) {
     widgets.checkbox("Show how tiles were made", &settings.tint);
     ImGui::SameLine(0.5f * ImGui::GetContentRegionAvail().x);
-    actions.save = widgets.button("Save");
+    requests.save = widgets.button("Save");
     ImGui::SameLine();
-    actions.load = widgets.button("Load");
+    requests.load = widgets.button("Load");
     if (!can_reload_shaders) { return; }
     ImGui::SameLine();
-    actions.reload_shaders = widgets.button("Shaders");
+    requests.reload_shaders = widgets.button("Shaders");
 }
 
 // What is known of the scene, and the time of each pass.
@@ -166,13 +166,13 @@ void drawStages(const FrameResult& frame) {
 
 }  // namespace
 
-void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions) {
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * kSliderShare);
     drawMethod(widgets, settings, status.usual_order);
     drawResolution(widgets, settings);
     drawQuality(widgets, settings);
     ImGui::PopItemWidth();
-    drawFiles(widgets, settings, status.can_reload_shaders, actions);
+    drawFiles(widgets, settings, status.can_reload_shaders, requests);
     drawSaid(status);
     if (!status.governor.empty()) { writeWrapped(status.governor); }
     drawTimes(status);

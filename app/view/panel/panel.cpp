@@ -53,7 +53,7 @@ void Panel::askFor(FileWorker& files, const ViewSettings& settings) {
     }
 }
 
-PanelRequests Panel::layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, ViewSettings& settings,
+PanelRequests Panel::layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, const ViewSettings& settings,
                             double step_seconds) {
     // A mouse that lies still is nobody's wish while a hand points, and one that is pushed takes no button from a hand that holds it.
     const PanelPointer& hand = in_room_.pointer();
@@ -62,10 +62,10 @@ PanelRequests Panel::layOut(ConnectedHeadset* hung, const PanelPointer& mouse, b
     PanelPointer pointer = mouse_points_ ? mouse : hand;
     if (mouse_points_ != mouse_pointed) { pointer.pressed = false; }  // what one of them drags the other does not take along
     canvas_.begin(pointer, step_seconds);
-    const PanelRequests actions = drawPanel(kPanelPx, settings, chooser_, status_);
+    PanelRequests requests = drawPanel(kPanelPx, settings, chooser_, status_);
     canvas_.end();
     if (hung != nullptr && hung->panel_revision != canvas_.revision()) { image_ = hung->panel_images.acquire(); }
-    return actions;
+    return requests;
 }
 
 void Panel::record(Commands& commands, ConnectedHeadset* headset, bool copied) {

@@ -32,7 +32,8 @@ public:
     void listAnew() { chooser_.refresh(status_.scene); }
     // The widgets, for the hand that points or for `mouse`, of which `uses_mouse` says whether it did anything there. Where they have
     // changed it takes an image of the panel in `hung`, the headset in whose room it hangs; null where it does not hang.
-    PanelRequests layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, ViewSettings& settings, double step_seconds);
+    PanelRequests layOut(ConnectedHeadset* hung, const PanelPointer& mouse, bool uses_mouse, const ViewSettings& settings,
+                         double step_seconds);
     // Draws them on that image. The canvas is drawn for a window, too, where it is to be `copied`.
     void record(Commands& commands, ConnectedHeadset* headset, bool copied);
     // After submission: the runtime may show that image.

@@ -61,8 +61,9 @@ std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneCh
     return pictures;
 }
 
-PanelRequests drawPanel(glm::uvec2 size_px, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
-    PanelRequests actions;
+PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status) {
+    PanelRequests requests;
+    ViewSettings& settings = requests.settings = current;
     PanelWidgets widgets;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(ImVec2(static_cast<float>(size_px.x), static_cast<float>(size_px.y)));
@@ -70,24 +71,24 @@ PanelRequests drawPanel(glm::uvec2 size_px, ViewSettings& settings, SceneChooser
     if (status.has_scene) { drawTabs(widgets, settings, chooser, status); }
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() * 0.84f);
     static constexpr std::array kQuit{"Quit"};
-    actions.quit = widgets.row(kQuit, {}, kTabPx).has_value();
+    requests.quit = widgets.row(kQuit, {}, kTabPx).has_value();
     writeLine(endOf(asShown(status.state.empty() ? status.scene : fmt::format("{}  {}", status.state, status.scene))));
     if (!status.has_scene) {
         if (status.loading) { ImGui::ProgressBar(static_cast<float>(*status.loading), ImVec2(-1.0f, 0.0f)); }
     } else if (settings.page == PanelPage::kView) {
-        drawViewPage(widgets, settings, status, actions);
+        drawViewPage(widgets, settings, status, requests);
     } else if (settings.page == PanelPage::kScenes) {
-        drawScenesPage(widgets, chooser, status, actions);
+        drawScenesPage(widgets, chooser, status, requests);
     } else {
-        drawMethodPage(widgets, settings, status, actions);
+        drawMethodPage(widgets, settings, status, requests);
     }
     // The ray's end.
     if (ImGui::IsMousePosValid()) {
         ImGui::GetForegroundDrawList()->AddCircleFilled(ImGui::GetIO().MousePos, 6.0f, IM_COL32(255, 220, 80, 255));
     }
     ImGui::End();
-    actions.places = widgets.places();
-    return actions;
+    requests.places = widgets.places();
+    return requests;
 }
 
 }  // namespace binosplat

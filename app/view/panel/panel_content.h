@@ -67,6 +67,7 @@ struct PanelRequests {
     std::string chosen_scene;  // empty: none
     std::string favourite;     // a scene that is to become a favourite, or to be none any more; empty: none
     WidgetPlaces places;       // of what was drawn
+    ViewSettings settings;     // as they are to be from now on
 };
 
 // All that a canvas shows of names and messages, a line each; see Canvas::wantsLetters.
@@ -74,7 +75,7 @@ std::string namesOn(const ViewSettings& settings, const SceneChooser& chooser, c
 // Likewise the pictures.
 std::vector<ScenePicture> picturesOn(const ViewSettings& settings, const SceneChooser& chooser);
 
-// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `settings` and `chooser` as the wearer does.
-PanelRequests drawPanel(glm::uvec2 size_px, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status);
+// Draws the widgets that fill a canvas of `size_px`, between Canvas::begin and record. Changes `chooser` as the wearer does.
+PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneChooser& chooser, const PanelStatus& status);
 
 }  // namespace binosplat

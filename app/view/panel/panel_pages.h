@@ -6,11 +6,11 @@
 namespace binosplat {
 
 // For whoever wears the headset: how sharp and how smooth, where one stands, how large the scene is, how one moves.
-void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions);
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
 // Which scene, and from where.
-void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& actions);
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests);
 // For whoever studies how the pictures are made, and what they take.
-void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions);
+void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
 
 // What came of what was done, and what goes on; it may take several lines, and moves nothing that is pointed at.
 void drawSaid(const PanelStatus& status);

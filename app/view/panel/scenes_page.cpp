@@ -47,7 +47,7 @@ void drawPicture(const SceneEntry& entry, const ImVec2& low, const PicturePlaces
     ImGui::GetWindowDrawList()->AddImage(ImGui::GetIO().Fonts->TexID, at, ImVec2(at.x + width, at.y + height), corners.low, corners.high);
 }
 
-void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, PanelRequests& actions) {
+void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlaces* places, PanelRequests& requests) {
     // As many lines as there may be entries, so that what is below stays where it is.
     const float rows = static_cast<float>(SceneChooser::kRows) * (kRowPx + ImGui::GetStyle().ItemSpacing.y);
     ImGui::BeginChild("scenes", ImVec2(0.0f, rows + ImGui::GetTextLineHeightWithSpacing()));
@@ -64,17 +64,17 @@ void drawEntries(PanelWidgets& widgets, SceneChooser& chooser, const PicturePlac
         drawPicture(entry, low, places);
         if (entry.is_folder) { continue; }
         ImGui::SameLine();
-        if (widgets.star("favourite " + entry.name, entry.is_favourite, {kStarPx, kRowPx})) { actions.favourite = entry.place; }
+        if (widgets.star("favourite " + entry.name, entry.is_favourite, {kStarPx, kRowPx})) { requests.favourite = entry.place; }
     }
-    if (pressed != nullptr) { actions.chosen_scene = chooser.open(*pressed); }
+    if (pressed != nullptr) { requests.chosen_scene = chooser.open(*pressed); }
     ImGui::EndChild();
 }
 
-void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& actions) {
+void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests) {
     static constexpr std::array kSteps{"Previous viewpoint", "Next viewpoint", "Keep this one"};
     if (const auto pressed = widgets.row(kSteps, {}, kTabPx)) {
-        actions.viewpoint_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
-        actions.keep_viewpoint = *pressed == 2;
+        requests.viewpoint_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
+        requests.keep_viewpoint = *pressed == 2;
     }
     const std::size_t count = status.viewpoint_count;
     std::string words =
@@ -85,15 +85,15 @@ void drawViewpoints(PanelWidgets& widgets, const PanelStatus& status, PanelReque
 
 }  // namespace
 
-void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& actions) {
+void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests) {
     drawPlaces(widgets, chooser);
-    drawEntries(widgets, chooser, status.pictures, actions);
+    drawEntries(widgets, chooser, status.pictures, requests);
     static constexpr std::array kScenes{"Previous scene", "Next scene", "Last shown"};
     if (const auto pressed = widgets.row(kScenes, {}, kTargetPx)) {
-        actions.scene_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
-        actions.last_scene = *pressed == 2;
+        requests.scene_step = *pressed == 0 ? -1 : *pressed == 1 ? 1 : 0;
+        requests.last_scene = *pressed == 2;
     }
-    drawViewpoints(widgets, status, actions);
+    drawViewpoints(widgets, status, requests);
     drawSaid(status);
 }
 

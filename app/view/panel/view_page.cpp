@@ -61,11 +61,11 @@ std::string describeHeight(const ShownPlace& place) {
     return std::abs(place.eyes_m) < 0.005 ? "Height as at the start" : fmt::format("Height {:+.2f} m", place.eyes_m);
 }
 
-void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& actions) {
+void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& requests) {
     static constexpr std::array kPlaces{"Recentre", "Level", "Reset"}, kSizes{"Smaller", "1:1", "Larger"};
     static constexpr std::array kHeights{"Lower", "Higher"};
     if (const auto pressed = widgets.row(kPlaces, {}, kLargeTargetPx)) {
-        (*pressed == 0 ? actions.recentre : *pressed == 1 ? actions.level_scene : actions.reset_scene) = true;
+        (*pressed == 0 ? requests.recentre : *pressed == 1 ? requests.level_scene : requests.reset_scene) = true;
     }
     writeBefore(describeSize(place), kTabPx);
     ImGui::PushButtonRepeat(true);
@@ -74,10 +74,10 @@ void drawPlace(PanelWidgets& widgets, const ShownPlace& place, PanelRequests& ac
     const auto height = widgets.row(kHeights, {}, kTargetPx);
     ImGui::PopButtonRepeat();
     if (size) {
-        actions.natural_size = *size == 1;
-        actions.growth = *size == 0 ? 1.0 / kGrowthStep : *size == 2 ? kGrowthStep : 1.0;
+        requests.natural_size = *size == 1;
+        requests.growth = *size == 0 ? 1.0 / kGrowthStep : *size == 2 ? kGrowthStep : 1.0;
     }
-    if (height) { actions.rise_m = *height == 0 ? -kRiseStepMetres : kRiseStepMetres; }
+    if (height) { requests.rise_m = *height == 0 ? -kRiseStepMetres : kRiseStepMetres; }
 }
 
 // One of a few, after a word.
@@ -126,13 +126,13 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
 
 }  // namespace
 
-void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& actions) {
+void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     drawQualityRow(widgets, settings, status.rate);
-    drawPlace(widgets, status.place, actions);
+    drawPlace(widgets, status.place, requests);
     drawMoving(widgets, settings, status.can_pass_through);
     static constexpr std::array kKept{"Picture", "Save", "Load"};
     if (const auto pressed = widgets.row(kKept, {}, kTargetPx)) {
-        (*pressed == 0 ? actions.take_picture : *pressed == 1 ? actions.save : actions.load) = true;
+        (*pressed == 0 ? requests.take_picture : *pressed == 1 ? requests.save : requests.load) = true;
     }
     drawRates(widgets, settings, status.refresh_rates);
     drawSaid(status);

@@ -90,7 +90,7 @@ ViewSettings ShownScene::drawable(ViewSettings settings) const {
     return settings;
 }
 
-std::string ShownScene::take(ViewSettings& settings) {
+std::string ShownScene::take(ViewState& state) {
     const std::unique_ptr<SceneLoader> loader = std::move(loader_);
     try {
         std::unique_ptr<LoadedScene> taken = loader->take();
@@ -101,14 +101,14 @@ std::string ShownScene::take(ViewSettings& settings) {
         maker_.reset();
         // Drivers need many times a frame's time to make them.
         if (scene_) { taken->frame.takeKernels(scene_->frame); }
-        if (scene_) { left_[scene_->place] = scene_from_room; }
+        if (scene_) { left_[scene_->place] = state.sceneFromRoom(); }
         scene_ = std::move(taken);
         if (ahead_) { haveReady(loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         return goOnWithout(error.what());
     } catch (const Error& error) { return goOnWithout(error.what()); }
     log_.say("shows " + scene_->name);
-    const std::string complaint = place(settings);
+    const std::string complaint = place(state);
     for (const std::string& line : scene_->notes.lines) { log_.print("note: " + line); }
     return complaint;
 }
@@ -120,19 +120,17 @@ std::string ShownScene::goOnWithout(const std::string& why) {
     return why;
 }
 
-std::string ShownScene::place(ViewSettings& settings) {
+std::string ShownScene::place(ViewState& state) {
     if (const auto left = left_.find(scene_->place); left != left_.end()) {
-        scene_from_room = left->second;
+        state.place(left->second);
         return {};
     }
     const CameraOptions& camera = options_.run.camera;
-    const bool is_asked_for = camera.eye || camera.look || camera.up || settings.scene_from_room ||
-                              (!camera.cameras_file.empty() && scene_->name == options_.scene);
-    scene_from_room = settings.scene_from_room.value_or(scene_->start);
-    settings.scene_from_room.reset();
-    if (is_asked_for) { return {}; }
+    const std::optional<Similarity> asked = state.takeAsked();
+    state.place(asked.value_or(scene_->start));
+    if (asked || camera.eye || camera.look || camera.up || (!camera.cameras_file.empty() && scene_->name == options_.scene)) { return {}; }
     if (scene_->remembered) {
-        scene_from_room = *scene_->remembered;
+        state.place(*scene_->remembered);
         log_.say("the wearer stands where this scene was saved");
     }
     return scene_->remembering_trouble;

@@ -1,10 +1,10 @@
-// The scene that is shown, where the wearer stands in it, and the one on its way to take its place.
+// The scene that is shown, and the one on its way to take its place.
 #pragma once
 
 #include "app/terminal/frame_log.h"
 #include "app/view/files/file_worker.h"
 #include "app/view/scenes/scene_loader.h"
-#include "app/view/settings/view_settings.h"
+#include "app/view/settings/view_state.h"
 
 #include <map>
 #include <memory>
@@ -42,15 +42,13 @@ public:
     void begin(const std::string& scene);
     // The one `step` further on in the folder of the one that was asked for last, once `files` has found it.
     void beginBeside(int step, FileWorker& files);
-    // Shows the next one, waiting for it, and places the wearer: where it was left, where `settings` say, which are of the first scene
-    // alone, or where the scene was saved. Returns what went wrong, empty if nothing did; throws it where that of the options cannot be
-    // loaded and none is there to stay.
-    [[nodiscard]] std::string take(ViewSettings& settings);
-
-    Similarity scene_from_room;
+    // Shows the next one, waiting for it, and places the wearer: where it was left, where `state` was asked for, which is of the
+    // first scene alone, or where the scene was saved. Returns what went wrong, empty if nothing did; throws it where that of the options
+    // cannot be loaded and none is there to stay.
+    [[nodiscard]] std::string take(ViewState& state);
 
 private:
-    [[nodiscard]] std::string place(ViewSettings& settings);
+    [[nodiscard]] std::string place(ViewState& state);
     // By name: where the wearer stood when another scene took the place of one.
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);

@@ -1,6 +1,8 @@
 // Sticks and grips.
 #include "app/view/wearer/wearer_controls.h"
 
+#include "app/view/placement/placement.h"
+
 #include <cmath>
 #include <utility>
 
@@ -24,10 +26,11 @@ double withoutShiver(double stick) { return std::abs(stick) < kStickDeadZone ? 0
 
 }  // namespace
 
-void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewSettings& settings, Similarity& scene_from_room) {
+void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewState& state) {
+    const ViewSettings& settings = state.settings();
     const bool menu = now.hands[kLeft].menu || now.hands[kRight].menu;
     if (menu && !menu_) {
-        settings.panel = !settings.panel;
+        state.togglePanel();
         if (settings.panel) { panel.hangBefore(now.room_from_head); }
     }
     menu_ = menu;
@@ -38,30 +41,30 @@ void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewSettin
         stick_presses_[static_cast<std::size_t>(h)] = pressed;
     }
     panel.update(now.hands, settings.panel);
-    walk(now, panel, settings.teleport, scene_from_room);
+    walk(now, panel, state);
     if (settings.teleport) {
-        teleport(now, panel, scene_from_room);
+        teleport(now, panel, state);
     } else {
         aiming_.reset();
         teleport_ = {};
     }
-    turn(now, panel, settings.smooth_turn, scene_from_room);
-    hold(now, panel, settings.tilt, scene_from_room);
+    turn(now, panel, state);
+    hold(now, panel, state);
 }
 
-void WearerControls::walk(const WearerNow& now, const PanelInRoom& panel, bool teleports, Similarity& scene_from_room) {
+void WearerControls::walk(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     const glm::dvec3 forward = levelled(now.room_from_head.orientation * glm::dvec3(0.0, 0.0, 1.0));
     const glm::dvec3 down(0.0, 1.0, 0.0), right = glm::cross(down, forward);
     const auto stickOf = [&](int h) { return panel.isPointedAtBy(h) ? glm::dvec2(0.0) : now.hands[static_cast<std::size_t>(h)].stick; };
-    const glm::dvec2 left_stick = teleports ? glm::dvec2(0.0) : stickOf(kLeft);
+    const glm::dvec2 left_stick = state.settings().teleport ? glm::dvec2(0.0) : stickOf(kLeft);
     const glm::dvec2 walk(withoutShiver(left_stick.x), withoutShiver(left_stick.y));
     const double rise = withoutShiver(dominantAxis(stickOf(kRight)).y);
     const glm::dvec3 step_m = kWalkMetresPerSecond * (walk.x * right + walk.y * forward) - kRiseMetresPerSecond * rise * down;
     moves_ = step_m != glm::dvec3(0.0);
-    if (moves_) { scene_from_room = movedBy(scene_from_room, now.step_seconds * step_m); }
+    if (moves_) { state.place(movedBy(state.sceneFromRoom(), now.step_seconds * step_m)); }
 }
 
-void WearerControls::teleport(const WearerNow& now, const PanelInRoom& panel, Similarity& scene_from_room) {
+void WearerControls::teleport(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     const auto aims = [&](int h) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
         // Who aims may pass over the panel.
@@ -74,7 +77,7 @@ void WearerControls::teleport(const WearerNow& now, const PanelInRoom& panel, Si
         if (now.hands[static_cast<std::size_t>(*aiming_)].aim && teleport_.target) {
             glm::dvec3 step_m = *teleport_.target - now.room_from_head.position;
             step_m.y = 0.0;
-            scene_from_room = movedBy(scene_from_room, step_m);
+            state.place(movedBy(state.sceneFromRoom(), step_m));
         }
         aiming_.reset();
     }
@@ -85,26 +88,26 @@ void WearerControls::teleport(const WearerNow& now, const PanelInRoom& panel, Si
     if (aiming_) { teleport_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
 }
 
-void WearerControls::turn(const WearerNow& now, const PanelInRoom& panel, bool smoothly, Similarity& scene_from_room) {
+void WearerControls::turn(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     const glm::dvec2& stick = now.hands[kRight].stick;
     const double turn = dominantAxis(stick).x;
-    if (smoothly) {
+    if (state.settings().smooth_turn) {
         const double rate = panel.isPointedAtBy(kRight) ? 0.0 : withoutShiver(turn);
         if (rate == 0.0) { return; }
         moves_ = true;
         const double angle_rad = kTurnRadiansPerSecond * rate * now.step_seconds;
-        scene_from_room = turnedBy(scene_from_room, angle_rad, now.room_from_head.position);
+        state.place(turnedBy(state.sceneFromRoom(), angle_rad, now.room_from_head.position));
         return;
     }
     if (std::abs(turn) > kStickTurns && !turned_) {
-        scene_from_room = turnedBy(scene_from_room, std::copysign(kTurnRadians, turn), now.room_from_head.position);
+        state.place(turnedBy(state.sceneFromRoom(), std::copysign(kTurnRadians, turn), now.room_from_head.position));
         turned_ = true;
     } else if (std::abs(stick.x) < kStickRests) {  // however far it is pushed ahead
         turned_ = false;
     }
 }
 
-void WearerControls::hold(const WearerNow& now, const PanelInRoom& panel, bool may_tilt, Similarity& scene_from_room) {
+void WearerControls::hold(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
     std::array<std::optional<glm::dvec3>, 2> holding;
     for (const int h : {kLeft, kRight}) {
         const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
@@ -113,10 +116,11 @@ void WearerControls::hold(const WearerNow& now, const PanelInRoom& panel, bool m
     // A hand that begins or ends to hold changes who holds, and moves nothing.
     const bool goes_on = holding[kLeft].has_value() == held_[kLeft].has_value() && holding[kRight].has_value() == held_[kRight].has_value();
     if (goes_on && holding[kLeft] && holding[kRight]) {
-        scene_from_room = heldBy(scene_from_room, {*held_[kLeft], *held_[kRight]}, {*holding[kLeft], *holding[kRight]}, may_tilt);
+        state.place(
+            heldBy(state.sceneFromRoom(), {*held_[kLeft], *held_[kRight]}, {*holding[kLeft], *holding[kRight]}, state.settings().tilt));
     } else if (goes_on && (holding[kLeft] || holding[kRight])) {
         const std::size_t h = holding[kLeft] ? kLeft : kRight;
-        scene_from_room = movedBy(scene_from_room, *held_[h] - *holding[h]);
+        state.place(movedBy(state.sceneFromRoom(), *held_[h] - *holding[h]));
     }
     held_ = holding;
 }

@@ -1,9 +1,8 @@
 // What the wearer's hands do to the scene about them.
 #pragma once
 
-#include "app/view/placement/placement.h"
 #include "app/view/room/panel_in_room.h"
-#include "app/view/settings/view_settings.h"
+#include "app/view/settings/view_state.h"
 #include "app/view/wearer/teleport.h"
 #include "xr/input.h"
 
@@ -26,7 +25,7 @@ public:
     // scene moves with it; both: it turns and grows with them, too. Menu: the panel comes before the eyes, or goes. Where the wearer
     // teleports, the left stick ahead or a trigger away from the panel aims at the floor, and letting go moves there. The stick of the hand
     // that points at the panel scrolls there instead, and moves nobody.
-    void update(const WearerNow& now, PanelInRoom& panel, ViewSettings& settings, Similarity& scene_from_room);
+    void update(const WearerNow& now, PanelInRoom& panel, ViewState& state);
 
     // The room begins elsewhere now: what hands hold they hold from there on.
     void letGo() { held_ = {}; }
@@ -41,10 +40,10 @@ public:
     [[nodiscard]] const TeleportAim& teleportAim() const { return teleport_; }
 
 private:
-    void walk(const WearerNow& now, const PanelInRoom& panel, bool teleports, Similarity& scene_from_room);
-    void teleport(const WearerNow& now, const PanelInRoom& panel, Similarity& scene_from_room);
-    void turn(const WearerNow& now, const PanelInRoom& panel, bool smoothly, Similarity& scene_from_room);
-    void hold(const WearerNow& now, const PanelInRoom& panel, bool may_tilt, Similarity& scene_from_room);
+    void walk(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
+    void teleport(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
+    void turn(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
+    void hold(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
 
     bool turned_ = false, menu_ = false, moves_ = false;
     std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene

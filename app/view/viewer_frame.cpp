@@ -1,0 +1,173 @@
+// One frame of the viewer, from where the eyes are to what the runtime is told to show.
+#include "app/view/viewer.h"
+
+#include "app/view/placement/view_eyes.h"
+#include "engine/error.h"
+
+namespace binosplat {
+
+namespace {
+
+// While the scene loads, unless a background is asked for.
+constexpr glm::vec3 kWaitingColour(0.06f, 0.07f, 0.09f);
+
+}  // namespace
+
+void Viewer::settle() {
+    xr::Session& session = headset().session;
+    if (!session.settle(recentre_asked_)) { return; }
+    recentre_asked_ = false;
+    controls_.letGo();
+    const std::optional<double> floor_m = session.floorBelowMetres();
+    log_.say("the room now begins where the wearer stands" +
+             (floor_m ? fmt::format(", {:.2f} m above the floor", *floor_m) : std::string()));
+    panel_.inRoom().hangBefore({});
+}
+
+void Viewer::drawFrame() {
+    settle();
+    const std::optional<std::array<xr::EyeView, 2>> located = headset().session.locateEyes();
+    if (!located) {
+        drawWindowAlone("The headset cannot tell where it is");
+        headset().session.endFrame({});
+        return;
+    }
+    files_.deliver();
+    if (scenes_.isNextReady()) { takeScene(); }
+    const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
+    const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
+    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
+    room_from_head_ = views.room_from_head;
+    const double step_seconds = headset().session.stepSeconds();
+    const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds};
+    controls_.update(wearer, panel_.inRoom(), state_);
+    if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0) {
+        views.gazes = gaze_.update(headset().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
+    } else {
+        gaze_ = {};
+    }
+    if (const int step = controls_.viewpointStep(); step != 0) { goToViewpoint(step); }
+    chooseThings(wearer, views);
+    takeWindowInput(step_seconds);
+    if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate); !complaint.empty()) { say(complaint); }
+    panel_.status().state.clear();
+    panel_hangs_ = state_.settings().panel;
+    if (panel_hangs_ || window_) { layOutPanel(panel_hangs_, step_seconds); }
+    // Last, since the panel and the window may change what is wished for.
+    const bool fits = prepareScene(views);
+    onWindow(&MirrorWindow::acquire);
+    if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
+        renderer_.render(headset(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        ++frames_of_scene_;
+        if (picture_asked_) { takePicture(); }
+    } else {
+        renderWaiting();
+    }
+    picture_asked_ = false;
+    sayPicture(pictures_.takeOutcome());
+    onWindow(&MirrorWindow::show);
+    showFrame(views);
+    sayChange();
+    panel_.keepFrameTime();
+}
+
+bool Viewer::prepareScene(const FrameViews& views) {
+    LoadedScene* scene = scenes_.get();
+    scenes_.expect(state_.settings().stereo, renderer_.sizePx(state_.settings()), state_.settings().tint);
+    const ViewSettings drawable = scenes_.drawable(state_.settings());
+    const bool waits = drawable != state_.settings();
+    if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode))); }
+    drawn_ = drawable;
+    try {
+        renderer_.govern(headset(), drawn_);
+        ViewSettings wished = drawn_;
+        if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
+        if (scene != nullptr) { renderer_.prepare(headset(), *scene, state_.sceneFromRoom(), wished, views); }
+        state_.keepFitting(drawn_);
+        return true;
+    } catch (const Error& error) {
+        const std::string change = state_.changeSinceFitting();
+        if (change.empty()) { throw; }
+        say(fmt::format("{} does not fit: {}", change, error.what()));
+    }
+    state_.goBack();
+    drawn_ = state_.settings();
+    renderer_.govern(headset(), drawn_);
+    return false;
+}
+
+void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
+    for (const int h : {kLeft, kRight}) {
+        if (panel_.inRoom().pulses(h)) { headset().input.pulse(h); }
+    }
+    vignette_.update(state_.settings().vignette && controls_.isMoving(), wearer.step_seconds);
+    RoomSight sight;
+    sight.eye = wearer.room_from_head.position;
+    if (state_.settings().hands) { sight.hands = wearer.hands; }
+    sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
+    std::ranges::copy(thingsOf(controls_.teleportAim(), sight.eye), std::back_inserter(sight.things));
+    sight.vignette_m = vignette_.widthMetres(views.eyes);
+    headset().things.choose(sight);
+}
+
+void Viewer::renderWaiting() {
+    for (const int e : {kLeft, kRight}) { headset().images->acquire(e, false); }
+    commands_.begin();
+    const glm::dvec3& background = options_.run.camera.background;
+    const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
+    const glm::vec4 colour = renderer_.seesThrough(state_.settings()) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
+    for (const int e : {kLeft, kRight}) { headset().images->clear(commands_, e, colour); }
+    recordPanel(commands_);
+    commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
+    commands_.wait();
+}
+
+void Viewer::showFrame(const FrameViews& views) {
+    headset().images->release();
+    panel_.release(headset());
+    headset().things.release();
+    headset().session.seeThrough(renderer_.seesThrough(state_.settings()));
+    submitFrame(views);
+}
+
+void Viewer::submitFrame(const FrameViews& views) {
+    const auto submit = [&](bool with_things) {
+        xr::Layers layers(headset().session);
+        addEyes(layers, views);
+        if (with_things) { headset().things.addBehindPanel(layers); }
+        if (panel_hangs_) { layers.addPanel(panel_.inRoom().roomFromPanel(), panel_.inRoom().sizeMetres(), headset().panel_images); }
+        if (with_things) { headset().things.addBeforePanel(layers); }
+        headset().session.endFrame(layers.list());
+    };
+    std::string refusal;
+    const auto isTaken = [&](bool with_things) {
+        try {
+            submit(with_things);
+            return true;
+        } catch (const Error& error) { refusal = error.what(); }
+        return false;
+    };
+    if (isTaken(true)) { return; }
+    // What can be done without is left out, the cheaper first.
+    if (headset().things.areShown() && isTaken(false)) {
+        instance_.troubles().add(refusal + "; on without hands, rays and the vignette");
+        headset().things.giveUp();
+        return;
+    }
+    if (std::exchange(takes_depth_, false)) {
+        log_.say("the runtime refuses depth; on without depth");
+        renderer_.dropDepth(headset());
+    }
+    submit(true);
+}
+
+void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
+    const auto layerEye = [&](int shown_to) {
+        // One eye's picture for both is shown as that eye saw it.
+        const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
+        return headset().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
+    };
+    layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(state_.settings()));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,111 @@
+// The viewer's panel and its window: what they show, and what is asked for there.
+#include "app/view/viewer.h"
+
+#include "engine/error.h"
+
+namespace binosplat {
+
+namespace {
+
+// How often the window is drawn while no frame is.
+constexpr std::chrono::milliseconds kWindowAlone(16);
+
+}  // namespace
+
+void Viewer::openWindow() {
+    try {
+        window_ = std::make_unique<MirrorWindow>(context_, panel_.canvas());
+    } catch (const Error& error) { log_.print(fmt::format("no window: {}", error.what())); } catch (const vk::SystemError& error) {
+        log_.print(fmt::format("no window: {}", error.what()));
+    }
+}
+
+void Viewer::onWindow(void (MirrorWindow::*act)()) {
+    const auto goOnWithout = [&](const char* why) {
+        say(fmt::format("the window is gone: {}", why));
+        window_.reset();
+        window_input_ = {};
+    };
+    try {
+        if (window_) { (*window_.*act)(); }
+    } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
+        goOnWithout(error.what());
+    } catch (const Error& error) { goOnWithout(error.what()); }
+}
+
+void Viewer::drawWindowAlone(const std::string& why) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!window_ || now - last_alone_ < kWindowAlone) { return; }
+    const double step_seconds = std::min(std::chrono::duration<double>(now - last_alone_).count(), 0.1);
+    last_alone_ = now;
+    files_.deliver();
+    if (scenes_.isNextReady()) { takeScene(); }
+    takeWindowInput(step_seconds);
+    panel_.status().state = why;
+    layOutPanel(false, step_seconds);
+    sayPicture(pictures_.takeOutcome());
+    onWindow(&MirrorWindow::acquire);
+    if (!window_) { return; }
+    waitForQueue();  // what the panel is drawn from is that of the last frame
+    commands_.begin();
+    recordPanel(commands_);
+    commands_.submit(window_->drawn());
+    commands_.wait();
+    onWindow(&MirrorWindow::show);
+    sayChange();
+}
+
+void Viewer::takeWindowInput(double step_seconds) {
+    if (!window_) { return; }
+    window_input_ = window_->poll();
+    if (window_input_.quit) { leave(); }
+    recentre_asked_ = recentre_asked_ || window_input_.recentre;
+    if (!window_input_.dropped.empty()) { scenes_.begin(window_input_.dropped); }
+    if (window_input_.reload_shaders) { reloadShaders(); }
+    if (window_input_.toggle_panel) {
+        state_.togglePanel();
+        panel_.inRoom().hangBefore(room_from_head_);
+    }
+    state_.place(movedByWindow(state_.sceneFromRoom(), window_input_, room_from_head_, step_seconds));
+}
+
+void Viewer::layOutPanel(bool hung, double step_seconds) {
+    PanelStatus& status = panel_.status();
+    status.scene = scenes_.name();
+    status.loading = scenes_.loading();
+    status.rate = renderer_.rate();
+    status.has_scene = scenes_.get() != nullptr;
+    status.can_pass_through = instance_.canSeeThrough();
+    if (connection_.headset() != nullptr) { status.refresh_rates = headset().refresh_rates; }
+    if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
+    if (status.has_scene) {
+        status.facts = describeFacts(scenes_.get()->facts, 1.0 / state_.sceneFromRoom().scale);
+        status.place = shownPlace();
+        status.viewpoint_count = scenes_.get()->viewpoints.size();
+        status.viewpoint = viewpoint_ ? scenes_.get()->viewpoints[*viewpoint_].name : "";
+    }
+    panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
+    panel_.askFor(files_, state_.settings());
+    if (status.files.empty() && scenes_.isMakingKernels()) {
+        status.files = fmt::format("making ready: {}", nameOf(state_.settings().stereo.mode));
+    }
+    followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, state_.settings(),
+                              step_seconds));
+}
+
+void Viewer::recordPanel(Commands& commands) {
+    if (connection_.headset() != nullptr) { headset().things.record(commands); }
+    panel_.record(commands, connection_.headset(), window_ != nullptr);
+    if (window_) { window_->record(commands); }
+}
+
+void Viewer::followPanel(const PanelRequests& requests) {
+    state_.set(requests.settings);
+    if (requests.reload_shaders) { reloadShaders(); }
+    if (scenes_.get() != nullptr) { movePlace(requests); }
+    recentre_asked_ = recentre_asked_ || requests.recentre;
+    openAndSave(requests);
+    if (requests.quit) { leave(); }
+}
+
+}  // namespace binosplat
