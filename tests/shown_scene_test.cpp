@@ -267,6 +267,40 @@ TEST_CASE_FIXTURE(Gpu, "the panel has the same colours where the runtime has no 
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "the depth of one pixel is that of the whole picture there, in full and in half floats, and none where nothing is") {
+    const Scene splat = loadScene("builtin:one-splat");
+    const GpuScene scene(context(), splat);
+    StereoFrame frame(context(), scene);
+    Eye middle{};
+    middle.size_px = {64, 48};
+    middle.intrinsics = intrinsicsFromFovX(1.0, middle.size_px);
+    middle.world_from_camera.position = glm::dvec3(splat.positions[0]) - glm::dvec3(0.0, 0.0, 2.0);
+    for (const bool half_floats : {false, true}) {
+        FrameSettings settings;
+        settings.mode = Mode::kMono;
+        settings.half_floats = half_floats;
+        static_cast<void>(frame.render(std::span(&middle, 1), settings));
+        const Image picture = frame.readPicture(0), depth = frame.readDepth(0);
+        std::size_t covered = 0;
+        for (const glm::uvec2 pixel : {glm::uvec2(32, 24), glm::uvec2(33, 23), glm::uvec2(0, 0), glm::uvec2(63, 47)}) {
+            const std::size_t at = std::size_t{pixel.y} * 64 + pixel.x;
+            const float alpha = picture.values[4 * at + 3];
+            const std::optional<double> one = frame.depthAt(0, pixel);
+            CHECK(one.has_value() == (alpha >= 0.5f));
+            if (!one) { continue; }
+            CHECK(*one == doctest::Approx(depth.values[at] / alpha));
+            CHECK(*one == doctest::Approx(2.0).epsilon(0.1));
+            ++covered;
+        }
+        CHECK(covered == 2);
+    }
+    FrameSettings without;
+    without.mode = Mode::kMono;
+    without.keep_depth = false;
+    static_cast<void>(frame.render(std::span(&middle, 1), without));
+    CHECK_FALSE(frame.depthAt(0, {32, 24}).has_value());
+}
+
 TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, made beside the frames, and the next scene comes with them") {
     ViewSettings settings;
     options.run.stereo.mode = settings.stereo.mode = Mode::kMono;

@@ -9,14 +9,14 @@
 namespace binosplat {
 
 template <typename T>
-std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t first_bytes) {
-    const std::uint64_t bytes = std::min(buffer.bytes(), first_bytes);
+std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t most_bytes, std::uint64_t from_byte) {
+    const std::uint64_t bytes = std::min(buffer.bytes() - std::min(buffer.bytes(), from_byte), most_bytes);
     if (bytes == 0) { return {}; }
     const Buffer readback(context_, "read-back", bytes, MemoryKind::kReadback);
     finish();
     Commands& commands = flight().commands;
     commands.begin();
-    commands.copy(buffer, readback, bytes);
+    commands.copy(buffer, readback, bytes, from_byte);
     commands.submitAndWait();
     const auto values = readback.mapped<T>();
     return {values.begin(), values.end()};
@@ -36,6 +36,18 @@ Image StereoFrame::readPicture(int eye) {
     return result;
 }
 Image StereoFrame::readDepth(int eye) { return {picture(eye).size_px, 1, readBuffer<float>(picture(eye).depths)}; }
+
+std::optional<double> StereoFrame::depthAt(int eye, glm::uvec2 pixel) {
+    const Picture& source = picture(eye);
+    const std::uint64_t at = std::uint64_t{pixel.y} * source.size_px.x + pixel.x;
+    const std::vector<float> depth = readBuffer<float>(source.depths, sizeof(float), at * sizeof(float));
+    if (depth.empty()) { return std::nullopt; }
+    const float alpha =
+        source.half_floats
+            ? glm::unpackHalf2x16(readBuffer<gpu::uint>(source.colours, sizeof(gpu::uint), (2 * at + 1) * sizeof(gpu::uint)).at(0)).y
+            : readBuffer<float>(source.colours, sizeof(float), (4 * at + 3) * sizeof(float)).at(0);
+    return alpha < 0.5f ? std::nullopt : std::optional(static_cast<double>(depth[0]) / static_cast<double>(alpha));
+}
 
 Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }
 

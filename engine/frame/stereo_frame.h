@@ -59,6 +59,9 @@ public:
     [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.dominant); }
     // The same of any eye, where it was kept.
     [[nodiscard]] Image readDepth(int eye);
+    // How far away along the eye's axis that lies which a pixel shows, D over alpha, and nothing else is read; empty where less than half
+    // of it is covered, or where the depth was not kept.
+    [[nodiscard]] std::optional<double> depthAt(int eye, glm::uvec2 pixel);
     // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; where they were kept.
     [[nodiscard]] Image readInverseDepthMoments();
     // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
@@ -116,7 +119,7 @@ private:
     // Whether the frame has little in common with the one before.
     [[nodiscard]] bool isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
     template <typename T>
-    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t first_bytes = UINT64_MAX);
+    [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t most_bytes = UINT64_MAX, std::uint64_t from_byte = 0);
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;
