@@ -5,8 +5,6 @@
 #include "engine/error.h"
 #include "engine/setup/values.h"
 
-#include <utility>
-
 namespace binosplat {
 
 namespace {

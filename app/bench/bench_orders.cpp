@@ -2,12 +2,11 @@
 // pops while the head turns. In float64 on the CPU, so that nothing but the order differs.
 #include "app/bench/bench.h"
 #include "app/bench/bench_quality.h"
-#include "app/bench/bench_results.h"
+#include "app/bench/order_results.h"
 #include "app/load.h"
 #include "app/options/camera_options.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
-#include "engine/picture/metrics.h"
 #include "engine/reference/reference.h"
 #include "engine/setup/output_files.h"
 
@@ -15,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <iterator>
 #include <span>
 #include <string>
@@ -24,11 +22,6 @@
 namespace binosplat {
 
 namespace {
-
-constexpr double kTurnDegrees = 0.1;
-constexpr int kTurns = 20;
-// From the middle between the eyes back to where a head turns.
-constexpr double kNeckMetres = 0.1;
 
 // What a pixel is blended by: splats in one order, of which each pixel may put a few right.
 struct OrderMethod {
@@ -61,11 +54,6 @@ HeadEye turnHead(const Cameras& cameras, Side side, double angle_rad, double beh
     return head;
 }
 
-struct OrderChange {
-    double mean_square = 0.0;  // of R, G and B
-    double share_off = 0.0;    // of the pixels of which any of these is off by more than two steps of a display
-};
-
 OrderChange changeBetween(const reference::Picture& a, const reference::Picture& b) {
     OrderChange change;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -76,14 +64,6 @@ OrderChange changeBetween(const reference::Picture& a, const reference::Picture&
     const auto pixels = static_cast<double>(std::max<std::size_t>(a.rgba.size(), 1));
     return {change.mean_square / pixels, change.share_off / pixels};
 }
-
-struct OrderResult {
-    std::string point, method;
-    glm::uvec2 size_px;
-    OrderChange from_own, from_depth;
-    // Shares of pixels that change from one turn to the next by the order alone: mean and most.
-    double popped_eyes = 0.0, most_eyes = 0.0, popped_neck = 0.0, most_neck = 0.0;
-};
 
 // One scene and view.
 class OrderPoint {
@@ -154,38 +134,6 @@ private:
     const Cameras& cameras_;
     reference::Settings settings_;
 };
-
-std::string ordersCsv(const std::vector<OrderResult>& results) {
-    std::string csv =
-        "point,width,height,order,psnr_to_own_db,share_off_own,psnr_to_depth_db,share_off_depth,popped_eyes,popped_eyes_most,popped_neck,"
-        "popped_neck_most\n";
-    for (const OrderResult& r : results) {
-        csv +=
-            fmt::format("{},{},{},{},{:.4f},{:.6g},{:.4f},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", csvCell(r.point), r.size_px.x, r.size_px.y,
-                        csvCell(r.method), psnrOf(r.from_own.mean_square), r.from_own.share_off, psnrOf(r.from_depth.mean_square),
-                        r.from_depth.share_off, r.popped_eyes, r.most_eyes, r.popped_neck, r.most_neck);
-    }
-    return csv;
-}
-
-std::string ordersTable(const std::vector<OrderResult>& results) {
-    std::string table = fmt::format(
-        "Off: pixels that differ by more than 2/255 from those of each pixel's own order. Popped: pixels that change by as much from one "
-        "turn\n"
-        "of {} degrees to the next by the order alone, mean of {}: about the middle between the eyes, and about a neck {} m behind it.\n",
-        kTurnDegrees, kTurns, kNeckMetres);
-    std::string point;
-    for (const OrderResult& r : results) {
-        if (r.point != point) {
-            point = r.point;
-            table += fmt::format("\n{}, {}x{}\n  {:<22} {:>9} {:>9} {:>12} {:>11} {:>11}\n", point, r.size_px.x, r.size_px.y, "order", "dB",
-                                 "off %", "dB to depth", "popped %", "neck %");
-        }
-        table += fmt::format("  {:<22} {:>9.2f} {:>9.3f} {:>12.2f} {:>11.4f} {:>11.4f}\n", r.method, psnrOf(r.from_own.mean_square),
-                             100.0 * r.from_own.share_off, psnrOf(r.from_depth.mean_square), 100.0 * r.popped_eyes, 100.0 * r.popped_neck);
-    }
-    return table;
-}
 
 }  // namespace
 

@@ -4,14 +4,12 @@
 #include "app/bench/bench_results.h"
 #include "app/options/modes.h"
 #include "engine/error.h"
-#include "engine/scene/procedural.h"
 #include "engine/setup/values.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <ranges>
 #include <set>
-#include <utility>
 
 namespace binosplat {
 

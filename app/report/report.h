@@ -6,7 +6,6 @@
 #include "engine/frame/stereo_frame.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace binosplat {

@@ -5,7 +5,6 @@
 #include "app/report/text_columns.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace binosplat {
 

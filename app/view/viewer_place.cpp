@@ -1,4 +1,5 @@
 // Where the wearer stands in the scene, and what the viewer keeps of that.
+#include "app/view/placement/placement.h"
 #include "app/view/scenes/recent_scenes.h"
 #include "app/view/scenes/seen_scenes.h"
 #include "app/view/scenes/viewpoints.h"

@@ -9,7 +9,6 @@
 #include <imgui.h>
 
 #include <array>
-#include <utility>
 
 namespace binosplat {
 

@@ -7,7 +7,6 @@
 
 #include <imgui.h>
 
-#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>

@@ -1,7 +1,7 @@
 // From the headset's eyes in the room to the eyes of a frame in the scene.
 #pragma once
 
-#include "app/view/placement/placement.h"
+#include "engine/similarity.h"
 #include "xr/session.h"
 
 #include <array>

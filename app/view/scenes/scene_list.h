@@ -3,7 +3,6 @@
 
 #include "app/view/scenes/seen_scenes.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -3,6 +3,7 @@
 
 #include "app/load.h"
 #include "app/options/start_view.h"
+#include "app/view/placement/placement.h"
 #include "app/view/scenes/scene_up.h"
 #include "app/view/settings/view_files.h"
 #include "engine/error.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "app/options/options.h"
-#include "app/view/placement/placement.h"
 #include "app/view/scenes/kernels_ahead.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/viewpoints.h"

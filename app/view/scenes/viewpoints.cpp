@@ -2,6 +2,7 @@
 #include "app/view/scenes/viewpoints.h"
 
 #include "app/options/start_view.h"
+#include "app/view/placement/placement.h"
 #include "app/view/settings/view_files.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"

@@ -1,8 +1,8 @@
 // Places in a scene to go to: the cameras that it was trained from, and those that the wearer kept.
 #pragma once
 
-#include "app/view/placement/placement.h"
 #include "engine/scene/procedural.h"
+#include "engine/similarity.h"
 
 #include <cstddef>
 #include <filesystem>

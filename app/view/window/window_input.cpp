@@ -1,6 +1,8 @@
 // Walking and turning without a headset's controllers.
 #include "app/view/window/window_input.h"
 
+#include "app/view/placement/placement.h"
+
 #include <cmath>
 
 namespace binosplat {

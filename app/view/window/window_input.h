@@ -1,8 +1,8 @@
 // Mouse and keyboard of the window.
 #pragma once
 
-#include "app/view/placement/placement.h"
 #include "app/view/room/panel_pointer.h"
+#include "engine/similarity.h"
 
 #include <string>
 

@@ -1,0 +1,126 @@
+// What a frame of each method took, and how far its pictures are from full renders.
+#include "app/bench/motion_point.h"
+
+#include "engine/picture/metrics.h"
+#include "engine/picture/pair_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+double pairsOf(const FrameResult& frame) {
+    double pairs = 0.0;
+    for (const TargetCounters& target : frame.counters.targets) { pairs += static_cast<double>(target.tile_pairs); }
+    return pairs;
+}
+
+// In tiles that are shown and were not rendered: of the affiliated eye, or of both where these are made from their pasts.
+std::uint64_t pixelsWarped(const FrameResult& frame, Mode mode, int affiliated) {
+    std::uint64_t pixels = 0, tiles = 0, rendered = frame.counters.warped ? frame.counters.warped->tiles_patched : 0;
+    for (std::size_t t = 0; t < frame.counters.targets.size(); ++t) {
+        const TargetCounters& target = frame.counters.targets[t];
+        if (mode != Mode::kTemporal && t != static_cast<std::size_t>(affiliated)) { continue; }
+        pixels += target.pixels;
+        tiles += target.tiles;
+        rendered += target.tiles_hidden;
+    }
+    return std::min(pixels, 256 * (tiles - std::min(tiles, rendered)));
+}
+
+// R, G and B of a less those of b.
+Image subtract(const Image& a, const Image& b) {
+    Image difference{a.size_px, 3, {}};
+    difference.values.reserve(3 * a.pixelCount());
+    for (std::size_t pixel = 0; pixel < a.pixelCount(); ++pixel) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            difference.values.push_back(a.values[pixel * static_cast<std::size_t>(a.channels) + channel] -
+                                        b.values[pixel * static_cast<std::size_t>(b.channels) + channel]);
+        }
+    }
+    return difference;
+}
+
+// Mean |a - b|; 0 if there is nothing to compare with.
+double meanChange(const Image& a, const Image& b) {
+    if (a.size_px != b.size_px || a.pixelCount() == 0) { return 0.0; }
+    const Image difference = subtract(a, b);
+    double sum = 0.0;
+    for (const float value : difference.values) { sum += std::abs(static_cast<double>(value)); }
+    return sum / static_cast<double>(difference.values.size());
+}
+
+}  // namespace
+
+void setTimes(MotionFrame& frame, const FrameResult& result) {
+    frame.total_ms = result.gpu_total_ms;
+    frame.stage_ms = stagesOf(frame.mode, result.gpu_ms);
+    frame.pass_ms = byLabel(result.gpu_ms);
+}
+
+MotionPoint::MotionPoint(const Context& context, const GpuScene& scene, const RunOptions& run, const BenchPlan& plan, std::string name)
+    : camera_(run.camera), shared_(plainMethod(Mode::kShared, run)), frames_(context, scene), name_(std::move(name)) {
+    for (const BenchMethod& method : plan.methods) {
+        if (method.stereo.mode != Mode::kMono) { sequences_.push_back({method, {}}); }
+    }
+}
+
+std::vector<FrameResult> MotionPoint::time(const Cameras& cameras) {
+    std::vector<FrameResult> results;
+    for (const MethodHistory& sequence : sequences_) {
+        results.push_back(frames_.render(cameras, camera_, sequence.method.stereo, false, true).result);
+    }
+    return results;
+}
+
+void MotionPoint::pass(const Cameras& cameras) {
+    for (const MethodHistory& sequence : sequences_) {
+        if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
+    }
+}
+
+void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
+    std::map<std::optional<Order>, FullRender> full_by_order;
+    for (MethodHistory& sequence : sequences_) {
+        shared_.stereo.order = sequence.method.stereo.order;
+        FullRender& full = full_by_order[shared_.stereo.order];
+        if (full.pairs == 0.0) {
+            const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
+            full = {{frame->readPicture(kLeft), frame->readPicture(kRight)}, std::max(pairsOf(rendered), 1.0)};
+        }
+        const FullRender& before = full_before_[shared_.stereo.order];
+        const Mode mode = sequence.method.stereo.mode;
+        const auto [rendered, frame] = frames_.render(cameras, camera_, sequence.method.stereo, false, true);
+        MotionFrame row;
+        row.point = name_;
+        row.method = sequence.method.name;
+        row.mode = mode;
+        row.number = number;
+        row.time_s = time_s;
+        setTimes(row, rendered);
+        row.work_rendered = pairsOf(rendered) / full.pairs;
+        std::array<Image, 2> pictures;
+        for (const int eye : {kLeft, kRight}) {
+            const auto e = static_cast<std::size_t>(eye);
+            row.full_change += 0.5 * meanChange(full.eyes[e], before.eyes[e]);
+            if (rendersBothInFull(mode)) { continue; }
+            pictures[e] = frame->readPicture(eye);
+            Image error = subtract(pictures[e], full.eyes[e]);
+            row.mean_square[e] = compare(pictures[e], full.eyes[e]).mean_square;
+            row.flicker[e] = meanChange(error, sequence.error[e]);
+            row.tile_steps = std::max(row.tile_steps, tileSteps(error));
+            sequence.error[e] = std::move(error);
+        }
+        if (!rendersBothInFull(mode)) {
+            row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant);
+            row.sharpness_gap = sharpnessGap(pictures, full.eyes);
+        }
+        result.push_back(std::move(row));
+    }
+    full_before_ = std::move(full_by_order);
+}
+
+}  // namespace binosplat
