@@ -59,9 +59,9 @@ ShownRate SceneRenderer::rate() const {
     return rate;
 }
 
-void SceneRenderer::dropDepth(ConnectedHeadset& headset) {
-    takes_depth_ = false;
+bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
     headset.images->dropDepth();
+    return std::exchange(takes_depth_, false);
 }
 
 FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale, const FrameViews& views,

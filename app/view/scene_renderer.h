@@ -34,8 +34,8 @@ public:
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings);
     // What the governor makes of the wearer's settings, in images as large as that.
     void govern(ConnectedHeadset& headset, const ViewSettings& settings);
-    // The runtime refuses depth after all.
-    void dropDepth(ConnectedHeadset& headset);
+    // The runtime refuses depth after all; false: there was none.
+    bool dropDepth(ConnectedHeadset& headset);
 
     // What render() will show. Throws Error where there is no memory for it; nothing is shown then, until this succeeds with less.
     void prepare(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,

@@ -102,7 +102,7 @@ private:
     std::uint64_t frames_of_scene_ = 0;
     std::optional<std::size_t> viewpoint_;  // the one gone to last
     Pose room_from_head_;                   // as last known
-    bool recentre_asked_ = false, takes_depth_ = true, leaving_ = false, waits_for_kernels_ = false;
+    bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;
     std::chrono::steady_clock::time_point last_alone_{};
     FileWorker files_;   // its thread ends before what it reads for
     ShownScene scenes_;  // last: the loading thread ends first

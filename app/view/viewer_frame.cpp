@@ -154,10 +154,7 @@ void Viewer::submitFrame(const FrameViews& views) {
         headset().things.giveUp();
         return;
     }
-    if (std::exchange(takes_depth_, false)) {
-        log_.say("the runtime refuses depth; on without depth");
-        renderer_.dropDepth(headset());
-    }
+    if (renderer_.dropDepth(headset())) { log_.say("the runtime refuses depth; on without depth"); }
     submit(true);
 }
 

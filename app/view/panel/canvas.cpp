@@ -22,6 +22,16 @@ void requireSuccess(VkResult result) { check(result == VK_SUCCESS, "the panel ca
 
 }  // namespace
 
+OwnImage::OwnImage(const Context& context, const char* name, glm::uvec2 size_px, vk::Format format, vk::ImageUsageFlags usage)
+    : image(context.device(), vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px.x, size_px.y, 1}, 1, 1,
+                                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, usage)) {
+    const auto needs = image.getMemoryRequirements();
+    const std::uint32_t type = context.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
+    memory = vk::raii::DeviceMemory(context.device(), vk::MemoryAllocateInfo(needs.size, type));
+    image.bindMemory(*memory, 0);
+    context.name(image, name);
+}
+
 Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : context_(context), size_px_(size_px) {
     const auto families = context.physicalDevice().getQueueFamilyProperties();
     if (!(families[context.queueFamily()].queueFlags & vk::QueueFlagBits::eGraphics)) {
@@ -32,7 +42,7 @@ Canvas::Canvas(const Context& context, glm::uvec2 size_px, vk::Format format) : 
     makeImage(raw);
     if (layout.linear) {
         const vk::Format encoded = layout.blue_first ? vk::Format::eB8G8R8A8Srgb : vk::Format::eR8G8B8A8Srgb;
-        encoded_ = makePicture(encoded, vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
+        encoded_.emplace(context, "canvas", size_px, encoded, vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
     }
     makeRenderPass(raw);
     startImGui();
@@ -45,21 +55,8 @@ Canvas::~Canvas() {
 
 const std::string& Canvas::fontComplaint() const { return font_->complaint(); }
 
-Canvas::Picture Canvas::makePicture(vk::Format format, vk::ImageUsageFlags usage) const {
-    const vk::raii::Device& device = context_.device();
-    Picture made;
-    made.image = vk::raii::Image(device, vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {size_px_.x, size_px_.y, 1}, 1, 1,
-                                                             vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, usage));
-    const auto needs = made.image.getMemoryRequirements();
-    const std::uint32_t type = context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal);
-    made.memory = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
-    made.image.bindMemory(*made.memory, 0);
-    context_.name(made.image, "canvas");
-    return made;
-}
-
 void Canvas::makeImage(vk::Format format) {
-    picture_ = makePicture(format, vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
+    picture_.emplace(context_, "canvas", size_px_, format, vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc);
     view_ = vk::raii::ImageView(context_.device(), vk::ImageViewCreateInfo({}, image(), vk::ImageViewType::e2D, format, {},
                                                                            {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
 }
@@ -187,8 +184,8 @@ Canvas::DrawList Canvas::drawList() {
 }
 
 void Canvas::copyTo(Commands& commands, vk::Image target) const {
-    if (*encoded_.image) {
-        commands.decodeImage(image(), *encoded_.image, target, size_px_);
+    if (encoded_) {
+        commands.decodeImage(image(), *encoded_->image, target, size_px_);
     } else {
         commands.copyImage(image(), target, size_px_);
     }

@@ -10,6 +10,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,13 @@ namespace binosplat {
 
 class PanelFont;
 struct PictureCorners;
+
+// An image of one level, in memory of its own.
+struct OwnImage {
+    OwnImage(const Context& context, const char* name, glm::uvec2 size_px, vk::Format format, vk::ImageUsageFlags usage);
+    vk::raii::DeviceMemory memory{nullptr};
+    vk::raii::Image image{nullptr};
+};
 
 // One at a time: ImGui has one current context. Throws Error (exit code 3) where the queue cannot draw.
 class Canvas {
@@ -50,14 +58,9 @@ public:
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     // Why the small built-in font is used; empty: it is not.
     [[nodiscard]] const std::string& fontComplaint() const;
-    [[nodiscard]] vk::Image image() const { return *picture_.image; }
+    [[nodiscard]] vk::Image image() const { return *picture_->image; }
 
 private:
-    struct Picture {
-        vk::raii::DeviceMemory memory{nullptr};
-        vk::raii::Image image{nullptr};
-    };
-    [[nodiscard]] Picture makePicture(vk::Format format, vk::ImageUsageFlags usage) const;
     void makeImage(vk::Format format);
     void makeRenderPass(vk::Format format);
     void startImGui();
@@ -74,8 +77,8 @@ private:
     std::uint64_t revision_ = 0;
     bool is_new_ = true, is_recorded_ = false;  // of the last end()
     std::unique_ptr<PanelFont> font_;           // once there is an ImGui context
-    Picture picture_;
-    Picture encoded_;  // see Commands::decodeImage; none where the copies are raw
+    std::optional<OwnImage> picture_;
+    std::optional<OwnImage> encoded_;  // see Commands::decodeImage; none where the copies are raw
     vk::raii::ImageView view_{nullptr};
     vk::raii::RenderPass render_pass_{nullptr};
     vk::raii::Framebuffer framebuffer_{nullptr};

@@ -1,6 +1,7 @@
 // GLFW, and what is drawn on its window.
 #include "app/view/window/mirror_window.h"
 
+#include "app/view/room/sprites.h"
 #include "engine/error.h"
 
 #define GLFW_INCLUDE_NONE
@@ -20,6 +21,7 @@ constexpr int kHeightPx = 720;
 constexpr double kRadiansPerPixel = 0.004;
 
 using Layout = vk::ImageLayout;
+using Usage = vk::ImageUsageFlagBits;
 
 void changeLayout(Commands& commands, vk::Image image, Layout from, Layout to) {
     const auto all = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
@@ -144,39 +146,22 @@ WindowInput MirrorWindow::poll() {
     return input;
 }
 
-void MirrorWindow::dropEyeImage() {
-    eye_ = vk::raii::Image(nullptr);
-    eye_memory_ = vk::raii::DeviceMemory(nullptr);
-}
-
-void MirrorWindow::makeEyeImage(glm::uvec2 size_px, vk::Format format) {
-    using Usage = vk::ImageUsageFlagBits;
-    const bool blue_first = format == vk::Format::eB8G8R8A8Srgb || format == vk::Format::eB8G8R8A8Unorm;
-    dropEyeImage();
-    eye_ = vk::raii::Image(context_.device(),
-                           vk::ImageCreateInfo({}, vk::ImageType::e2D, blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm,
-                                               {size_px.x, size_px.y, 1}, 1, 1, vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                               Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment));
-    const auto needs = eye_.getMemoryRequirements();
-    eye_memory_ = vk::raii::DeviceMemory(
-        context_.device(),
-        vk::MemoryAllocateInfo(needs.size, context_.memoryType(needs.memoryTypeBits, {}, vk::MemoryPropertyFlagBits::eDeviceLocal)));
-    eye_.bindMemory(*eye_memory_, 0);
-}
-
 void MirrorWindow::keepEye(Commands& commands, const Buffer& pixels, glm::uvec2 size_px, vk::Format format) {
     // Of another size than the frame before, which is over then.
     if (eye_px_ != size_px) {
         eye_px_ = size_px;
         try {
-            makeEyeImage(size_px, format);
-        } catch (const vk::OutOfDeviceMemoryError&) { dropEyeImage(); } catch (const vk::OutOfHostMemoryError&) {
-            dropEyeImage();  // the window shows the panel alone: the headset matters more
+            eye_.reset();
+            const vk::Format raw = texelLayoutOf(format).blue_first ? vk::Format::eB8G8R8A8Unorm : vk::Format::eR8G8B8A8Unorm;
+            eye_.emplace(context_, "the window's eye", size_px, raw, Usage::eTransferDst | Usage::eTransferSrc | Usage::eColorAttachment);
+        } catch (const vk::OutOfDeviceMemoryError&) {
+        } catch (const vk::OutOfHostMemoryError&) {
+            // The window shows the panel alone: the headset matters more.
         }
     }
-    if (!*eye_) { return; }
-    commands.copyToImage(pixels, *eye_, size_px, vk::ImageAspectFlagBits::eColor);
-    changeLayout(commands, *eye_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
+    if (!eye_) { return; }
+    commands.copyToImage(pixels, *eye_->image, size_px, vk::ImageAspectFlagBits::eColor);
+    changeLayout(commands, *eye_->image, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal);
 }
 
 void MirrorWindow::record(Commands& commands) {
@@ -189,7 +174,7 @@ void MirrorWindow::record(Commands& commands) {
                                       vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal);
     const int split = std::clamp(width * kHeightPx / widthOf(canvas_), 1, std::max(width - 1, 1));
-    if (*eye_) { blit(commands, *eye_, eye_px_, target, 0, split, height); }
+    if (eye_) { blit(commands, *eye_->image, eye_px_, target, 0, split, height); }
     if (split < width) { blit(commands, canvas_.image(), canvas_.sizePx(), target, split, width, height); }
     changeLayout(commands, target, Layout::eTransferDstOptimal, Layout::ePresentSrcKHR);
 }

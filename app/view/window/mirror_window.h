@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,15 +52,11 @@ public:
     void show() { pictures_->show(); }
 
 private:
-    void dropEyeImage();
-    void makeEyeImage(glm::uvec2 size_px, vk::Format format);
-
     const Context& context_;
     const Canvas& canvas_;
     std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window_;  // outlives what is drawn on it
     std::unique_ptr<WindowPictures> pictures_;
-    vk::raii::DeviceMemory eye_memory_{nullptr};
-    vk::raii::Image eye_{nullptr};
+    std::optional<OwnImage> eye_;
     glm::uvec2 eye_px_{0, 0};
     glm::dvec2 cursor_{0.0};  // at the last poll, and whether its left button was down
     bool was_down_ = false;
