@@ -1,6 +1,6 @@
 // Facts about the documents: what they link to is there, the options and files that they name exist, and their commands are understood.
-#include "app/options/commands_table.h"
-#include "app/options/option_documents.h"
+#include "app/command_line/commands_table.h"
+#include "app/command_line/option_documents.h"
 #include "tests/run_program.h"
 
 #include <doctest/doctest.h>

@@ -28,6 +28,11 @@ void refuseContradictions(const Settings& layer, ExitCode code) {
 
 }  // namespace
 
+RunOptions runOptions(const Settings& settings, RunOptions options) {
+    readRows(runRows(), settings, options);
+    return options;
+}
+
 Settings configLayer(const std::filesystem::path& config, const std::vector<SettingsTable>& tables, const std::set<std::string>& foreign) {
     Settings layer;
     for (const SettingsTable& table : tables) {

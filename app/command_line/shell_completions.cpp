@@ -1,7 +1,7 @@
 // Completion for bash.
-#include "app/options/shell_completions.h"
+#include "app/command_line/shell_completions.h"
 
-#include "app/options/document_text.h"
+#include "app/command_line/document_text.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Common to the documents that are made from the table.
 #pragma once
 
-#include "app/options/commands_table.h"
+#include "app/command_line/commands_table.h"
 
 #include <string>
 #include <string_view>

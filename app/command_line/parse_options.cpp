@@ -1,9 +1,7 @@
-// The command line, read with CLI11, and the typed values of all settings.
+// The command line, read with CLI11.
 #include "app/options/options.h"
 
-#include "app/options/commands_table.h"
-#include "app/options/option_layers.h"
-#include "app/options/option_table.h"
+#include "app/command_line/commands_table.h"
 #include "app/terminal/version.h"
 #include "engine/error.h"
 #include "engine/scene/address.h"
@@ -113,11 +111,6 @@ std::string oneLine(std::string text) {
 }
 
 }  // namespace
-
-RunOptions runOptions(const Settings& settings, RunOptions options) {
-    readRows(runRows(), settings, options);
-    return options;
-}
 
 Options parseOptions(int argument_count, const char* const* arguments) {
     const std::vector<std::string> words =

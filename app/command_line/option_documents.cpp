@@ -1,9 +1,9 @@
 // The list of commands and options for readers and shells.
-#include "app/options/option_documents.h"
+#include "app/command_line/option_documents.h"
 
-#include "app/options/default_config.h"
-#include "app/options/document_text.h"
-#include "app/options/shell_completions.h"
+#include "app/command_line/default_config.h"
+#include "app/command_line/document_text.h"
+#include "app/command_line/shell_completions.h"
 #include "app/terminal/version.h"
 #include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"

@@ -1,7 +1,7 @@
 // The commands: their words, their options, and what is made of both.
-#include "app/options/commands_table.h"
+#include "app/command_line/commands_table.h"
 
-#include "app/options/option_documents.h"
+#include "app/command_line/option_documents.h"
 #include "app/options/option_layers.h"
 #include "engine/error.h"
 #include "engine/picture/flip.h"
