@@ -1,7 +1,7 @@
 // From the options to the loader.
 #include "app/load.h"
 
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/address.h"
 #include "engine/web/web_files.h"

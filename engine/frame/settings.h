@@ -39,8 +39,8 @@ struct FrameSettings {
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
     // kPredicted, by eye: where it looks; empty: nobody knows. Of the affiliated eye's errors only what it sees there counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
-    // kMono, kPredicted, kAlternate, kTemporal: where it is known where the eyes look (`gazes`), each has a picture of half the size for the
-    // rest, and tiles of its own size only where it would see that. Not where moments are kept.
+    // kMono, kPredicted, kAlternate, kTemporal: where it is known where the eyes look (`gazes`), each has a picture of half the size for
+    // the rest, and tiles of its own size only where it would see that. Not where moments are kept.
     bool half_periphery = false;
     // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, where that was asked for
     // likewise.
