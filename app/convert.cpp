@@ -1,7 +1,7 @@
 // `binosplat convert`: any scene that can be read, as a PLY, an SPZ or a SOG file.
 #include "app/commands.h"
 #include "app/load.h"
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 #include "engine/error.h"
 #include "engine/scene/scene_targets.h"
 
