@@ -12,9 +12,6 @@
 
 namespace binosplat {
 
-namespace {
-
-// What a frame needs beside the scene depends on the view and is not known yet: the level's splats alone are held against the limit.
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
     if (memory_limit_mib == 0) { return {options.lod, {}}; }
     return {options.lod, [limit_bytes = memory_limit_mib << 20, options](std::uint64_t splats, int sh_degree) {
@@ -22,6 +19,8 @@ LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_m
                 return splats <= limit_bytes / deviceBytesPerSplat(kept, !options.flatten);
             }};
 }
+
+namespace {
 
 // Fewer colours, 3D Gaussians as discs, or dimmed, where the user says so; a file may itself say that its splats are to be dimmed.
 void drawAs(const LoadOptions& options, Scene& scene, LoadNotes& notes) {

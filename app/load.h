@@ -9,6 +9,9 @@
 
 namespace binosplat {
 
+// What a frame needs beside the scene depends on the view and is not known yet: the level's splats alone are held against the limit.
+LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib);
+
 // SCENE of any command: a file, a folder, a built-in scene (then `builtin_splats` sets the size, 0 for its default), or an address.
 // `memory_limit_mib` is of the device, 0 for none.
 Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::uint64_t memory_limit_mib, LoadNotes& notes,
