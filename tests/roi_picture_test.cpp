@@ -88,7 +88,7 @@ TEST_CASE("tintsCanBeToldApartOnAnyPicture") {
 }
 
 TEST_CASE("listsThatDoNotFitAreRefused") {
-    const std::vector<std::uint32_t> one_kind{0}, unknown_kind{4};
+    const std::vector<std::uint32_t> one_kind{0}, unknown_kind{6};
     const std::vector<std::uint8_t> one_class{gpu::kHole}, unknown_class{3};
     CHECK_THROWS_AS(pixelOrigins({17, 1}, one_kind, {}), Error);
     CHECK_THROWS_AS(pixelOrigins({2, 1}, {}, one_class), Error);

@@ -50,7 +50,8 @@ std::string room() {
 }
 
 ViewRun look(const Workplace& work, const std::string& name, const std::string& keys, const std::string& script, int frames) {
-    std::ofstream(work.path / (name + ".toml")) << "[stereo]\nmode = \"predicted\"\nbudget = 0.04\nmove_cost = 0\n" << keys;
+    std::ofstream(work.path / (name + ".toml")) << "[stereo]\nmode = \"predicted\"\nperiphery = \"full\"\nbudget = 0.04\nmove_cost = 0\n"
+                                                << keys;
     return runView(work, name, script,
                    fmt::format("{} --config {}.toml --frames {} --load-first --hide-panel --hide-hands", room(), name, frames));
 }

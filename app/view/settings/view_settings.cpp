@@ -41,6 +41,8 @@ std::vector<std::pair<std::string, std::string>> stereoLines(const StereoOptions
     std::vector<std::pair<std::string, std::string>> lines;
     for (const OptionRow<RunOptions>& row : runRows()) {
         if (std::string_view(row.text.table) != "stereo" || (row.text.commands & kView) == 0) { continue; }
+        // Half the resolution goes with foveation: other commands refuse it alone.
+        if (std::string_view(row.text.key) == "periphery" && stereo.foveation_deg == 0.0) { continue; }
         lines.push_back(lineOf(row, options));
     }
     return lines;
