@@ -106,15 +106,18 @@ public:
         gpu.run([&](Commands& commands) {
             shown_.record(commands);
             passes_.recordHalfChoice(commands, inputs());
-            passes_.recordChoice(commands, inputs());
         });
         if (halves) {
             nothing_known_ =
                 std::ranges::all_of(gpu.readBack<gpu::uint>(half_.words, pixelCount(half_eye_)), [](gpu::uint word) { return word == 0; });
+            gpu.upload(half_.colours, packed(half_colours));
             gpu.upload(half_.words, makeWords(pixelCount(half_eye_)));
             gpu.upload(half_.tiles, makePastTiles(tileCount(half_eye_)));
         }
-        gpu.run([&](Commands& commands) { passes_.recordFill(commands, inputs()); });
+        gpu.run([&](Commands& commands) {
+            passes_.recordChoice(commands, inputs());
+            passes_.recordFill(commands, inputs());
+        });
         state_ = gpu.readBack<FrameState>(buffers_.state, 1).front();
         words_ = gpu.readBack<gpu::uint>(tiles_.buffer(), tiles_.buffer().bytes() / sizeof(gpu::uint));
     }

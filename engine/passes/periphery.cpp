@@ -69,8 +69,8 @@ KernelTable peripheryKernels() {
 void PeripheryPasses::recordHalfChoice(Commands& commands, const PeripheryInputs& in) {
     commands.beginPass({in.role, PeripheryKernel::kStage, PeripheryKernel::kShader});
     commands.fillZero(in.tiles.buffer());
-    if (in.half.words.bytes() > 0) {  // nothing is known of what is not made
-        std::vector<const Buffer*> unknown{&in.half.words, &in.half.tiles};
+    if (in.half.words.bytes() > 0) {  // nothing is known of what is not made; its colours are sampled across the border
+        std::vector<const Buffer*> unknown{&in.half.words, &in.half.tiles, &in.half.colours};
         if (!in.fromPasts()) { unknown.push_back(&in.target.tiles); }
         for (const Buffer* buffer : unknown) {
             commands.beside();
