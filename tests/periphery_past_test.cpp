@@ -93,14 +93,14 @@ TEST_CASE_FIXTURE(Gpu, "without a past one eye is as alone, and the other is mad
     }
 }
 
-TEST_CASE_FIXTURE(Gpu, "a head that stands still comes to see what it sees without a past, and then for no work") {
+TEST_CASE_FIXTURE(Gpu, "a head that stands still comes to see what it sees without a past, and then for next to no work") {
     Walk walk(context(), settingsOf(Mode::kTemporal));
     for (int frame = 0; frame < 4; ++frame) { walk.go(frame); }
     for (int frame = 0; frame < 30; ++frame) { walk.go(4.0); }
     const FrameResult result = walk.go(4.0);
     MESSAGE(walk.psnr(kLeft, true) << ", " << walk.psnr(kRight, true) << " dB to its eyes alone, " << walk.psnr(kLeft, false) << ", "
                                    << walk.psnr(kRight, false) << " dB to the full render, work " << result.work_rendered);
-    CHECK(result.work_rendered == 0.0);
+    CHECK(result.work_rendered < 0.005);  // what nobody notices has its turn now and then
     for (const int eye : {kLeft, kRight}) { CHECK(walk.psnr(eye, true) > 50.0); }
 }
 
