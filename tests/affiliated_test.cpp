@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("affiliated");
 
+namespace affiliated_test {
+
 using namespace binosplat;
 using test::AffiliatedFrame;
 using test::Gpu;
@@ -312,3 +314,5 @@ TEST_CASE("making one eye from the other takes less memory than rendering both")
         }
     }
 }
+
+}  // namespace affiliated_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("bindings");
 
+namespace bindings_test {
+
 using namespace binosplat::test;
 using namespace binosplat::xr;
 
@@ -67,3 +69,5 @@ TEST_CASE("the drawings of docs/draw.py are those in docs, and docs/headset.md s
     }
     CHECK((textOf(work.path / "overlap.svg") == textOf(docs / "overlap.svg")));
 }
+
+}  // namespace bindings_test

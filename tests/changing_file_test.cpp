@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("changing_file");
 
+namespace changing_file_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -96,3 +98,5 @@ TEST_CASE("a SOG folder that loses a picture while it is read is refused in one 
     CHECK(contains(load(path, [&] { fs::resize_file(path + "/s.webp", 20); }), path + "/s.webp: "));
 }
 #endif
+
+}  // namespace changing_file_test

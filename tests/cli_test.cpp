@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("cli");
 
+namespace cli_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -555,3 +557,5 @@ TEST_CASE("helpExitsWithZero") {
         CHECK(!outcome.output.empty());
     }
 }
+
+}  // namespace cli_test

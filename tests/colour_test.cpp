@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("colour");
 
+namespace colour_test {
+
 using namespace binosplat;
 
 namespace {
@@ -49,3 +51,5 @@ TEST_CASE("colourSpacesReturnWhatTheyWereGiven") {
         CHECK(near(xyzFromYcxcz(ycxczFromXyz(xyz)), xyz, 1e-6f));
     }
 }
+
+}  // namespace colour_test

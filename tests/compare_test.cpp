@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("compare");
 
+namespace compare_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -113,3 +115,5 @@ TEST_CASE("what cannot be compared is refused in one line") {
     pictures.checkRefused("a.pfm b.pfm c.pfm", 2, "c.pfm");
     pictures.checkRefused("a.pfm b.pfm --lpips", 2, "--lpips");
 }
+
+}  // namespace compare_test

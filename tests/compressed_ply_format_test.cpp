@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("compressed_ply_format");
 
+namespace compressed_ply_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -179,3 +181,5 @@ TEST_CASE("chunks with bounds that are no numbers lose their splats alone") {
     CHECK(loadScene(folder.write("a.ply", bytes), 0, &notes).size() == 1);
     CHECK(notes.skipped_not_finite == 256);
 }
+
+}  // namespace compressed_ply_format_test

@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("convert");
 
+namespace convert_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -143,3 +145,5 @@ TEST_CASE("what cannot be converted leaves nothing behind") {
     checkRefused(work, "convert builtin:one-splat folder.spz", 1, "folder.spz: is a directory");
     CHECK(std::filesystem::is_empty(work.path / "folder.spz"));
 }
+
+}  // namespace convert_test

@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("display_pace");
 
+namespace display_pace_test {
+
 using binosplat::xr::DisplayPace;
 
 namespace {
@@ -87,3 +89,5 @@ TEST_CASE("where the runtime says what the display's period is, it is that") {
     CHECK(pace.after(4.0, true, kQuick, 2 * kPeriod, 2 * kPeriod) == doctest::Approx(1.0));
     CHECK(pace.period() == 2 * kPeriod);
 }
+
+}  // namespace display_pace_test

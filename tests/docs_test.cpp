@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("docs");
 
+namespace docs_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 
@@ -332,3 +334,5 @@ TEST_CASE("variables of the environment that the program reads are documented") 
         CHECK_MESSAGE(man.find(fmt::format("\n.B {}\n", name)) != std::string::npos, name);
     }
 }
+
+}  // namespace docs_test

@@ -18,6 +18,8 @@
 
 TEST_SUITE_BEGIN("equivalent_format");
 
+namespace equivalent_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -229,3 +231,5 @@ TEST_CASE("scenes of every format that is read go through every format that is w
         MESSAGE(fmt::format("{}:{}", source, told));
     }
 }
+
+}  // namespace equivalent_format_test

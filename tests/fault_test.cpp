@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("fault");
 
+namespace fault_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat::test;
 
@@ -154,3 +156,5 @@ TEST_CASE("SIGTERM ends the viewer as its wearer would") {
     CHECK(outcome.errors.empty());
 }
 #endif
+
+}  // namespace fault_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("flat_gaussians");
 
+namespace flat_gaussians_test {
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -118,3 +120,5 @@ TEST_CASE_FIXTURE(Gpu, "a scene of flat 3D Gaussians is that of its discs, and o
         CHECK(flattened_db >= 120.0);  // measured: 145
     }
 }
+
+}  // namespace flat_gaussians_test

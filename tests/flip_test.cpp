@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("flip");
 
+namespace flip_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -221,3 +223,5 @@ TEST_CASE("theDefaultDistanceIsThePapers") {
     CHECK(kFlipPixelsPerDegree == doctest::Approx(67.0206).epsilon(1e-6));
     CHECK(pixelsPerDegree(3840.0) == doctest::Approx(kFlipPixelsPerDegree));
 }
+
+}  // namespace flip_test

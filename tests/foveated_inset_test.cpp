@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("foveated_inset");
 
+namespace foveated_inset_test {
+
 using namespace binosplat;
 using binosplat::test::Headset;
 
@@ -124,3 +126,5 @@ TEST_CASE("a session with insets locates them about the gaze, and the wearer see
         CHECK(at(first + 36, 32) == std::array{255, 0, 0});
     }
 }
+
+}  // namespace foveated_inset_test

@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("foveation");
 
+namespace foveation_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using test::AffiliatedFrame;
@@ -225,3 +227,5 @@ TEST_CASE_FIXTURE(Gpu, "an eye that may look everywhere gets the picture of one 
     CHECK(clear.tile_kinds == everywhere.tile_kinds);
     CHECK(clear.pictures[kRight].values == everywhere.pictures[kRight].values);
 }
+
+}  // namespace foveation_test

@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("frame_ahead");
 
+namespace frame_ahead_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -348,3 +350,5 @@ TEST_CASE_FIXTURE(Gpu, "a frame that goes on with another's kernels draws its ow
     frame.rebuildKernels();
     CHECK(pictureOf(frame, view.eye) == expected);
 }
+
+}  // namespace frame_ahead_test

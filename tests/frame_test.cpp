@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("frame");
 
+namespace frame_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::renderMono;
@@ -273,3 +275,5 @@ TEST_CASE_FIXTURE(Gpu, "walls stand at their depths behind bars and edges") {
         }
     }
 }
+
+}  // namespace frame_test

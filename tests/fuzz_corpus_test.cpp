@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("fuzz_corpus");
 
+namespace fuzz_corpus_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -117,3 +119,5 @@ TEST_CASE("seeds are written" * doctest::skip()) {
         std::ofstream(kCorpus / target / fmt::format("seed_{}", number++), std::ios::binary) << bytes;
     }
 }
+
+}  // namespace fuzz_corpus_test

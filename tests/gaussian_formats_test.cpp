@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("gaussian_formats");
 
+namespace gaussian_formats_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -193,3 +195,5 @@ TEST_CASE_FIXTURE(Gpu, "twin and device draw the pictures of an independent rend
         CHECK(device > 60.0);
     }
 }
+
+}  // namespace gaussian_formats_test

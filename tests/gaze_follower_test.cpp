@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("gaze_follower");
 
+namespace gaze_follower_test {
+
 using namespace binosplat;
 
 namespace {
@@ -72,3 +74,5 @@ TEST_CASE("a blink changes nothing, a gaze that stays lost goes back to the lens
     for (int i = 0; i < 20; ++i) { follow(kAside, 1.1 * whole_rad * kStep / GazeFollower::kFindSeconds); }
     CHECK(angleBetween(gazes[kRight]->direction, kAside) < 1e-6);
 }
+
+}  // namespace gaze_follower_test

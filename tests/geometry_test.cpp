@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("geometry");
 
+namespace geometry_test {
+
 using namespace binosplat;
 
 namespace {
@@ -121,3 +123,5 @@ TEST_CASE("a point in the middle lies to the right for the left eye") {
     CHECK(transform(inverse(eyes[kLeft].world_from_camera), point).x == doctest::Approx(0.05));
     CHECK(transform(inverse(eyes[kRight].world_from_camera), point).x == doctest::Approx(-0.05));
 }
+
+}  // namespace geometry_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("gltf_format");
 
+namespace gltf_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -330,3 +332,5 @@ TEST_CASE("a glTF that does not fit is named with its place") {
     many.nodes.back() = ']', many.roots.back() = ']';
     CHECK(loadScene(folder.write("many.glb", many.glb())).size() == 6000);
 }
+
+}  // namespace gltf_format_test

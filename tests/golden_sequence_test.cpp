@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("golden");
 
+namespace golden_sequence_test {
+
 #ifdef BINOSPLAT_HAS_PNG
 
 using namespace binosplat;
@@ -160,4 +162,4 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk is what twin and device come to"
 
 #endif
 
-TEST_SUITE_END();
+}  // namespace golden_sequence_test

@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("golden");
 
+namespace golden_test {
+
 #ifndef BINOSPLAT_HAS_PNG
 
 TEST_CASE("golden pictures") { MESSAGE("skipped: built without PNG, golden pictures are PNG files"); }
@@ -77,3 +79,5 @@ TEST_CASE("golden pictures differ from each other and from themselves shifted") 
 }
 
 #endif
+
+}  // namespace golden_test

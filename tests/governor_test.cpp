@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("governor");
 
+namespace governor_test {
+
 using namespace binosplat;
 
 namespace {
@@ -396,3 +398,5 @@ TEST_CASE("without times nothing is chosen, and a message says so") {
     CHECK(run.changes().empty());
     CHECK(run.last().sentence.find("does not say") != std::string::npos);
 }
+
+}  // namespace governor_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("headsets");
 
+namespace headsets_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 
@@ -136,3 +138,5 @@ TEST_CASE("cantedHeadsetsAreAmongThem") {
     for (const fs::path& file : headsetFiles()) { canted += readHeadset(file).canting_rad > 0.0 ? 1 : 0; }
     CHECK(canted >= 2);
 }
+
+}  // namespace headsets_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("hidden_tiles");
 
+namespace hidden_tiles_test {
+
 using namespace binosplat;
 using xr::findHiddenTiles;
 using xr::HiddenMesh;
@@ -136,3 +138,5 @@ TEST_CASE("angles and meshes that shiver make no mask anew, others do") {
     CHECK(MaskedView(-0.4f, left_rad + 5e-5f).hidden(of_angle, 1) == before);
     CHECK(MaskedView(-0.4f, left_rad + 5e-4f).hidden(of_angle, 1) == byAngle(left_rad + 5e-4f));
 }
+
+}  // namespace hidden_tiles_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("hostile_scene");
 
+namespace hostile_scene_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -189,3 +191,5 @@ TEST_CASE("broken glTF files") {
                        replaced(embedded, R"("nodes":[)", R"("extras":)" + std::string(60, '[') + std::string(60, ']') + R"(,"nodes":[)"));
 }
 #endif
+
+}  // namespace hostile_scene_test

@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("hostile_setup");
 
+namespace hostile_setup_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -176,3 +178,5 @@ TEST_CASE("broken head motion") {
         attempts.run(kMotion);
     }
 }
+
+}  // namespace hostile_setup_test

@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("hostile_sog");
 
+namespace hostile_sog_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -148,3 +150,5 @@ TEST_CASE("broken bundles") {
         spliceBytes(good.substr(directory), 800, at_end);
     }
 }
+
+}  // namespace hostile_sog_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("install");
 
+namespace install_test {
+
 namespace fs = std::filesystem;
 using binosplat::test::Outcome;
 using binosplat::test::Workplace;
@@ -225,3 +227,5 @@ TEST_CASE("the man page has every command and no line that groff complains about
     CHECK(formatted.errors.empty());
     CHECK(work.run("document page").exit_code == 2);
 }
+
+}  // namespace install_test

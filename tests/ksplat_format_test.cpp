@@ -4,6 +4,8 @@
 
 TEST_SUITE_BEGIN("ksplat_format");
 
+namespace ksplat_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -117,3 +119,5 @@ TEST_CASE("a .ksplat that does not fit is named") {
     }
     CHECK(contains(loadError(folder.write("cut.ksplat", good.substr(0, good.size() - 1))), "bytes are left of"));
 }
+
+}  // namespace ksplat_format_test

@@ -24,6 +24,8 @@
 
 TEST_SUITE_BEGIN("layout");
 
+namespace layout_test {
+
 using namespace binosplat;
 
 namespace {
@@ -352,3 +354,5 @@ TEST_CASE("a wrong field is found") {
     CHECK(alter([](Layout& l) { l.bytes = 16; }) == "Thing has another size");
     CHECK(alter([](Layout& l) { l.name = "Other"; }) == "Other is missing in the table of this test");
 }
+
+}  // namespace layout_test

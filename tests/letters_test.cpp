@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("letters");
 
+namespace letters_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -257,3 +259,5 @@ TEST_CASE("a font is taken only if the tables it has lie within it") {
     CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(0) + number(16) + moved));
     CHECK_FALSE(isFont("ttcf" + number(0x00010000) + number(1) + number(0x7fffffff) + moved));
 }
+
+}  // namespace letters_test

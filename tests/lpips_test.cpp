@@ -16,6 +16,8 @@
 
 TEST_SUITE_BEGIN("lpips");
 
+namespace lpips_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -206,3 +208,5 @@ TEST_CASE("teddysViewsAreAsFarApartAsAnotherProgramSays" * needsSharedData()) {
     CHECK(lpips.measure(left, left) == 0.0);
 }
 #endif
+
+}  // namespace lpips_test

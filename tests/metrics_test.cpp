@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("metrics");
 
+namespace metrics_test {
+
 using namespace binosplat;
 
 namespace {
@@ -165,3 +167,5 @@ TEST_CASE("a blur in one eye alone is a gap in sharpness, and one in both eyes i
     CHECK(sharpnessGap({makeTexture(0, 0.4f), makeTexture(5, 0.4f)}, full) == doctest::Approx(0.0).epsilon(1e-4));
     CHECK(sharpnessGap({makeTexture(0, 0.8f), makeTexture(5, 0.6f)}, full) == doctest::Approx(0.25).epsilon(1e-3));
 }
+
+}  // namespace metrics_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("middlebury");
 
+namespace middlebury_test {
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -139,3 +141,5 @@ TEST_CASE_FIXTURE(Gpu, "a real picture that is infinitely far keeps its bytes, a
     CHECK(still.coverage == 1.0);
     CHECK(still.psnr_everywhere_db == std::numeric_limits<double>::infinity());
 }
+
+}  // namespace middlebury_test

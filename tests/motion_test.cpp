@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("motion");
 
+namespace motion_test {
+
 using namespace binosplat;
 
 namespace {
@@ -203,3 +205,5 @@ TEST_CASE("theSharedRecordingReadsAndItsWearerWalksForward" * test::needsSharedD
     CHECK(cosines / count > 0.3);
     CHECK(motion.samples().front().world_from_head.position.z == doctest::Approx(0.09279076));
 }
+
+}  // namespace motion_test

@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("no_sog_format");
 
+namespace no_sog_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -28,3 +30,5 @@ TEST_CASE("a glTF scene names the build that reads it") {
     CHECK(contains(message, "BINOSPLAT_GLTF=ON"));
 }
 #endif
+
+}  // namespace no_sog_format_test

@@ -4,6 +4,8 @@
 
 TEST_SUITE_BEGIN("no_web");
 
+namespace no_web_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -13,3 +15,5 @@ TEST_CASE("a scene at an address names the build that reads it") {
     CHECK_THROWS_WITH_AS((void)loadSceneFromAnywhere("http://127.0.0.1/a.ply", 0, notes, {}, {}, {folder.file("cache"), 0, {}}),
                          doctest::Contains("this build has no network"), Error);
 }
+
+}  // namespace no_web_test

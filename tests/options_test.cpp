@@ -21,6 +21,8 @@
 
 TEST_SUITE_BEGIN("options");
 
+namespace options_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;
@@ -666,3 +668,5 @@ TEST_CASE("plotsOfFewOrBadPointsStayFinite") {
         CHECK(svg.find("a&amp;b") != std::string::npos);
     }
 }
+
+}  // namespace options_test

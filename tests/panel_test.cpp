@@ -19,6 +19,8 @@
 
 TEST_SUITE_BEGIN("panel");
 
+namespace panel_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -351,3 +353,5 @@ TEST_CASE("the rates that the headset offers can be chosen, and left to it; wher
     sketch.status.refresh_rates.clear();
     for (const auto& [name, place] : sketch.draw().places) { CHECK(with.at(name) == place); }
 }
+
+}  // namespace panel_test

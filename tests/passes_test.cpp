@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("passes");
 
+namespace passes_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::SceneOnDevice;
@@ -340,3 +342,5 @@ TEST_CASE_FIXTURE(Gpu, "project gives the twin's fields, up to roundings times t
         }
     }
 }
+
+}  // namespace passes_test

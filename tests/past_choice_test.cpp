@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("past_choice");
 
+namespace past_choice_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using test::Gpu;
@@ -245,4 +247,4 @@ TEST_CASE_FIXTURE(Gpu, "where it is known where the eyes look, the twin's tiles 
     }
 }
 
-TEST_SUITE_END();
+}  // namespace past_choice_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("past_frames");
 
+namespace past_frames_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -287,4 +289,4 @@ TEST_CASE_FIXTURE(Gpu, "frames that are not waited for are the same ones") {
     }
 }
 
-TEST_SUITE_END();
+}  // namespace past_frames_test

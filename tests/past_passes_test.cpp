@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("past_passes");
 
+namespace past_passes_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using test::EyeOnDevice;
@@ -203,4 +205,4 @@ TEST_CASE_FIXTURE(Gpu, "every tile of a picture that moves has its turn, also wh
     for (const int eye : {kLeft, kRight}) { CHECK(std::ranges::count(walk.read(eye).errors, 0u) == 0); }
 }
 
-TEST_SUITE_END();
+}  // namespace past_passes_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("past_reference");
 
+namespace past_reference_test {
+
 using namespace binosplat;
 using namespace binosplat::reference;
 
@@ -257,3 +259,5 @@ TEST_CASE("a tile that is rendered again says how far off it was, for each frame
     CHECK(past.tiles[1].age == 4);
     CHECK(past.tiles[2].growth == 0.0);  // nothing is left there
 }
+
+}  // namespace past_reference_test

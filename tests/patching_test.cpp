@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("patching");
 
+namespace patching_test {
+
 using namespace binosplat;
 using test::AffiliatedFrame;
 using test::Gpu;
@@ -287,3 +289,5 @@ TEST_CASE_FIXTURE(Gpu, "where moving did not pay the next frame leaves it out an
     CHECK_FALSE((render(outside), reprojects(render(outside))));
     CHECK(reprojects(render(eyes, 0.1)));
 }
+
+}  // namespace patching_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("path");
 
+namespace path_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -234,3 +236,5 @@ TEST_CASE("a signal on the way ends it with nothing written") {
         CHECK_FALSE(fs::exists(way.path / "frames"));
     }
 }
+
+}  // namespace path_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("periphery_frames");
 
+namespace periphery_frames_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -219,3 +221,5 @@ TEST_CASE_FIXTURE(Gpu, "half the size makes fewer bytes of pictures than the eye
     frame.render({&view.eye, 1}, inFull(settings));
     CHECK(context().memoryUse().current_bytes < in_two);
 }
+
+}  // namespace periphery_frames_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("periphery_past");
 
+namespace periphery_past_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -124,3 +126,5 @@ TEST_CASE_FIXTURE(Gpu, "a walk keeps its quality within the budget") {
         }
     }
 }
+
+}  // namespace periphery_past_test

@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("periphery");
 
+namespace periphery_test {
+
 using namespace binosplat;
 using test::Gpu;
 using Tiles = std::vector<std::uint8_t>;
@@ -339,3 +341,5 @@ TEST_CASE("a ramp is filled as a ramp, and a flat picture is seen nowhere") {
     CHECK(std::ranges::all_of(reference::expectSeenLosses(flat, fine, aside), [](double loss) { return loss == 0.0; }));
     CHECK(std::ranges::count(reference::findOwnTiles(flat, fine, aside), 1) == 0);
 }
+
+}  // namespace periphery_test

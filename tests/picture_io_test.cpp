@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("picture_io");
 
+namespace picture_io_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 
@@ -185,3 +187,5 @@ TEST_CASE("truncatedAndForeignFilesAreErrors") {
             Error);
     }
 }
+
+}  // namespace picture_io_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("pipeline_cache");
 
+namespace pipeline_cache_test {
+
 using namespace binosplat;
 namespace fs = std::filesystem;
 
@@ -125,3 +127,5 @@ TEST_CASE("a folder that cannot be written, a file of rubbish and a pipe trouble
     for (const auto& entry : fs::directory_iterator(folder)) { CHECK(entry.path().extension() == ".pipelines"); }
     fs::remove_all(folder);
 }
+
+}  // namespace pipeline_cache_test

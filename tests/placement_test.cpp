@@ -16,6 +16,8 @@
 
 TEST_SUITE_BEGIN("placement");
 
+namespace placement_test {
+
 using namespace binosplat;
 
 namespace {
@@ -290,3 +292,5 @@ TEST_CASE("a ray meets the panel where it points, from the front alone") {
     CHECK(behind[0].sprite == Sprite::kFadingRay);
     CHECK(behind[0].strip.size_m.y < 0.5);
 }
+
+}  // namespace placement_test

@@ -26,6 +26,8 @@
 
 TEST_SUITE_BEGIN("platform");
 
+namespace platform_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -296,3 +298,5 @@ TEST_CASE("nothing but platform_*.cpp includes a header of a system") {
     }
     CHECK(files > 100);
 }
+
+}  // namespace platform_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("plot_axis");
 
+namespace plot_axis_test {
+
 using namespace binosplat;
 
 namespace {
@@ -79,3 +81,5 @@ TEST_CASE("names stand beside their points where there is room, and never on eac
     // In a corner three sides are outside.
     CHECK(namesOf(std::vector(6, std::pair(0.0, 0.0)), 10.0).size() == 1);
 }
+
+}  // namespace plot_axis_test

@@ -4,6 +4,8 @@
 
 TEST_SUITE_BEGIN("ply_errors");
 
+namespace ply_errors_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -139,3 +141,5 @@ TEST_CASE("ascii values that are no numbers are named, with their splat") {
     CHECK(contains(loadError(folder, replaced(good, "\n2 0.25", "\n2 0.25 1")), "splat 1 of 3: more than the expected 16 values"));
     CHECK(loadError(folder, replaced(good, "\n2 0.25", "\n\n+2 \t 2.5e-1")).empty());
 }
+
+}  // namespace ply_errors_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("ply");
 
+namespace ply_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -413,3 +415,5 @@ TEST_CASE("loading reports progress from 0 to 1") {
     CHECK(shares.front() == 0.0);
     CHECK(shares.back() == 1.0);
 }
+
+}  // namespace ply_test

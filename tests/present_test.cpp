@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("present");
 
+namespace present_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -245,3 +247,5 @@ TEST_CASE_FIXTURE(Gpu, "smaller copies of a picture are the mean of its pixels, 
     CHECK(small[1] == 0xffffffffu);
     CHECK(isNear(small[2], 225));
 }
+
+}  // namespace present_test

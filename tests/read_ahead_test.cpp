@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("read_ahead");
 
+namespace read_ahead_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -97,3 +99,5 @@ TEST_CASE("bands that only late splats use are kept, few of them too") {
         CHECK(wrong == 0);
     }
 }
+
+}  // namespace read_ahead_test

@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("reference_passes");
 
+namespace reference_passes_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 using namespace binosplat::reference;
@@ -259,3 +261,5 @@ TEST_CASE("spherical harmonics are orthonormal over the sphere") {
         for (int l = 0; l < 16; ++l) { CHECK(std::abs(products[k][l] - (k == l ? 1.0 : 0.0)) < 1e-3); }
     }
 }
+
+}  // namespace reference_passes_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("reference");
 
+namespace reference_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 using reference::Picture;
@@ -309,3 +311,5 @@ TEST_CASE("an empty scene and an empty picture are no trouble") {
     CHECK(render({{}}, {}, {0, 0}).rgba.empty());
     CHECK(render({{}}, {}, {0, 7}).rgba.empty());
 }
+
+}  // namespace reference_test

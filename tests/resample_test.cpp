@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("resample");
 
+namespace resample_test {
+
 using namespace binosplat;
 using reference::PixelClass;
 using reference::TileKind;
@@ -450,3 +452,5 @@ TEST_CASE_FIXTURE(Gpu, "resample moves nothing where nothing is worth moving, bu
     CHECK(std::ranges::all_of(device.readTileErrors(), [](gpu::uint error) { return error == 0; }));
     CHECK(std::ranges::all_of(device.readClasses(), [](std::uint8_t pixel_class) { return pixel_class == 0; }));
 }
+
+}  // namespace resample_test

@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("roi_picture");
 
+namespace roi_picture_test {
+
 using namespace binosplat;
 
 namespace {
@@ -97,3 +99,5 @@ TEST_CASE("listsThatDoNotFitAreRefused") {
     CHECK_THROWS_AS(makeRoiPicture(makeGrey({1, 1}, 1, 0.0f), {}, {}), Error);
     CHECK(pixelOrigins({0, 0}, {}, {}).empty());
 }
+
+}  // namespace roi_picture_test

@@ -20,6 +20,8 @@
 
 TEST_SUITE_BEGIN("scene_list");
 
+namespace scene_list_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;
@@ -229,3 +231,5 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     notes.three_scales = false;
     CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }
+
+}  // namespace scene_list_test

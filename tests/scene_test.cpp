@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("scene");
 
+namespace scene_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -209,3 +211,5 @@ TEST_CASE("the shared scenes load whole" * needsSharedData()) {
     load("playbot/playbot_lod3_2dgs_sh2.ply", 31'000, 2);
     load("statues/angel_2dgs_sh0.ply", 71'359, 0);
 }
+
+}  // namespace scene_test

@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("selection");
 
+namespace selection_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using test::Gpu;
@@ -260,3 +262,5 @@ TEST_CASE_FIXTURE(Gpu, "select renders everything that is shown where nothing is
     CHECK(device.readCounters().predicted_tiles == std::ranges::count(expected, gpu::kTilePredicted));
     CHECK(device.readCounters().cheap_tiles == std::ranges::count(expected, gpu::kTileCheap));
 }
+
+}  // namespace selection_test

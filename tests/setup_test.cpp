@@ -17,6 +17,8 @@
 
 TEST_SUITE_BEGIN("setup");
 
+namespace setup_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;
@@ -219,3 +221,5 @@ TEST_CASE("afailedRunKeepsWhatWasThere") {
     CHECK(fs::file_size(work.path / "out" / "one") == 3);
     CHECK(std::distance(fs::directory_iterator(work.path / "out"), {}) == 1);
 }
+
+}  // namespace setup_test

@@ -26,6 +26,8 @@
 
 TEST_SUITE_BEGIN("shown_scene");
 
+namespace shown_scene_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -357,3 +359,5 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     REQUIRE(scenes.take(state).empty());
     CHECK(drawsWithoutCompiling());
 }
+
+}  // namespace shown_scene_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("shown_tiles");
 
+namespace shown_tiles_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using test::Gpu;
@@ -308,3 +310,5 @@ TEST_CASE_FIXTURE(Gpu, "the affiliated eye's depth is there in every mode, the r
         CHECK(frame.picture(kRight).depths.bytes() == 0);
     }
 }
+
+}  // namespace shown_tiles_test

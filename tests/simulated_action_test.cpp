@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("simulated_action");
 
+namespace simulated_action_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -222,3 +224,5 @@ TEST_CASE_FIXTURE(SessionFixture, "action spaces are made of pose actions") {
     info.type = XR_TYPE_REFERENCE_SPACE_CREATE_INFO;
     CHECK(xrCreateActionSpace(session, &info, &space) == XR_ERROR_VALIDATION_FAILURE);
 }
+
+}  // namespace simulated_action_test

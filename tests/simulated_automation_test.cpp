@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("simulated_automation");
 
+namespace simulated_automation_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -226,3 +228,5 @@ TEST_CASE_FIXTURE(AutomationFixture, "there is no input that the device's profil
     pose.orientation.w = 0;
     CHECK(setLocation(session, left, grip_path, local, pose) == XR_ERROR_POSE_INVALID);
 }
+
+}  // namespace simulated_automation_test

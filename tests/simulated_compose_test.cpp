@@ -15,6 +15,8 @@
 
 TEST_SUITE_BEGIN("simulated_compose");
 
+namespace simulated_compose_test {
+
 using namespace simulated;
 
 namespace {
@@ -549,3 +551,5 @@ TEST_CASE("the room shows as far as alpha lets it or is added") {
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9})}, added) == Rgb{255, 255, 0});
     CHECK(seen({quad(green, {0, 0, -2}, {9, 9}), blended(quad(blue, {0, 0, -1}, {9, 9}), true)}, room) == Rgb{0, 188, 188});
 }
+
+}  // namespace simulated_compose_test

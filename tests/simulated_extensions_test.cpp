@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_extensions");
 
+namespace simulated_extensions_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -270,3 +272,5 @@ TEST_CASE("the joints of a hand turn with its controller, and those of a finger 
     CHECK(turning(XR_HAND_JOINT_INDEX_TIP_EXT) > 1);
     CHECK(turning(XR_HAND_JOINT_LITTLE_TIP_EXT) == doctest::Approx(0));
 }
+
+}  // namespace simulated_extensions_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_gaze");
 
+namespace simulated_gaze_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -228,3 +230,5 @@ TEST_CASE("a gaze out of focus is inactive") {
     CHECK(made.at(0.05).is_active);
     CHECK_FALSE(made.at(0.2).is_active);
 }
+
+}  // namespace simulated_gaze_test

@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("simulated_geometry");
 
+namespace simulated_geometry_test {
+
 using namespace simulated;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("the outline touches the four edges") {
     CHECK(up.y == doctest::Approx(0.75));
     CHECK(outline.indices.size() == outline.vertices.size());
 }
+
+}  // namespace simulated_geometry_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_handles");
 
+namespace simulated_handles_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -104,3 +106,5 @@ TEST_CASE("objects end in every order, each once, and with their parents") {
         } while (std::next_permutation(order.begin(), order.end()));
     }
 }
+
+}  // namespace simulated_handles_test

@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("simulated_headless");
 
+namespace simulated_headless_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -89,3 +91,5 @@ TEST_CASE("without the extension a session needs graphics") {
     XrSession session = XR_NULL_HANDLE;
     CHECK(made.xr<PFN_xrCreateSession>("xrCreateSession")(made.instance, &info, &session) == XR_ERROR_GRAPHICS_DEVICE_INVALID);
 }
+
+}  // namespace simulated_headless_test

@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("simulated_input");
 
+namespace simulated_input_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -397,3 +399,5 @@ TEST_CASE_FIXTURE(SessionFixture, "suggested paths are converted to the action's
     CHECK(countOf(as_float) == 1);
     CHECK_MESSAGE(countOf(as_stick) == 0, "a button is no stick");
 }
+
+}  // namespace simulated_input_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("simulated_inset");
 
+namespace simulated_inset_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -296,3 +298,5 @@ TEST_CASE("no lens hides anything of an inset") {
     CHECK(get(made.session, kInset, 4, hidden, &mask) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(get(made.session, kStereo, 2, hidden, &mask) == XR_ERROR_VALIDATION_FAILURE);
 }
+
+}  // namespace simulated_inset_test

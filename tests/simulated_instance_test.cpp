@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("simulated_instance");
 
+namespace simulated_instance_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -305,3 +307,5 @@ TEST_CASE("messages of refused calls come through the loader") {
     CHECK(heard == std::vector<std::string>{"xrStringToPath: 'no slash' is not a well-formed path"});
     CHECK(fixture.function<PFN_xrDestroyDebugUtilsMessengerEXT>("xrDestroyDebugUtilsMessengerEXT")(messenger) == XR_SUCCESS);
 }
+
+}  // namespace simulated_instance_test

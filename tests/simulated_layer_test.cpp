@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_layer");
 
+namespace simulated_layer_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -216,3 +218,5 @@ TEST_CASE_FIXTURE(WritingFixture, "what is on show stays on show while the appli
     CHECK(shown(&projection) == XR_SUCCESS);
     CHECK(std::filesystem::exists(written / "frame_000004.png"));
 }
+
+}  // namespace simulated_layer_test

@@ -16,6 +16,8 @@
 
 TEST_SUITE_BEGIN("simulated_log");
 
+namespace simulated_log_test {
+
 using namespace simulated;
 using Json = nlohmann::json;
 
@@ -242,3 +244,5 @@ TEST_CASE("a run's files do not replace others") {
         CHECK(folder.names().empty());
     }
 }
+
+}  // namespace simulated_log_test

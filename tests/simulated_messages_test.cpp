@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("simulated_messages");
 
+namespace simulated_messages_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -241,3 +243,5 @@ TEST_CASE("a messenger in the chain hears why the instance itself was refused") 
     CHECK(create(&info, &instance) == XR_ERROR_EXTENSION_NOT_PRESENT);
     CHECK(heard.size() == 1);
 }
+
+}  // namespace simulated_messages_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("simulated_misbehaviour");
 
+namespace simulated_misbehaviour_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -93,3 +95,5 @@ TEST_CASE("the menu button reaches the program's quit action") {
     CHECK(count(run, "exit") == 0);
     CHECK(run.frames.size() < 50);
 }
+
+}  // namespace simulated_misbehaviour_test

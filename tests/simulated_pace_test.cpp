@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("simulated_pace");
 
+namespace simulated_pace_test {
+
 using namespace binosplat::test;
 using simulated::Script;
 using simulated::ScriptError;
@@ -298,3 +300,5 @@ TEST_CASE("mistakes about the pace are one line") {
         CHECK(message.find(part) != std::string::npos);
     }
 }
+
+}  // namespace simulated_pace_test

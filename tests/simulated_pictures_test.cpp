@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("simulated_pictures");
 
+namespace simulated_pictures_test {
+
 using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;
@@ -166,3 +168,5 @@ TEST_CASE("controllers are seen where the script holds them") {
     const std::array<std::uint8_t, 3> first{empty.bytes[0], empty.bytes[1], empty.bytes[2]};
     for (std::size_t i = 0; i < empty.bytes.size(); ++i) { REQUIRE(empty.bytes[i] == first[i % 3]); }
 }
+
+}  // namespace simulated_pictures_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_profiles");
 
+namespace simulated_profiles_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -251,3 +253,5 @@ TEST_CASE("what a path depends on is read as the registry writes it: + is and, a
     CHECK_FALSE(older.meets("A+C,XR_VERSION_1_1"));
     CHECK(newer.meets("A+C,XR_VERSION_1_1"));
 }
+
+}  // namespace simulated_profiles_test

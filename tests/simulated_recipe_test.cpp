@@ -16,6 +16,8 @@
 
 TEST_SUITE_BEGIN("simulated_recipe");
 
+namespace simulated_recipe_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -253,3 +255,5 @@ TEST_CASE("the tool that compares logs says what differs, within what it was tol
         CHECK_MESSAGE(run.output.starts_with("compare_frame_logs: " + picture.string() + ": "), run.output);
     }
 }
+
+}  // namespace simulated_recipe_test

@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("simulated_runtime");
 
+namespace simulated_runtime_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -265,3 +267,5 @@ TEST_CASE("a machine without GPU is told apart from one without headset and from
     CHECK(contains(no_script.output, "test.script:1: "));
     for (const Run& one : {no_headset, no_script}) CHECK(!contains(one.output, "no GPU"));
 }
+
+}  // namespace simulated_runtime_test

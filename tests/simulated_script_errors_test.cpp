@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("simulated_script_errors");
 
+namespace simulated_script_errors_test {
+
 using namespace simulated;
 
 namespace {
@@ -37,7 +39,7 @@ struct Folder {
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
     void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-    void refuses(const std::string& text, const std::string& part) const { ::refuses(text, part, (path / "a.script").string()); }
+    void refuses(const std::string& text, const std::string& part) const { simulated_script_errors_test::refuses(text, part, (path / "a.script").string()); }
 };
 
 const std::string kHeadset =
@@ -343,3 +345,5 @@ TEST_CASE("headsets and recordings cut off anywhere are read or refused") {
         CHECK(messageOf(std::string(command) + " cut", (folder.path / "a.script").string()) == "accepted");
     }
 }
+
+}  // namespace simulated_script_errors_test

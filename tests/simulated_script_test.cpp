@@ -17,6 +17,8 @@
 
 TEST_SUITE_BEGIN("simulated_script");
 
+namespace simulated_script_test {
+
 using namespace simulated;
 
 namespace {
@@ -481,3 +483,5 @@ TEST_CASE("every script that comes along is one") {
     }
     CHECK(count >= 2);
 }
+
+}  // namespace simulated_script_test

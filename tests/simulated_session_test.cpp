@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_session");
 
+namespace simulated_session_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -331,3 +333,5 @@ TEST_CASE("frames go by the display's rate from the next one on, and stay in ord
     const XrFrameState fourth = fixture.frame();
     CHECK(fourth.predictedDisplayTime - third.predictedDisplayTime == 10'000'000);
 }
+
+}  // namespace simulated_session_test

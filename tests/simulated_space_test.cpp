@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("simulated_space");
 
+namespace simulated_space_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -201,3 +203,5 @@ TEST_CASE_FIXTURE(NarrowingFixture, "a mask that changes with the eye's angles i
     frame();
     CHECK(poll(event) == XR_TYPE_UNKNOWN);
 }
+
+}  // namespace simulated_space_test

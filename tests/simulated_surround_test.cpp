@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("simulated_surround");
 
+namespace simulated_surround_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -178,3 +180,5 @@ TEST_CASE_FIXTURE(PlainFixture, "without their extensions these layers are none,
     XrSwapchain swapchain = XR_NULL_HANDLE;
     CHECK(xrCreateSwapchain(session, &info, &swapchain) == XR_ERROR_FEATURE_UNSUPPORTED);
 }
+
+}  // namespace simulated_surround_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("simulated_swapchain");
 
+namespace simulated_swapchain_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -324,3 +326,5 @@ TEST_CASE_FIXTURE(SessionFixture, "images are found in attachment layouts, on ev
         }
     }
 }
+
+}  // namespace simulated_swapchain_test

@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("simulated_threads");
 
+namespace simulated_threads_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -175,3 +177,5 @@ TEST_CASE_FIXTURE(SessionFixture,
     CHECK(failures.count == 0);
     for (std::size_t i = 1; i < displayed.size(); ++i) CHECK(std::abs(displayed[i] - displayed[i - 1] - period) <= 1);
 }
+
+}  // namespace simulated_threads_test

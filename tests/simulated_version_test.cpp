@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("simulated_version");
 
+namespace simulated_version_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -350,3 +352,5 @@ TEST_CASE("the palm's surface lies beside the grip, turned towards the index fin
         CHECK(location.pose.orientation.w == doctest::Approx(std::cos(3.14159265 / 8)));
     }
 }
+
+}  // namespace simulated_version_test

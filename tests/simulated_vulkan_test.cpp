@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("simulated_vulkan");
 
+namespace simulated_vulkan_test {
+
 using namespace binosplat::test;
 
 TEST_CASE_FIXTURE(InstanceFixture, "requirements are a range of Vulkan versions, and asked for before a session") {
@@ -131,3 +133,5 @@ TEST_CASE("the older extension has functions of its own, and needs no extensions
     CHECK(getRequirements(instance, 1, &requirements) == XR_ERROR_VALIDATION_FAILURE);
     CHECK(xrDestroyInstance(instance) == XR_SUCCESS);
 }
+
+}  // namespace simulated_vulkan_test

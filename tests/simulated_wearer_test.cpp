@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("simulated_wearer");
 
+namespace simulated_wearer_test {
+
 using namespace binosplat::test;
 using simulated::kLeft;
 using simulated::kRight;
@@ -199,3 +201,5 @@ TEST_CASE_FIXTURE(LooksLittleLeft, "a picture drawn for another pose is turned t
     CHECK(at(seen, kLeft, 2, 1) == Rgb{0, encoded(17.0 / 18.0), encoded(1.0 / 18.0)});
     CHECK(at(seen, kLeft, 3, 1)[0] == 0);
 }
+
+}  // namespace simulated_wearer_test

@@ -4,6 +4,8 @@
 
 TEST_SUITE_BEGIN("sog_format");
 
+namespace sog_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -258,3 +260,5 @@ TEST_CASE("archives that are not whole are refused") {
     CHECK(contains(loadError(folder.write("a.sog", std::string("PK\x03\x04") + std::string(100, 'x'))), "not a whole zip archive"));
     CHECK(contains(loadError(folder.file(".")), "is a directory"));
 }
+
+}  // namespace sog_format_test

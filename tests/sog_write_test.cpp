@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("sog_write");
 
+namespace sog_write_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -268,3 +270,5 @@ TEST_CASE("colours of light and places that are none are refused") {
     CHECK_THROWS_AS(writeSog(scene, folder.file("a.sog")), Error);
     CHECK(folder.fileCount() == 0);
 }
+
+}  // namespace sog_write_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("sort");
 
+namespace sort_test {
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -199,3 +201,5 @@ TEST_CASE_FIXTURE(Gpu, "a list without room is as good as empty: its keys stay a
     CHECK(readBack<std::uint32_t>(key_buffer, 5) == keys);
     CHECK(readBack<std::uint32_t>(spare_keys, 5) == keys);
 }
+
+}  // namespace sort_test

@@ -4,6 +4,8 @@
 
 TEST_SUITE_BEGIN("splat_format");
 
+namespace splat_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -86,3 +88,5 @@ TEST_CASE("other files are not taken for a .splat") {
     CHECK(contains(loadError(folder, repeat("0123456789abcdefghijklmnopqrstuv", 40)), "not a scene file"));
     CHECK(contains(loadError(folder, repeat("{\"a\": [0.5, 0.25, 0.125, 1.0]}\n ", 40)), "not a scene file"));
 }
+
+}  // namespace splat_format_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("spz_format");
 
+namespace spz_format_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -357,3 +359,5 @@ TEST_CASE("an SPZ cut off or changed at any byte is an error or loads") {
         CHECK(contains(loadError(folder, changed), "broken.ply: "));  // at the latest by the checksum
     }
 }
+
+}  // namespace spz_format_test

@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("ssim");
 
+namespace ssim_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -182,3 +184,5 @@ TEST_CASE("filtersHandleEverySizeAndBorder") {
     CHECK(std::accumulate(bell.begin(), bell.end(), 0.0f) == doctest::Approx(1.0));
     CHECK(bell[5] / bell[6] == doctest::Approx(std::exp(1.0 / 4.5)));
 }
+
+}  // namespace ssim_test

@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("stability");
 
+namespace stability_test {
+
 using namespace binosplat;
 using namespace binosplat::stability;
 using test::Gpu;
@@ -162,3 +164,5 @@ TEST_CASE_FIXTURE(Gpu, "what misses a bound fails") {
     CHECK(misses([](Sequence& s) { s.bias = 0.0; }));
     CHECK(misses([](Sequence& s) { s.equal_from = 3; }));
 }
+
+}  // namespace stability_test

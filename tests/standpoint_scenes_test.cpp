@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("standpoint_scenes");
 
+namespace standpoint_scenes_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -176,3 +178,5 @@ TEST_CASE("a single splat and a wall like a photograph are seen from in front") 
     CHECK(glm::distance(point.view.up, kUp) < 1e-12);
     CHECK(shareSeen(point, photograph, {0, 0, 3}, 5.0) > 0.95);
 }
+
+}  // namespace standpoint_scenes_test

@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("standpoint");
 
+namespace standpoint_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -125,3 +127,5 @@ TEST_CASE("splats that nobody sees, and those that are equal, place nobody at in
     CHECK(glm::distance(point.view.eye, point.view.look) < 10.0);
     CHECK(isInside(seen));
 }
+
+}  // namespace standpoint_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("start_view");
 
+namespace start_view_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;
@@ -114,3 +116,5 @@ TEST_CASE("a wearer starts at the camera that is asked for, upright") {
     // Up is the camera's.
     CHECK(glm::distance(start.orientation * glm::dvec3(0, -1, 0), glm::dvec3(0, -0.8, 0.6)) < 1e-6);
 }
+
+}  // namespace start_view_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("stereo_frame");
 
+namespace stereo_frame_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::renderMono;
@@ -342,3 +344,5 @@ TEST_CASE_FIXTURE(Gpu, "memory keeps to its bounds a splat, a visible splat, a p
     }
     CHECK(viewAtelier().scene.sh_degree == 3);
 }
+
+}  // namespace stereo_frame_test

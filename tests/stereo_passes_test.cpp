@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("stereo_passes");
 
+namespace stereo_passes_test {
+
 using namespace binosplat;
 using reference::Arrival;
 using reference::TileKind;
@@ -302,3 +304,5 @@ TEST_CASE_FIXTURE(Gpu, "newcomers stops a tile's error at what half a word holds
         CHECK(device.readTileErrors() == std::vector{0x7fffffffu});
     }
 }
+
+}  // namespace stereo_passes_test

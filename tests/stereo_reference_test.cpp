@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("stereo_reference");
 
+namespace stereo_reference_test {
+
 using namespace binosplat;
 using namespace binosplat::reference;
 
@@ -387,3 +389,5 @@ TEST_CASE("a newcomer stands in front of what the middle of its tile shows, and 
     dominant.rgba[40].w = 0.0;
     CHECK(found(44.5, 100.0, TileKind::kNone).first == 1);
 }
+
+}  // namespace stereo_reference_test

@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("stereo_twin");
 
+namespace stereo_twin_test {
+
 using namespace binosplat;
 using reference::DepthChoice;
 using reference::EyePair;
@@ -169,3 +171,5 @@ TEST_CASE_FIXTURE(Gpu, "the device's stereo frames are the twin's, but for place
         }
     }
 }
+
+}  // namespace stereo_twin_test

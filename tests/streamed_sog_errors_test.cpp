@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("streamed_sog_errors");
 
+namespace streamed_sog_errors_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -162,3 +164,5 @@ TEST_CASE("a tree that is too deep is refused, one that is deep is not") {
     CHECK(contains(broken.load(nest(100'000)), "nested more than 132 levels deep"));
     CHECK(contains(broken.load(std::string(1'000'000, '[')), "nested more than 132 levels deep"));
 }
+
+}  // namespace streamed_sog_errors_test

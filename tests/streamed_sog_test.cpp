@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("streamed_sog");
 
+namespace streamed_sog_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -244,3 +246,5 @@ TEST_CASE("the program loads the level that --lod names and says which levels th
     CHECK(work.run("info --lod fine '" + source + "'").exit_code == 1);
     CHECK(work.run("scene one-splat --lod 0 --out a.ply").exit_code == 2);
 }
+
+}  // namespace streamed_sog_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("sums");
 
+namespace sums_test {
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -153,3 +155,5 @@ TEST_CASE_FIXTURE(Gpu, "a sum beyond 31 bits is told, whatever room there is") {
         CHECK(list.count == 0);
     }
 }
+
+}  // namespace sums_test

@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("survey");
 
+namespace survey_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -136,3 +138,5 @@ TEST_CASE("info says the axes and the colours that a file names") {
     CHECK(contains(glb, "colour space       srgb_rec709_display (named by the file)\n"));
 #endif
 }
+
+}  // namespace survey_test

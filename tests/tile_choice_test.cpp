@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("tile_choice");
 
+namespace tile_choice_test {
+
 using namespace binosplat;
 using reference::Borders;
 using reference::DepthChoice;
@@ -301,3 +303,5 @@ TEST_CASE_FIXTURE(Gpu, "components with more groups than boxes marks the tiles o
         }
     }
 }
+
+}  // namespace tile_choice_test

@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("tile_passes");
 
+namespace tile_passes_test {
+
 using namespace binosplat;
 using reference::TilePair;
 using test::Gpu;
@@ -488,3 +490,5 @@ TEST_CASE_FIXTURE(Gpu, "rasterize leaves the word that each pixel moves by, and 
     CHECK(test::share(other, pixels) <= 0.001);
     CHECK(test::share(other_spread, pixels) <= 0.0005);
 }
+
+}  // namespace tile_passes_test

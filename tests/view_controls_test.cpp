@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("view_controls");
 
+namespace view_controls_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -168,3 +170,5 @@ TEST_CASE("controllers are put down, hands click, and controllers are taken up a
         CHECK(frame <= expected[i].second.second);
     }
 }
+
+}  // namespace view_controls_test

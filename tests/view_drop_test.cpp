@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("view_drop");
 
+namespace view_drop_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -72,3 +74,5 @@ TEST_CASE("the last of the scenes dropped on the window is shown, and one that c
     CHECK(bad.outcome.output.find("broken.ply:") != std::string::npos);
     CHECK(bad.outcome.output.find("shows broken.ply") == std::string::npos);
 }
+
+}  // namespace view_drop_test

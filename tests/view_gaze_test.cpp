@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("view_gaze");
 
+namespace view_gaze_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -97,3 +99,5 @@ TEST_CASE("where the wearer does not let the viewer see them, or the headset can
         CHECK(left.middle < 0.75);
     }
 }
+
+}  // namespace view_gaze_test

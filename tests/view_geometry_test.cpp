@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("view_geometry");
 
+namespace view_geometry_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -114,3 +116,5 @@ TEST_CASE("swapped eyes would be noticed") {
     for (auto& frame : swapped.frames) { std::swap(frame.at("eyes").at(0), frame.at("eyes").at(1)); }
     CHECK(std::abs(measure(traceEdge(swapped, 10, kLeft)).x - measure(traceEdge(swapped, 10, kRight)).x) > 0.05);
 }
+
+}  // namespace view_geometry_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("view_governor");
 
+namespace view_governor_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_CASE("irregular periods, frames that nobody is to see, other rates and a he
     CHECK(run.widths.back() == kWhole);
     CHECK(run.outcome.output.find("missed") == std::string::npos);
 }
+
+}  // namespace view_governor_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("view_hands");
 
+namespace view_hands_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -272,3 +274,5 @@ TEST_CASE("how one moves and what is seen is chosen on the panel") {
     CHECK(run.frames.at(20).at("blend_mode") == "OPAQUE");
     CHECK(run.frames.at(95).at("blend_mode") == "ALPHA_BLEND");
 }
+
+}  // namespace view_hands_test

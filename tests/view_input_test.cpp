@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("view_input");
 
+namespace view_input_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -182,3 +184,5 @@ TEST_CASE("a stick pushed mostly aside turns and does not lift") {
     };
     CHECK(compare(pushed(0.7), pushed(0.0)).psnrDb() > 60.0);
 }
+
+}  // namespace view_input_test

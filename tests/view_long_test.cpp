@@ -16,6 +16,8 @@
 
 TEST_SUITE_BEGIN("view_long");
 
+namespace view_long_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -170,3 +172,5 @@ TEST_CASE_FIXTURE(Walk, "nor does the host's memory grow, and what was made for 
     CHECK(warm().back().kernels_made > 10);
     CHECK(later().back().kernels_made == warm().back().kernels_made);
 }
+
+}  // namespace view_long_test

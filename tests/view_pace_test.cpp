@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("view_pace");
 
+namespace view_pace_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -101,3 +103,5 @@ TEST_CASE("the device draws a frame while the program prepares the next: at 70 %
     // The same clock finds who waits for every frame late.
     CHECK(countLate(waiting) > 10);
 }
+
+}  // namespace view_pace_test

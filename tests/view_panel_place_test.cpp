@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("view_panel_place");
 
+namespace view_panel_place_test {
+
 using namespace binosplat::test;
 
 namespace {
@@ -69,3 +71,5 @@ TEST_CASE("what the command line says of the simulated headset counts before the
     CHECK(run.frames.size() > 8);
     CHECK_FALSE(std::filesystem::exists(work.path / "elsewhere"));
 }
+
+}  // namespace view_panel_place_test

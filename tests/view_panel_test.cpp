@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("view_panel");
 
+namespace view_panel_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -195,3 +197,5 @@ TEST_CASE("nobody reloads shaders who was not told where they are") {
     const ViewRun told = runView(work, "told", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=nowhere");
     CHECK(says(told, "shaders stay as they were: nowhere/sort/cull.comp is not there"));
 }
+
+}  // namespace view_panel_test

@@ -8,6 +8,8 @@
 
 TEST_SUITE_BEGIN("view_quality");
 
+namespace view_quality_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -152,3 +154,5 @@ TEST_CASE("an unknown quality is refused") {
     CHECK(outcome.errors.find("bad.toml:2") != std::string::npos);
     CHECK(outcome.errors.find("must be off, sharp, balanced or fast") != std::string::npos);
 }
+
+}  // namespace view_quality_test

@@ -14,6 +14,8 @@
 
 TEST_SUITE_BEGIN("view_scenes");
 
+namespace view_scenes_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -257,3 +259,5 @@ TEST_CASE("a trained scene is levelled by the up of its cameras, or else of its 
     std::ofstream(work.path / "trained" / "cameras.json") << "[{";
     CHECK(glm::dot(upAfter("broken", file), up) > std::cos(glm::radians(2.0)));
 }
+
+}  // namespace view_scenes_test

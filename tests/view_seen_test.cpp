@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("view_seen");
 
+namespace view_seen_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -216,3 +218,5 @@ TEST_CASE("a runtime with no more than OpenXR 1.0 and Vulkan shows every method,
     CHECK(run.layers(last, "quad").size() > 3);  // rays and controllers beside the panel
     checkAgreesWithRender(work, run, last, "--mode shared");
 }
+
+}  // namespace view_seen_test

@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("view_start");
 
+namespace view_start_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -141,3 +143,5 @@ TEST_CASE("the near plane is in metres of the wearer, however large the scene is
         CHECK(view.at("depth").at("far").get<double>() == doctest::Approx(0.3));
     }
 }
+
+}  // namespace view_start_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("view");
 
+namespace view_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -151,3 +153,5 @@ TEST_CASE("Ctrl-C ends it as the wearer would") {
     CHECK(outcome.exit_code == 0);
     CHECK(outcome.output.find("the runtime asked for the end") != std::string::npos);
 }
+
+}  // namespace view_test

@@ -6,6 +6,8 @@
 
 TEST_SUITE_BEGIN("view_trouble");
 
+namespace view_trouble_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -354,3 +356,5 @@ TEST_CASE("a folder whose files would be replaced is bad input, and they stay") 
     CHECK(std::filesystem::file_size(work.path / "mine" / "frame_000000.png") == 7);
     CHECK_FALSE(std::filesystem::exists(work.path / "mine" / "frames.jsonl"));
 }
+
+}  // namespace view_trouble_test

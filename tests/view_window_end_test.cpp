@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("view_window_end");
 
+namespace view_window_end_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -127,3 +129,5 @@ TEST_CASE("Escape, and the window's cross, end the wait for a headset") {
         CHECK(program.said().find("stopped before there was a headset") != std::string::npos);
     }
 }
+
+}  // namespace view_window_end_test

@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("view_window");
 
+namespace view_window_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -259,3 +261,5 @@ TEST_CASE("the window is as large as the desktop wants things to be, and may be 
     viewer.hands("key Escape");
     CHECK(viewer.program().exitCode() == 0);
 }
+
+}  // namespace view_window_test

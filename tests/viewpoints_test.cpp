@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("viewpoints");
 
+namespace viewpoints_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using binosplat::test::Workplace;
@@ -90,3 +92,5 @@ TEST_CASE("the rate is that of displays with a new picture") {
     CHECK(met.displayHz() == doctest::Approx(100.0));
     CHECK(met.metHz() == doctest::Approx(50.0));
 }
+
+}  // namespace viewpoints_test

@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("wearer");
 
+namespace wearer_test {
+
 using namespace binosplat;
 
 namespace {
@@ -384,3 +386,5 @@ TEST_CASE("pictures are multiplied by alpha, in the order and the encoding of th
     CHECK(alpha(Sprite::kKnob, {0.0, 0.0}) == 0.0);
     CHECK(alpha(Sprite::kKnob, {0.5, 0.5}) == 1.0);
 }
+
+}  // namespace wearer_test

@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("web_cache");
 
+namespace web_cache_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -192,3 +194,5 @@ TEST_CASE("several at once use one cache, even one in which nothing may stay") {
         CHECK(filesIn(folder.file("cache")).size() == (limit > 0 ? 2 : 0));
     }
 }
+
+}  // namespace web_cache_test

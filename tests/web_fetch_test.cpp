@@ -3,6 +3,8 @@
 
 TEST_SUITE_BEGIN("web_fetch");
 
+namespace web_fetch_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -183,3 +185,5 @@ TEST_CASE("who waits for a file may give up at any time") {
                     Enough);
     CHECK(filesIn(folder.file("cache")).empty());
 }
+
+}  // namespace web_fetch_test

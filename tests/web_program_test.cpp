@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("web_program");
 
+namespace web_program_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -131,3 +133,5 @@ TEST_CASE("a server whose certificate is not valid is refused") {
     CHECK(trusted.exit_code == 0);
     ::pclose(told);
 }
+
+}  // namespace web_program_test

@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("web_scene");
 
+namespace web_scene_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -163,3 +165,5 @@ TEST_CASE("the chunks of a streamed scene may be bundles there") {
     CHECK(std::ranges::count(asked, "/a.sog") == 1);
 }
 #endif
+
+}  // namespace web_scene_test

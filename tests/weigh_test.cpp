@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("weigh");
 
+namespace weigh_test {
+
 using namespace binosplat;
 using reference::TileKind;
 using reference::TileRange;
@@ -209,3 +211,5 @@ TEST_CASE_FIXTURE(Gpu, "weigh renders what the dominant eye cannot see, as a hea
         CHECK(unseen <= (p == 2 ? 0 : 30));
     }
 }
+
+}  // namespace weigh_test

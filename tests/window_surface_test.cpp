@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("window_surface");
 
+namespace window_surface_test {
+
 using namespace binosplat;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("a window is opaque where it can be") {
     CHECK(windowAlpha(Alpha::ePreMultiplied | Alpha::eInherit) == Alpha::eInherit);
     CHECK(windowAlpha(Alpha::ePostMultiplied) == Alpha::ePostMultiplied);
 }
+
+}  // namespace window_surface_test
