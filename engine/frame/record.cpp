@@ -7,6 +7,27 @@
 
 namespace binosplat {
 
+FrameKernels::FrameKernels(const Context& context, std::uint32_t threads_per_cell)
+    : passes(context, threads_per_cell), warp_passes(context), past_passes(context), periphery_passes(context) {}
+
+void FrameKernels::rebuild() {
+    passes.rebuildKernels();
+    warp_passes.rebuildKernels();
+    past_passes.rebuildKernels();
+    periphery_passes.rebuildKernels();
+}
+
+void FrameKernels::take(FrameKernels& from) {
+    passes.takeKernels(from.passes);
+    warp_passes.takeKernels(from.warp_passes);
+    past_passes.takeKernels(from.past_passes);
+    periphery_passes.takeKernels(from.periphery_passes);
+}
+
+std::size_t FrameKernels::count() const {
+    return passes.kernelCount() + warp_passes.kernelCount() + past_passes.kernelCount() + periphery_passes.kernelCount();
+}
+
 void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
     FrameState state{};
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {

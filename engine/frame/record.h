@@ -6,6 +6,20 @@
 
 namespace binosplat {
 
+// The kernels of frames, in their groups.
+struct FrameKernels {
+    FrameKernels(const Context& context, std::uint32_t threads_per_cell);
+    // See StereoFrame.
+    void rebuild();
+    void take(FrameKernels& from);
+    [[nodiscard]] std::size_t count() const;
+
+    Passes passes;
+    WarpPasses warp_passes;
+    PastPasses past_passes;
+    PeripheryPasses periphery_passes;
+};
+
 // What recording works with.
 struct FrameRecorder {
     Passes& passes;

@@ -16,13 +16,16 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
-      passes_(context, options.threads_per_cell),
-      warp_passes_(context),
-      past_passes_(context),
-      periphery_passes_(context),
+      kernels_(std::make_shared<FrameKernels>(context, options.threads_per_cell)),
       room_(context, options.first_capacity),
       flights_{Flight(context), Flight(context)} {
     show(scene);
+}
+
+std::unique_ptr<StereoFrame> StereoFrame::beside(const StereoFrame& other) {
+    auto frame = std::make_unique<StereoFrame>(other.context_, *other.scene_);
+    frame->kernels_ = other.kernels_;
+    return frame;
 }
 
 void StereoFrame::show(const GpuScene& scene) {
@@ -35,19 +38,13 @@ void StereoFrame::show(const GpuScene& scene) {
 
 void StereoFrame::rebuildKernels() {
     finish();
-    passes_.rebuildKernels();
-    warp_passes_.rebuildKernels();
-    past_passes_.rebuildKernels();
-    periphery_passes_.rebuildKernels();
+    kernels_->rebuild();
 }
 
 void StereoFrame::takeKernels(StereoFrame& from) {
     finish();
     from.finish();
-    passes_.takeKernels(from.passes_);
-    warp_passes_.takeKernels(from.warp_passes_);
-    past_passes_.takeKernels(from.past_passes_);
-    periphery_passes_.takeKernels(from.periphery_passes_);
+    kernels_->take(*from.kernels_);
 }
 
 void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& settings) {

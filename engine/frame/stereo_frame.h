@@ -7,6 +7,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,9 @@ public:
     static constexpr double kRoomAhead = FrameRoom::kRoomAhead;
 
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
+    // Another frame of the scene that `other` shows, with pictures and pasts of its own. Kernels that either makes are there for both, and
+    // one thread has both.
+    static std::unique_ptr<StereoFrame> beside(const StereoFrame& other);
 
     // From now on frames are of `scene`, on the same device. Kernels stay compiled.
     void show(const GpuScene& scene);
@@ -47,9 +51,7 @@ public:
     // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
     void takeKernels(StereoFrame& from);
     // How many it has, but those of sorting.
-    [[nodiscard]] std::size_t kernelCount() const {
-        return passes_.kernelCount() + warp_passes_.kernelCount() + past_passes_.kernelCount() + periphery_passes_.kernelCount();
-    }
+    [[nodiscard]] std::size_t kernelCount() const { return kernels_->count(); }
     // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
@@ -95,7 +97,9 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    [[nodiscard]] FrameRecorder recorder() { return {passes_, warp_passes_, past_passes_, periphery_passes_, *scene_, room_}; }
+    [[nodiscard]] FrameRecorder recorder() {
+        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_};
+    }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // Plans it without a past, whatever there is.
@@ -123,10 +127,7 @@ private:
 
     const Context& context_;
     const GpuScene* scene_ = nullptr;
-    Passes passes_;
-    WarpPasses warp_passes_;
-    PastPasses past_passes_;
-    PeripheryPasses periphery_passes_;
+    std::shared_ptr<FrameKernels> kernels_;
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
     Pasts pasts_;                                           // that it leaves
