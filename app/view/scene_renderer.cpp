@@ -4,14 +4,15 @@
 #include "app/options/modes.h"
 #include "app/view/placement/view_eyes.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace binosplat {
 
 namespace {
 
-glm::uvec2 scaledSize(const xr::Instance& instance, double scale) {
-    const glm::dvec2 wanted = glm::round(scale * glm::dvec2(instance.recommendedSizePx()));
+glm::uvec2 scaledSize(const xr::Instance& instance, glm::uvec2 recommended_px, double scale) {
+    const glm::dvec2 wanted = glm::round(scale * glm::dvec2(recommended_px));
     return glm::clamp(glm::uvec2(wanted), glm::uvec2(16), instance.maxSizePx());
 }
 
@@ -22,35 +23,51 @@ glm::dvec3 colourOf(Backdrop backdrop) { return glm::dvec3(backdrop == Backdrop:
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
                              vk::Format format)
     : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format) {
+    if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) { context_px_ = inset->context_px; }
     presenter_.makeKernels(instance.takesDepth(), instance.canSeeThrough());
 }
 
-glm::uvec2 SceneRenderer::sizePx(const ViewSettings& settings) const { return scaledSize(instance_, settings.resolution_scale); }
+glm::uvec2 SceneRenderer::sizePx(double scale) const {
+    return scaledSize(instance_, context_px_.value_or(instance_.recommendedSizePx()), scale);
+}
+
+glm::uvec2 SceneRenderer::insetPx(const ConnectedHeadset& headset, double scale) const {
+    return headset.inset ? scaledSize(instance_, headset.inset->inset_px, scale) : glm::uvec2(0);
+}
 
 void SceneRenderer::fitImages(ConnectedHeadset& headset, const ViewSettings& settings) {
-    const glm::uvec2 size_px = sizePx(settings);
-    if (!headset.images) { return makeImages(headset, size_px); }
+    context_px_ = headset.inset ? std::optional(headset.inset->context_px) : std::nullopt;
+    const glm::uvec2 size_px = sizePx(settings), inset_px = insetPx(headset, settings.resolution_scale);
+    if (!headset.images) { return makeImages(headset, size_px, inset_px); }
     const glm::uvec2 before_px = headset.images->sizePx();
-    if (before_px == size_px) { return; }
+    const glm::uvec2 inset_before_px = headset.inset_images ? headset.inset_images->sizePx() : glm::uvec2(0);
+    if (before_px == size_px && inset_before_px == inset_px) { return; }
     try {
-        makeImages(headset, size_px);
+        makeImages(headset, size_px, inset_px);
     } catch (const Error&) {
-        makeImages(headset, before_px);
+        makeImages(headset, before_px, inset_before_px);
         throw;
     }
 }
 
-void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px) {
-    headset.images.reset();  // first, since both may not fit
-    headset.images = std::make_unique<EyeImages>(headset.session, presenter_, format_, size_px);
-    if (!takes_depth_) { headset.images->dropDepth(); }
+void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px) {
+    const auto make = [&](std::unique_ptr<EyeImages>& images, glm::uvec2 px) {
+        images.reset();  // first, since both may not fit
+        images = std::make_unique<EyeImages>(headset.session, presenter_, format_, px);
+        if (!takes_depth_) { images->dropDepth(); }
+    };
+    headset.inset_images.reset();
+    make(headset.images, size_px);
+    if (headset.inset) { make(headset.inset_images, inset_px); }
 }
 
 void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
     governor_.wish(settings.quality, settings.stereo.mode, {settings.stereo.budget, settings.resolution_scale});
     fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
-    headset.images->draw(scaledSize(instance_, governor_.settings().resolution_scale));
+    const double scale = governor_.settings().resolution_scale;
+    headset.images->draw(sizePx(scale));
+    if (headset.inset) { headset.inset_images->draw(insetPx(headset, scale)); }
 }
 
 ShownRate SceneRenderer::rate() const {
@@ -61,6 +78,7 @@ ShownRate SceneRenderer::rate() const {
 
 bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
     headset.images->dropDepth();
+    if (headset.inset_images) { headset.inset_images->dropDepth(); }
     return std::exchange(takes_depth_, false);
 }
 
@@ -68,6 +86,7 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
                                              Order usual_order) {
     StereoOptions stereo = settings.stereo;
     stereo.budget = governor_.settings().budget;
+    if (headset.inset) { stereo.half_periphery = false; }  // the runtime lays one picture over the other
     FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
     // Of the wearer, however large the scene is.
     frame.near = options_.camera.near * scale;
@@ -101,11 +120,36 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const
     }
     try {
         scene.frame.makeRoom(eyes_, frame_);
-        presenter_.makeRoom(headset.images->partPx(), headset.images->takesDepth());
+        glm::uvec2 largest_px = headset.images->partPx();
+        if (headset.inset) {
+            prepareInsets(headset, scene, scene_from_room, views);
+            largest_px = glm::max(largest_px, headset.inset_images->partPx());
+        }
+        presenter_.makeRoom(largest_px, headset.images->takesDepth());
     } catch (const Error&) {
         forgetLastFrame();
         throw;
     }
+}
+
+void SceneRenderer::prepareInsets(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room,
+                                  const FrameViews& views) {
+    if (!scene.insets) { scene.insets = StereoFrame::beside(scene.frame); }
+    inset_frame_ = frame_;
+    inset_frame_.hidden_tiles = {};
+    inset_frame_.gazes = {};
+    inset_eyes_.clear();
+    const glm::uvec2 size_px = headset.inset_images->partPx();
+    for (const int e : {kLeft, kRight}) {
+        if (!drawsEye(e)) { continue; }
+        const auto at = static_cast<std::size_t>(e);
+        const Eye& inset =
+            inset_eyes_.emplace_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.insets->at(at).fov, size_px));
+        // One low-pass for both, or thin splats would be wider about the inset than within.
+        Eye& about = eyes_[inset_eyes_.size() - 1];
+        about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
+    }
+    scene.insets->makeRoom(inset_eyes_, inset_frame_);
 }
 
 void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
@@ -113,17 +157,31 @@ void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const 
     const bool one_eye = settings.showsOneEye();
     headset.images->seeThrough(seesThrough(settings));
     for (const int e : {kLeft, kRight}) {
-        if (!one_eye || e == frame_.dominant) { headset.images->acquire(e, true); }
+        if (!drawsEye(e)) { continue; }
+        headset.images->acquire(e, true);
+        if (headset.inset) { headset.inset_images->acquire(e, true); }
+    }
+    if (headset.inset) {
+        headset.inset_images->seeThrough(seesThrough(settings));
+        const std::optional<FrameResult> known = scene.insets->renderAhead(inset_eyes_, inset_frame_, [&](Commands& commands) {
+            recordEyes(commands, *headset.inset_images, *scene.insets, settings.tint, nullptr);
+        });
+        if (known) { insets_ms_ = known->gpu_total_ms; }
+    } else {
+        insets_ms_ = 0.0;
     }
     std::optional<FrameResult> known = scene.frame.renderAhead(
         eyes_, frame_,
         [&](Commands& commands) {
-            recordEyes(commands, headset, scene, frame_, settings.tint, window);
+            recordEyes(commands, *headset.images, scene.frame, settings.tint, window);
             record_panel(commands);
         },
         window != nullptr ? window->drawn() : vk::Semaphore());
     const bool is_of_now = known && known->mark == governed_count_;
-    if (known) { last_ = std::move(*known); }
+    if (known) {
+        last_ = std::move(*known);
+        last_.gpu_total_ms += insets_ms_;
+    }
     met_.add(headset.session.periodMs(), headset.session.lostPeriods());
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
                        .period_ms = headset.session.periodMs(),
@@ -135,18 +193,14 @@ void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const 
     sayCutShort();
 }
 
-void SceneRenderer::recordEyes(Commands& commands, ConnectedHeadset& headset, LoadedScene& scene, const FrameSettings& frame, bool tint,
-                               MirrorWindow* window) {
+void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window) {
     for (const int e : {kLeft, kRight}) {
-        const bool dominant = e == frame.dominant;
-        if (frame.mode == Mode::kMono && !dominant) { continue; }
-        const Picture& image = scene.frame.picture(frame.mode == Mode::kMono ? 0 : e);
-        headset.images->present(commands, e, image, tint ? scene.frame.chosenTiles(e) : nullptr, frame.near);
+        if (!drawsEye(e)) { continue; }
+        const bool is_mono = frame_.mode == Mode::kMono;
+        images.present(commands, e, frame.picture(is_mono ? 0 : e), tint ? frame.chosenTiles(e) : nullptr, frame_.near);
         // The window shows the dominant eye, or what is made of it where that is the point.
-        const bool shown = frame.mode == Mode::kMono || dominant != tint;
-        if (window != nullptr && window->drawn() && shown) {
-            window->keepEye(commands, presenter_.pixels(), headset.images->partPx(), format_);
-        }
+        const bool shown = is_mono || (e == frame_.dominant) != tint;
+        if (window != nullptr && window->drawn() && shown) { window->keepEye(commands, presenter_.pixels(), images.partPx(), format_); }
     }
 }
 

@@ -20,7 +20,8 @@ struct FrameViews {
     std::array<xr::EyeView, 2> eyes;
     std::array<Pose, 2> room_from_eyes;
     Pose room_from_head;
-    std::array<std::optional<Gaze>, 2> gazes;  // by Side: where the eyes look, where it matters
+    std::optional<std::array<xr::EyeView, 2>> insets;  // from the same places, where the headset takes them
+    std::array<std::optional<Gaze>, 2> gazes;          // by Side: where the eyes look, where it matters
 };
 
 class SceneRenderer {
@@ -28,8 +29,8 @@ public:
     // `format` is that of every session's images; the rest outlives this.
     SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log, vk::Format format);
 
-    // Of an eye's images, as large as the wearer wants them.
-    [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const;
+    // Of an eye's images, as large as the wearer wants them; beside insets those of the picture about them.
+    [[nodiscard]] glm::uvec2 sizePx(const ViewSettings& settings) const { return sizePx(settings.resolution_scale); }
     // Images of the headset as large as the wearer wants them. Throws Error where there cannot be any; they are as large as before then.
     void fitImages(ConnectedHeadset& headset, const ViewSettings& settings);
     // What the governor makes of the wearer's settings, in images as large as that.
@@ -61,11 +62,15 @@ public:
     [[nodiscard]] Presenter& presenter() { return presenter_; }
 
 private:
-    void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px);
+    void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
+    [[nodiscard]] glm::uvec2 sizePx(double scale) const;
+    [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
+    void prepareInsets(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const FrameViews& views);
+    [[nodiscard]] bool drawsEye(int eye) const { return frame_.mode != Mode::kMono || eye == frame_.dominant; }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views, Order usual_order);
-    void recordEyes(Commands& commands, ConnectedHeadset& headset, LoadedScene& scene, const FrameSettings& frame, bool tint,
-                    MirrorWindow* window);
+    // Those of `frame` into `images`.
+    void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
     void sayHidden(bool one_eye);
     void sayCutShort();
     void sayGoverned();
@@ -79,7 +84,11 @@ private:
     MetDisplays met_;
     FrameSettings frame_;        // prepared
     std::vector<Eye> eyes_;      // prepared
-    GovernedSettings governed_;  // as of the frame drawn last
+    FrameSettings inset_frame_;  // likewise, of insets
+    std::vector<Eye> inset_eyes_;
+    std::optional<glm::uvec2> context_px_;  // recommended for what lies about insets, where there are any
+    double insets_ms_ = 0.0;                // of the last ones known
+    GovernedSettings governed_;             // as of the frame drawn last
     std::uint64_t governed_count_ = 0;
     bool said_beaten_ = false;
     std::uint64_t cut_short_ = 0;  // frames, as last said

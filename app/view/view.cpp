@@ -67,6 +67,7 @@ void viewOnce(ViewOptions options) {
     xr::InstanceOptions instance_options;
     instance_options.visibility_mask = settings.visibility_mask;
     instance_options.eye_tracking = settings.eye_tracking;
+    instance_options.foveated_inset = settings.wantsInset();
     std::unique_ptr<WaitingWindow> waiting;
     instance_options.wait_for_headset = [&waiting](const std::string& runtime) { waitForHeadset(runtime, waiting); };
     std::unique_ptr<xr::Instance> instance;

@@ -81,6 +81,7 @@ void Viewer::reloadShaders() {
         return;
     }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
+        if (scene->insets) { (void)scene->insets->finish(); }  // it has the same ones
         scene->frame.rebuildKernels();
         renderer_.presenter().rebuildKernels();
     }));

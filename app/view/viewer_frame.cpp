@@ -36,12 +36,15 @@ void Viewer::drawFrame() {
     if (scenes_.isNextReady()) { takeScene(); }
     const std::array<xr::EyeView, 2> eyes = withoutNoise(*located);
     const std::array<Pose, 2> room_from_eyes = roomFromEyes(eyes);
-    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}};
+    FrameViews views{eyes, room_from_eyes, roomFromHead(room_from_eyes), {}, {}};
+    if (const auto& insets = headset().session.insets()) {
+        views.insets = withoutNoise({xr::EyeView{eyes[kLeft].pose, (*insets)[kLeft]}, xr::EyeView{eyes[kRight].pose, (*insets)[kRight]}});
+    }
     room_from_head_ = views.room_from_head;
     const double step_seconds = headset().session.stepSeconds();
     const WearerNow wearer{headset().input.read(), room_from_head_, headset().session.floorBelowMetres(), step_seconds};
     controls_.update(wearer, panel_.inRoom(), state_);
-    if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0) {
+    if (const double clear_deg = state_.settings().stereo.foveation_deg; clear_deg > 0.0 && !views.insets) {
         views.gazes = gaze_.update(headset().input.gaze(), room_from_eyes, glm::radians(clear_deg), step_seconds);
     } else {
         gaze_ = {};
@@ -73,11 +76,13 @@ void Viewer::drawFrame() {
 
 bool Viewer::prepareScene(const FrameViews& views) {
     LoadedScene* scene = scenes_.get();
-    scenes_.expect(state_.settings().stereo, renderer_.sizePx(state_.settings()), state_.settings().tint);
-    const ViewSettings drawable = scenes_.drawable(state_.settings());
-    const bool waits = drawable != state_.settings();
+    ViewSettings asked = state_.settings();
+    if (headset().inset) { asked.stereo.half_periphery = false; }  // as the renderer does
+    scenes_.expect(asked.stereo, renderer_.sizePx(asked), asked.tint);
+    const ViewSettings drawable = scenes_.drawable(asked);
+    const bool waits = drawable != asked;
     if (std::exchange(waits_for_kernels_, waits) && !waits) { log_.say(fmt::format("{} is ready", nameOf(state_.settings().stereo.mode))); }
-    drawn_ = drawable;
+    drawn_ = waits ? drawable : state_.settings();
     try {
         renderer_.govern(headset(), drawn_);
         ViewSettings wished = drawn_;
@@ -111,12 +116,18 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
 }
 
 void Viewer::renderWaiting() {
-    for (const int e : {kLeft, kRight}) { headset().images->acquire(e, false); }
+    std::vector<EyeImages*> all{headset().images.get()};
+    if (headset().inset) { all.push_back(headset().inset_images.get()); }
+    for (EyeImages* images : all) {
+        for (const int e : {kLeft, kRight}) { images->acquire(e, false); }
+    }
     commands_.begin();
     const glm::dvec3& background = options_.run.camera.background;
     const glm::vec3 behind = background == glm::dvec3(0.0) ? kWaitingColour : glm::vec3(background);
     const glm::vec4 colour = renderer_.seesThrough(state_.settings()) ? glm::vec4(0.0f) : glm::vec4(behind, 1.0f);
-    for (const int e : {kLeft, kRight}) { headset().images->clear(commands_, e, colour); }
+    for (EyeImages* images : all) {
+        for (const int e : {kLeft, kRight}) { images->clear(commands_, e, colour); }
+    }
     recordPanel(commands_);
     commands_.submit(window_ ? window_->drawn() : vk::Semaphore());
     commands_.wait();
@@ -124,6 +135,7 @@ void Viewer::renderWaiting() {
 
 void Viewer::showFrame(const FrameViews& views) {
     headset().images->release();
+    if (headset().inset) { headset().inset_images->release(); }
     panel_.release(headset());
     headset().things.release();
     headset().session.seeThrough(renderer_.seesThrough(state_.settings()));
@@ -159,12 +171,17 @@ void Viewer::submitFrame(const FrameViews& views) {
 }
 
 void Viewer::addEyes(xr::Layers& layers, const FrameViews& views) const {
-    const auto layerEye = [&](int shown_to) {
+    const auto layerEye = [&](const EyeImages& images, const std::array<xr::EyeView, 2>& eyes, int shown_to) {
         // One eye's picture for both is shown as that eye saw it.
         const int e = scenes_.get() != nullptr && drawn_.showsOneEye() ? drawn_.stereo.dominant : shown_to;
-        return headset().images->layerEye(e, views.eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
+        return images.layerEye(e, eyes[static_cast<std::size_t>(e)], options_.run.camera.near);
     };
-    layers.addEyes({layerEye(kLeft), layerEye(kRight)}, renderer_.seesThrough(state_.settings()));
+    const EyeImages& images = *headset().images;
+    const xr::LayerEye left = layerEye(images, views.eyes, kLeft), right = layerEye(images, views.eyes, kRight);
+    const bool see_through = renderer_.seesThrough(state_.settings());
+    if (!headset().inset) { return layers.addEyes({left, right}, see_through); }
+    const EyeImages& insets = *headset().inset_images;
+    layers.addEyesAndInsets({left, right, layerEye(insets, *views.insets, kLeft), layerEye(insets, *views.insets, kRight)}, see_through);
 }
 
 }  // namespace binosplat

@@ -4,7 +4,8 @@
 namespace binosplat {
 
 ConnectedHeadset::ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px)
-    : session(instance, context),
+    : inset(xr::findInset(instance)),
+      session(instance, context, inset ? xr::kStereoWithInset : xr::kStereo),
       format(chooseEyeFormat(session)),
       refresh_rates(session.refreshRates()),
       input(session),

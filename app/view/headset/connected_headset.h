@@ -4,17 +4,21 @@
 #include "app/view/headset/eye_images.h"
 #include "app/view/headset/lens_mask.h"
 #include "app/view/room/room_things.h"
+#include "xr/extensions/foveated_inset.h"
 #include "xr/input.h"
 #include "xr/layers.h"
 
 #include <memory>
+#include <optional>
 
 namespace binosplat {
 
 struct ConnectedHeadset {
-    // `panel_px` is the size of the panel's picture. Throws xr::Lost where the session is lost at once.
+    // `panel_px` is the size of the panel's picture. The session has foveated insets where `instance` was asked for them and the headset
+    // takes them. Throws xr::Lost where the session is lost at once.
     ConnectedHeadset(const xr::Instance& instance, const Context& context, glm::uvec2 panel_px);
 
+    std::optional<xr::InsetSizes> inset;  // as recommended
     xr::Session session;
     vk::Format format;
     std::vector<double> refresh_rates;
@@ -22,7 +26,8 @@ struct ConnectedHeadset {
     xr::Swapchain panel_images;
     std::uint64_t panel_revision = 0;  // of the canvas, that they show; 0: none yet
     RoomThings things;
-    std::unique_ptr<EyeImages> images;  // once their size is known
+    std::unique_ptr<EyeImages> images;        // once their size is known
+    std::unique_ptr<EyeImages> inset_images;  // with them, in a session with insets
     LensMask lens_mask;
 };
 

@@ -24,9 +24,10 @@ struct LoadedScene {
     std::string name;
     GpuScene gpu_scene;
     StereoFrame frame;
-    Similarity start;               // see startPlacement
-    glm::dvec3 up{0.0, -1.0, 0.0};  // see upOfScene
-    std::optional<double> floor;    // see floorHeight, along `up`
+    std::unique_ptr<StereoFrame> insets;  // of a headset that takes some, once it was asked for them
+    Similarity start;                     // see startPlacement
+    glm::dvec3 up{0.0, -1.0, 0.0};        // see upOfScene
+    std::optional<double> floor;          // see floorHeight, along `up`
     std::vector<Viewpoint> viewpoints;
     LoadNotes notes;
     SceneFacts facts;

@@ -67,6 +67,8 @@ std::span<const OptionRow<ViewSettings>> viewSettingsRows() {
         {{"visibility-mask", "view", kView, "", "ask the runtime what the lenses hide"}, field::flag<&S::visibility_mask>()},
         {{"eye-tracking", "view", kView, "", "with foveation: follow the eyes, where the headset sees where they look"},
          field::flag<&S::eye_tracking>()},
+        {{"foveated-inset", "view", kView, "", "with foveation: where the runtime takes a sharp inset over a coarse picture, give it both"},
+         field::flag<&S::foveated_inset>()},
         {{"tilt", "view", kView, "", "two hands may tilt the scene"}, field::flag<&S::tilt>()},
         {{"refresh-rate", "view", kView, "HZ", "one of the headset's rates; 0: the runtime's choice"},
          field::number<&S::refresh_rate>(0.0, 1000.0)},

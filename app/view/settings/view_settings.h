@@ -22,6 +22,7 @@ struct ViewSettings {
     bool panel = true;
     bool visibility_mask = true;  // ask the runtime what the lenses hide; at the start alone
     bool eye_tracking = false;    // whether the headset may say where the eyes look; at the start alone
+    bool foveated_inset = true;   // with half the resolution about it: leave that to a runtime that does it itself; at the start alone
     bool tilt = false;            // whether two hands may tilt the scene
     double refresh_rate = 0.0;    // frames per second; 0: the runtime's choice
     bool hands = true;            // draw them, or what they hold
@@ -39,6 +40,7 @@ struct ViewSettings {
 
     // Both eyes are shown the dominant one's picture.
     [[nodiscard]] bool showsOneEye() const { return stereo.mode == Mode::kMono; }
+    [[nodiscard]] bool wantsInset() const { return foveated_inset && stereo.half_periphery && stereo.foveation_deg > 0.0; }
 };
 
 // The config's [view] over `settings`: the rows of view_settings_table.h, and together scene-position, scene-orientation (w, x, y, z) and
