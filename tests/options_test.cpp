@@ -7,6 +7,7 @@
 #include "app/options/camera_options.h"
 #include "app/options/modes.h"
 #include "app/options/option_table.h"
+#include "app/options/start_view.h"
 #include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/setup/output_files.h"
@@ -348,9 +349,9 @@ TEST_CASE("aLevelFitsIfItsSplatsDo") {
 
 TEST_CASE("aSceneWhoseYIsUpIsSeenUprightAndFromItsFront") {
     Scene scene = makeBox();
-    const View trained = viewOfScene(scene, 60.0);
+    const View trained = startView(scene, {60.0}).view;
     scene.y_up = true;
-    const View upright = viewOfScene(scene, 60.0);
+    const View upright = startView(scene, {60.0}).view;
     CHECK(trained.up == glm::dvec3(0.0, -1.0, 0.0));
     CHECK(upright.up == glm::dvec3(0.0, 1.0, 0.0));
     CHECK(upright.look == trained.look);
@@ -362,9 +363,9 @@ TEST_CASE("aSceneOfOneSplatIsSeenFromWhereItIsWhole") {
     Scene scene;
     scene.name = "one.ply";
     scene.positions = {glm::vec3(1.0f, 2.0f, 3.0f)};
-    CHECK(viewOfScene(scene, 60.0).eye.z == doctest::Approx(2.0));
+    CHECK(startView(scene, {60.0}).view.eye.z == doctest::Approx(2.0));
     scene.scales = {glm::vec2(0.1f, 4.0f)};
-    CHECK(viewOfScene(scene, 60.0).eye.z == doctest::Approx(3.0 - 24.0));
+    CHECK(startView(scene, {60.0}).view.eye.z == doctest::Approx(3.0 - 24.0));
 }
 
 TEST_CASE("vectorsMayBeginWithAMinus") {

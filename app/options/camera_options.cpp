@@ -28,8 +28,6 @@ CameraFiles readCameraFiles(const CameraOptions& options) {
     return files;
 }
 
-View viewOfScene(const Scene& scene, double fov_x_deg) { return startView(scene, {fov_x_deg}).view; }
-
 Cameras makeCameras(const RunOptions& options, const CameraFiles& files, const Scene& scene) {
     const CameraOptions& camera = options.camera;
     const double default_ipd_m = files.headset ? files.headset->eye_distance_m : kDefaultIpdMetres;

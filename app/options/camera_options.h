@@ -20,9 +20,6 @@ struct CameraFiles {
 };
 CameraFiles readCameraFiles(const CameraOptions& options);
 
-// The default view of a scene: see startView.
-View viewOfScene(const Scene& scene, double fov_x_deg);
-
 struct Cameras {
     Eye middle;                // for `mono`
     std::array<Eye, 2> eyes;   // by Side
