@@ -54,7 +54,7 @@ struct Layout {
 std::vector<Layout> hostLayouts() {
     return {
         LAYOUT(SceneChunk, FIELD(positions), FIELD(rotations), FIELD(scales), FIELD(thicknesses), FIELD(opacities), FIELD(base_colours),
-               FIELD(sh)),
+               FIELD(sh), FIELD(fade), FIELD(unused)),
         LAYOUT(EyeView, FIELD(camera_from_world_x), FIELD(camera_from_world_y), FIELD(camera_from_world_z), FIELD(position),
                FIELD(focal_px), FIELD(principal_px), FIELD(size_px), FIELD(size_tiles), FIELD(near), FIELD(max_inverse_depth),
                FIELD(camera_from_world_x_low), FIELD(camera_from_world_y_low), FIELD(camera_from_world_z_low), FIELD(position_low),

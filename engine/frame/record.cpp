@@ -44,6 +44,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
     commands.begin();
+    if (changes_scene) { scene.recordChanges(commands); }
     commands.update(room.lists().state, &state, sizeof(state));
 }
 

@@ -28,6 +28,7 @@ struct FrameRecorder {
     PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
+    bool changes_scene = true;  // what is recorded is going to be submitted, and brings the scene's changes
 
     // The whole frame, from Commands::begin on.
     void record(Commands& commands, const FramePlan& plan) const;

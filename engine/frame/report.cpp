@@ -157,7 +157,7 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
     result.peak_gpu_bytes = frame.context.memoryUse().peak_bytes;
     FrameCounters& counters = result.counters;
     counters.commands = frame.commands.count();
-    counters.splats_read = frame.scene.splatCount();
+    counters.splats_read = frame.scene.splatsHeld();
     counters.scene_bytes = frame.scene.bytes();
     counters.visible_bytes = lists.visible.bytes();
     counters.pair_bytes = lists.pairs.bytes();

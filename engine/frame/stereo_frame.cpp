@@ -54,15 +54,15 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     Commands& commands = flight().commands;
     // `predicted` may find that moving does not pay.
     if (choiceOf(settings.mode) == TileChoice::kPredicted) {
-        recorder().record(commands, planFrame(settings, eyes, false));
+        recorder(false).record(commands, planFrame(settings, eyes, false));
         commands.drop();
     }
-    recorder().record(commands, planFrame(settings, eyes, true));
+    recorder(false).record(commands, planFrame(settings, eyes, true));
     commands.drop();
     if (hasPast(settings.mode) && settings.keep_past) {
         const FramePlan next = planFrame(settings, eyes, true, pastsAfter(plan_, {}));
         room_.fitPictures(next, settings.hidden_tiles);
-        recorder().record(commands, next);
+        recorder(false).record(commands, next);
         commands.drop();
     }
     // Nothing is known of any frame.

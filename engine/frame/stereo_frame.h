@@ -97,8 +97,8 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    [[nodiscard]] FrameRecorder recorder() {
-        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_};
+    [[nodiscard]] FrameRecorder recorder(bool changes_scene = true) {
+        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_, changes_scene};
     }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;

@@ -39,7 +39,7 @@ Commands::~Commands() {
 
 void Commands::begin() {
     assert(!under_way_);
-    in_pass_ = beside_ = false;  // of what was dropped
+    in_pass_ = beside_ = staged_ = false;  // of what was dropped
     passes_.clear();
     timestamp_count_ = 0;
     count_ = 0;
@@ -106,6 +106,23 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, s
     if (bytes == 0) { return; }
     waitForAll();
     command_buffer_.copyBuffer(from.handle(), to.handle(), vk::BufferCopy(from_offset, to_offset, bytes));
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts) {
+    if (parts.empty()) { return; }
+    waitForAll();
+    command_buffer_.copyBuffer(from.handle(), to.handle(), vk::ArrayProxy(static_cast<std::uint32_t>(parts.size()), parts.data()));
+}
+
+const Buffer& Commands::staging(std::uint64_t bytes) {
+    assert(!staged_ && !under_way_);
+    staged_ = true;
+    if (staging_.bytes() < bytes) {
+        staging_ = {};
+        constexpr std::uint64_t kStep = 1 << 20;  // so that it seldom grows
+        staging_ = Buffer(context_, "staging", (bytes + kStep - 1) / kStep * kStep, MemoryKind::kUpload);
+    }
+    return staging_;
 }
 
 void Commands::changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to) {

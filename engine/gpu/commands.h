@@ -6,6 +6,7 @@
 #include "shaders/shared/types.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,6 +74,11 @@ public:
     // At most 64 KiB, carried by the command buffer itself.
     void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
     void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
+    // Likewise several parts, of which none may lie over another.
+    void copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts);
+    // Memory for copies of this recording to read, of at least so many bytes: the host's to write until submit, and there until begin is
+    // called again. Once a recording. Throws Error if there is not that much.
+    [[nodiscard]] const Buffer& staging(std::uint64_t bytes);
 
     // A whole image out of tightly packed rows, or in one colour. It comes with anything in it and leaves as an attachment.
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
@@ -120,10 +126,11 @@ private:
     vk::raii::CommandBuffer command_buffer_{nullptr};
     vk::raii::Fence fence_{nullptr};
     vk::raii::QueryPool timestamps_{nullptr};
+    Buffer staging_;
     std::vector<PassLabel> passes_;
     std::uint32_t timestamp_count_ = 0;
     std::uint32_t count_ = 0;
-    bool in_pass_ = false, under_way_ = false, beside_ = false;
+    bool in_pass_ = false, under_way_ = false, beside_ = false, staged_ = false;
     PassTimes times_;
     double total_ms_ = 0.0;
 };

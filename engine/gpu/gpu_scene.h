@@ -1,50 +1,62 @@
-// A scene in device memory: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
+// A scene in device memory, see packed_splats.h for what a splat takes.
 #pragma once
 
-#include "engine/gpu/buffer.h"
-#include "engine/mode.h"
-#include "engine/scene/scene.h"
-#include "shaders/shared/types.h"
+#include "engine/gpu/packed_splats.h"
 
+#include <functional>
 #include <vector>
 
 namespace binosplat {
+
+class Commands;
 
 // Positions, rotations, scales and opacities stay float32, rotations are normalised; colours are half floats (off by at most 2^-11 of
 // themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
 class GpuScene {
 public:
-    // Splits the scene into chunks of a power of two splats where one allocation cannot hold it.
+    // All of it, as it stays. Splits the scene into chunks of a power of two splats where one allocation cannot hold it.
     GpuScene(const Context& context, const Scene& scene, const Progress& progress = {});
 
+    // Places for splats; those of a scene in pages need not all be taken.
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
-    [[nodiscard]] int shDegree() const { return sh_degree_; }
+    // Splats that are there.
+    [[nodiscard]] std::uint32_t splatsHeld() const { return splats_held_; }
+    [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
     // kDiscs, kGaussians or kAntialiasedGaussians.
-    [[nodiscard]] std::uint32_t splatKind() const { return splat_kind_; }
+    [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
     // Likewise for passes that dimming does not matter to: kDiscs or kGaussians.
-    [[nodiscard]] std::uint32_t splatShape() const { return splat_kind_ == gpu::kDiscs ? gpu::kDiscs : gpu::kGaussians; }
+    [[nodiscard]] std::uint32_t splatShape() const { return traits_.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
     // As the scene asks for it.
-    [[nodiscard]] Order usualOrder() const { return usual_order_; }
+    [[nodiscard]] Order usualOrder() const { return traits_.usual_order; }
     // Whether its colours are light, to be encoded once they are blended.
-    [[nodiscard]] bool isLight() const { return is_light_; }
+    [[nodiscard]] bool isLight() const { return traits_.is_light; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
-    [[nodiscard]] std::size_t chunkCount() const { return buffers_.size(); }
-    [[nodiscard]] gpu::DeviceAddress<gpu::SceneChunk> chunks() const { return chunk_table_.address<gpu::SceneChunk>(); }
-    [[nodiscard]] std::uint64_t bytes() const;
+    [[nodiscard]] std::size_t chunkCount() const { return chunk_count_; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::SceneChunk> chunks() const { return chunks_; }
+    // Whether chunks come and go: each is a page then, and these are what is known of it.
+    [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
+    [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is.
+    void recordChanges(Commands& commands) const {
+        if (changes_) { changes_(commands); }
+    }
 
 private:
-    std::uint32_t splat_count_ = 0;
-    int sh_degree_ = 0;
-    std::uint32_t splat_kind_ = gpu::kDiscs;
-    Order usual_order_ = Order::kDepth;
-    bool is_light_ = false;
+    friend class ResidentScene;
+    GpuScene() = default;
+
+    SceneTraits traits_;
+    std::uint32_t splat_count_ = 0, splats_held_ = 0;
     std::uint32_t chunk_bits_ = 0;
+    std::size_t chunk_count_ = 0;
+    gpu::DeviceAddress<gpu::SceneChunk> chunks_;
+    gpu::DeviceAddress<gpu::ScenePage> pages_;
+    std::uint64_t bytes_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
+    std::function<void(Commands&)> changes_;
 };
-
-// Device bytes of one splat.
-std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d);
 
 }  // namespace binosplat

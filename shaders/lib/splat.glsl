@@ -46,7 +46,7 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     splat.centre = Vec3s(positions).at[at.in_chunk];
     splat.scale = scales.at[at.in_chunk];
     splat.thickness = kSplatKind != kDiscs ? Floats(thicknesses).at[at.in_chunk] : 0;
-    splat.opacity = Floats(opacities).at[at.in_chunk];
+    splat.opacity = Floats(opacities).at[at.in_chunk] * chunks.at[at.chunk].fade;
     return splat;
 }
 

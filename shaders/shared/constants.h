@@ -21,6 +21,8 @@ BINOSPLAT_CONSTANT uint kGroupSize = 128;
 // last workgroup has few counts to sum up, and the eye is brought to shared memory less often.
 BINOSPLAT_CONSTANT uint kCullBlock = 512;
 BINOSPLAT_CONSTANT uint kListBlock = 256;
+// Splats that come and go together: what one workgroup culls.
+BINOSPLAT_CONSTANT uint kPageSplats = kCullBlock;
 
 // Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups where these are narrow, of more where
 // they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. From half a million keys on blocks grow. Counts are

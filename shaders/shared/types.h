@@ -28,8 +28,19 @@ struct SceneChunk {
     BINOSPLAT_STORED(Floats) opacities;
     UVec2s base_colours;         // f_dc: r | g << 16, b, as half floats
     BINOSPLAT_STORED(Uints) sh;  // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
+    float fade;                  // 0 to 1, times the opacity of each
+    uint unused;
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
+
+// A chunk of kPageSplats in a scene whose chunks come and go: what of it can be seen lies in a box in the world.
+struct ScenePage {
+    vec3 low;
+    float reach;  // of any one splat from its centre, where it is longest
+    vec3 high;
+    uint count;  // of splats that can be seen; 0: none
+};
+BINOSPLAT_ALIGNED_ARRAY_OF(ScenePage, 16, ScenePages);
 
 // One eye for one frame. Camera axes: x right, y down, z forward.
 struct EyeView {

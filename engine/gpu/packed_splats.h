@@ -1,0 +1,66 @@
+// Splats as the device holds them: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for SH bands 1 to 3 where the scene has them.
+#pragma once
+
+#include "engine/gpu/buffer.h"
+#include "engine/mode.h"
+#include "engine/scene/scene.h"
+#include "shaders/shared/types.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// What a scene's splats have in common.
+struct SceneTraits {
+    int sh_degree = 0;
+    std::uint32_t splat_kind = gpu::kDiscs;  // or kGaussians, kAntialiasedGaussians
+    Order usual_order = Order::kDepth;       // as the scene asks for it
+    bool is_light = false;                   // its colours are light, to be encoded once they are blended
+
+    [[nodiscard]] bool isGaussian3d() const { return splat_kind != gpu::kDiscs; }
+    bool operator==(const SceneTraits&) const = default;
+};
+SceneTraits traitsOf(const Scene& scene);
+
+// Device bytes of one splat.
+std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d);
+
+// Where the arrays of `capacity` splats that lie together begin, in bytes; each at a multiple of 16, as their end.
+struct ChunkLayout {
+    ChunkLayout(std::uint64_t capacity, const SceneTraits& traits);
+    // Of such splats that begin so far into a buffer.
+    [[nodiscard]] gpu::SceneChunk chunkAt(const Buffer& buffer, std::uint64_t offset_bytes, float fade) const;
+
+    std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
+    std::uint64_t sh_bytes_per_splat = 0;
+};
+
+// Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout` (of at least `count` splats).
+// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out.
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
+                std::uint8_t* to);
+
+// Some splats in pages of kPageSplats, each laid out by itself, with the bounds of each; the last is filled up with splats that are never
+// seen. Made on any thread.
+class PackedPages {
+public:
+    // Splats [first, first + count) of `scene`. Throws Error where these are discs and the traits' 3D Gaussians, or the other way round.
+    PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
+    PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
+    PackedPages() = default;
+
+    [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
+    [[nodiscard]] std::uint32_t pageCount() const { return static_cast<std::uint32_t>(pages_.size()); }
+    [[nodiscard]] const std::vector<gpu::ScenePage>& pages() const { return pages_; }
+    // As many bytes a page as a ChunkLayout of kPageSplats.
+    [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
+
+private:
+    std::uint32_t splat_count_ = 0;
+    std::vector<gpu::ScenePage> pages_;
+    std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,88 @@
+// A scene of which parts come and go between frames: pages of splats in memory of a fixed size.
+#pragma once
+
+#include "engine/gpu/commands.h"
+#include "engine/gpu/gpu_scene.h"
+
+#include <deque>
+#include <optional>
+#include <queue>
+
+namespace binosplat {
+
+// Nothing here waits for the device. What a frame under way still reads is written over by a copy in a later submission of the same queue,
+// which every command of the earlier one comes before (Commands); and what copies read belongs to the recording that they are in.
+class ResidentScene {
+public:
+    // A part that was added, until it is removed; numbers are used again.
+    using Part = std::uint32_t;
+
+    struct Options {
+        std::uint32_t capacity_pages = 0;                            // of kPageSplats
+        std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;  // of splats that a frame brings to the device; at least one page
+    };
+    // Takes all of its device memory. Throws Error if there is not that much.
+    ResidentScene(const Context& context, const SceneTraits& traits, const Options& options);
+    ResidentScene(const ResidentScene&) = delete;
+    ResidentScene& operator=(const ResidentScene&) = delete;
+
+    // What frames render: they ask it for changes.
+    [[nodiscard]] const GpuScene& scene() const { return scene_; }
+    [[nodiscard]] const SceneTraits& traits() const { return scene_.traits_; }
+    [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(pages_.size()); }
+    [[nodiscard]] std::uint32_t freePages() const { return static_cast<std::uint32_t>(free_.size()); }
+    // Of all parts, and of those that frames see.
+    [[nodiscard]] std::uint32_t splatsAdded() const { return splats_added_; }
+    [[nodiscard]] std::uint32_t splatsShown() const { return scene_.splats_held_; }
+
+    // The next ones are for the thread that records frames, between them. A page that was free takes the lowest place there is.
+
+    // Splats that are copied by the next frames, in the order in which they were added, and seen from the first on that has all of the
+    // part. Nothing where there are not enough free pages: then `pages` is as it was. `fade`: see setFade.
+    std::optional<Part> add(PackedPages&& pages, float fade = 1.0f);
+    // Not seen from the next frame on; its pages are free at once.
+    void remove(Part part);
+    // What the opacity of its splats is multiplied with from the next frame on, 0 to 1. At 0 it costs nothing.
+    void setFade(Part part, float fade);
+    // Whether the frames that are recorded from now on find all of it in place.
+    [[nodiscard]] bool isInPlace(Part part) const { return parts_[part].pages_to_copy == 0; }
+    [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
+
+    // Into a recording, before what reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
+    void recordChanges(Commands& commands);
+
+private:
+    struct PartState {
+        std::vector<std::uint32_t> pages;  // where they lie
+        PackedPages packed;                // until it is copied
+        std::uint32_t pages_to_copy = 0, splats = 0;
+        float fade = 1.0f;
+        std::vector<gpu::ScenePage> bounds;
+    };
+    void change(std::uint32_t page, const gpu::ScenePage& bounds, float fade);
+    void show(const PartState& part);
+    // Pages that the next recording copies, and where from.
+    struct PageCopy {
+        std::uint32_t page;
+        const std::uint8_t* from;
+    };
+    std::vector<PageCopy> takeWaiting();
+
+    std::uint64_t page_bytes_, most_pages_a_frame_;
+    std::uint32_t pages_per_buffer_ = 1;
+    GpuScene scene_;  // its buffers hold the pages
+    Buffer page_table_;
+    // As on the device once `changed_` is there.
+    std::vector<gpu::SceneChunk> chunks_;
+    std::vector<gpu::ScenePage> pages_;
+    std::vector<std::uint32_t> changed_;
+    std::vector<bool> is_changed_;
+    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> free_;
+    std::vector<PartState> parts_;
+    std::vector<Part> free_parts_;
+    std::deque<Part> waiting_;         // to be copied, the first one perhaps in part
+    std::vector<PackedPages> copied_;  // that the next recording reads
+    std::uint32_t splats_added_ = 0;
+};
+
+}  // namespace binosplat
