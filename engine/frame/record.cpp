@@ -1,6 +1,7 @@
 // The steps of a plan as passes.
 #include "engine/frame/record.h"
 
+#include "engine/frame/changes.h"
 #include "engine/passes/eye_view.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
     commands.begin();
-    if (changes_scene) { scene.recordChanges(commands); }
+    if (changes != nullptr) { scene.recordChanges(commands, *changes); }
     commands.update(room.lists().state, &state, sizeof(state));
 }
 
@@ -146,7 +147,29 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
     for (int t = 0; t < static_cast<int>(plan.targets.size()); ++t) {
         if (plan.targets[static_cast<std::size_t>(t)].choice == TileChoice::kPast) { eyes.push_back(pastOf(plan, t)); }
     }
+    recordChanged(commands, plan, eyes);
     past_passes.recordChoice(commands, eyes);
+}
+
+void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
+    // The picture of an eye that is rendered in full has seen them, and so has what is made from it.
+    const bool sees_all = std::ranges::any_of(plan.targets, [](const TargetPlan& target) { return target.choice == TileChoice::kAll; });
+    if (changes == nullptr || changes->empty() || sees_all) { return; }
+    std::vector<gpu::ChangedRect> rects;
+    std::vector<std::size_t> begins;
+    for (const PastInputs& picture : pictures) {
+        begins.push_back(rects.size());
+        const auto its = rectsOf(*changes, plan.targets[static_cast<std::size_t>(picture.index)].eye, plan.near);
+        rects.insert(rects.end(), its.begin(), its.end());
+    }
+    if (rects.empty()) { return; }
+    begins.push_back(rects.size());
+    const Buffer& buffer = room.changedRects();
+    commands.update(buffer, rects.data(), rects.size() * sizeof(gpu::ChangedRect));
+    for (std::size_t p = 0; p < pictures.size(); ++p) {
+        past_passes.recordChanged(commands, pictures[p], buffer.address<gpu::ChangedRect>(begins[p] * sizeof(gpu::ChangedRect)),
+                                  static_cast<gpu::uint>(begins[p + 1] - begins[p]));
+    }
 }
 
 PeripheryInputs FrameRecorder::peripheryOf(const FramePlan& plan, int index) const {

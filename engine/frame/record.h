@@ -28,7 +28,8 @@ struct FrameRecorder {
     PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
-    bool changes_scene = true;  // what is recorded is going to be submitted, and brings the scene's changes
+    // What is recorded is going to be submitted, and brings the scene's changes. They are added to those since the last frame was recorded.
+    std::vector<SceneChange>* changes = nullptr;
 
     // The whole frame, from Commands::begin on.
     void record(Commands& commands, const FramePlan& plan) const;
@@ -42,6 +43,7 @@ private:
     void recordWarp(Commands& commands, const FramePlan& plan, int index) const;
     void recordPast(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
+    void recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;

@@ -2,6 +2,7 @@
 #include "engine/frame/room.h"
 
 #include "engine/error.h"
+#include "engine/frame/changes.h"
 
 #include <algorithm>
 #include <cassert>
@@ -46,7 +47,12 @@ void FrameRoom::show(const GpuScene& scene) {
     scene_ = &scene;
     first_frame_ = true;
     lists_ = {};
-    lists_ = makeFrameBuffers(context_, scene.splatCount());
+    lists_ = makeFrameBuffers(context_, scene.splatCount(), scene.isInPages());
+}
+
+const Buffer& FrameRoom::changedRects() {
+    resize(context_, changed_rects_, "changed parts", kMostTargets * kMostChanges * sizeof(gpu::ChangedRect));
+    return changed_rects_;
 }
 
 void FrameRoom::recordShown(Commands& commands) {

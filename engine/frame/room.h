@@ -59,6 +59,8 @@ public:
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
     // Of the eye's two pictures.
     [[nodiscard]] const PeripheryBuffers& periphery(int eye) const { return peripheries_[static_cast<std::size_t>(eye)]; }
+    // Of what the scene changed, of all pictures of a frame: made when it is first wanted.
+    [[nodiscard]] const Buffer& changedRects();
     // Before the passes of a frame.
     void recordShown(Commands& commands);
     // Once what was recorded has run.
@@ -85,6 +87,7 @@ private:
     std::array<WarpBuffers, kMostTargets> warps_;  // of those that are made from others
     std::vector<ShownTiles> shown_;
     std::array<PeripheryBuffers, 2> peripheries_;  // by eye
+    Buffer changed_rects_;
     bool first_frame_ = true;
     bool room_ahead_fits_ = true;  // in the device's memory
 };

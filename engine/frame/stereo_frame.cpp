@@ -33,6 +33,7 @@ void StereoFrame::show(const GpuScene& scene) {
     scene_ = &scene;
     moving_pays_.forget();
     pasts_ = {};
+    changes_.clear();
     room_.show(scene);
 }
 
@@ -54,15 +55,15 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     Commands& commands = flight().commands;
     // `predicted` may find that moving does not pay.
     if (choiceOf(settings.mode) == TileChoice::kPredicted) {
-        recorder(false).record(commands, planFrame(settings, eyes, false));
+        recorder(true).record(commands, planFrame(settings, eyes, false));
         commands.drop();
     }
-    recorder(false).record(commands, planFrame(settings, eyes, true));
+    recorder(true).record(commands, planFrame(settings, eyes, true));
     commands.drop();
     if (hasPast(settings.mode) && settings.keep_past) {
         const FramePlan next = planFrame(settings, eyes, true, pastsAfter(plan_, {}));
         room_.fitPictures(next, settings.hidden_tiles);
-        recorder(false).record(commands, next);
+        recorder(true).record(commands, next);
         commands.drop();
     }
     // Nothing is known of any frame.
@@ -95,11 +96,11 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     std::optional<FrameResult> result = land(before_last);
     bool waits = room_.isFirstFrame() || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
     // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
-    const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, state_, kRoomAhead);
+    const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
         waits = waits || FrameRoom::isCutShort(state_);
-        if (is_short) { room_.makeRoomAhead(plan_, state_); }
+        if (is_short) { room_.makeRoomAhead(plan_, stateAhead()); }
     }
     prepare(eyes, settings);
     if (!waits) {
@@ -133,6 +134,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     if (!flight.commands.isUnderWay()) { return std::nullopt; }
     flight.commands.wait();
     state_ = flight.readback.mapped<FrameState>()[0];
+    splats_known_ = flight.splats_held;
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
         // Where tiles have no room, what the past made stays; a picture in full has nothing else.
@@ -181,6 +183,26 @@ void StereoFrame::renderOnce(const FrameSettings& settings, const Append& append
     flight().commands.submitAndWait();
     room_.forgetUploads();
     state_ = flight().readback.mapped<FrameState>()[0];
+    splats_known_ = flight().splats_held;
+}
+
+FrameState StereoFrame::stateAhead() const {
+    FrameState ahead = state_;
+    const std::uint32_t more = scene_->splatsComing() > splats_known_ ? scene_->splatsComing() - splats_known_ : 0;
+    if (more == 0) { return ahead; }
+    std::uint64_t visible = 1;
+    for (const ListPlan& list : plan_.lists) {
+        const auto l = static_cast<std::size_t>(list.eyes.list);
+        visible = std::max<std::uint64_t>(visible, state_.visible[l].needed);
+        ahead.visible[l].needed = std::min(state_.visible[l].needed, gpu::kMaxItems - more) + more;
+    }
+    // Each meets about as many tiles as those that are there, of which nobody may have seen any yet.
+    constexpr std::uint64_t kLeastTiles = 2;
+    for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
+        const std::uint64_t pairs = state_.targets[t].pairs.needed, of_more = more * std::max(pairs / visible, kLeastTiles);
+        ahead.targets[t].pairs.needed = static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs + of_more, gpu::kMaxItems));
+    }
+    return ahead;
 }
 
 void StereoFrame::makeRoomForVisible() {
@@ -238,12 +260,14 @@ void StereoFrame::record(const FrameSettings& settings, const Append& append) {
     flight().settings.hidden_tiles = {};
     flight().asked = moving_pays_.asked();
     recorder().record(flight().commands, plan_);
+    changes_.clear();
     recorder().recordReport(flight().commands, flight().readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
     past_shape_ = askedApartFromSizes(settings);
     for (std::size_t e = 0; e < past_hidden_.size(); ++e) {
         past_hidden_[e].assign(settings.hidden_tiles[e].begin(), settings.hidden_tiles[e].end());
     }
+    flight().splats_held = scene_->splatsHeld();
     if (append) { append(flight().commands); }
 }
 

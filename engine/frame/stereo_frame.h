@@ -94,11 +94,13 @@ private:
         FramePlan plan;
         FrameSettings settings;
         MovingPays::Asked asked;
+        std::uint32_t splats_held = 0;  // by the scene
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    [[nodiscard]] FrameRecorder recorder(bool changes_scene = true) {
-        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_, changes_scene};
+    // `drops`: what is recorded is dropped, and so must leave the scene's changes to the next.
+    [[nodiscard]] FrameRecorder recorder(bool drops = false) {
+        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_, drops ? nullptr : &changes_};
     }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
@@ -118,6 +120,8 @@ private:
     // The same for who shows frames: once more at most; how often it was done again. What has no room even then shows background, and has
     // room the next time if the device has that much memory.
     std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
+    // What the last known frame would have reported if it had seen all splats that come with the next changes.
+    [[nodiscard]] FrameState stateAhead() const;
     // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
     void makeRoomForVisible();
     // Whether the frame has little in common with the one before.
@@ -134,7 +138,9 @@ private:
     FrameShape past_shape_;                                 // of these, apart from sizes
     std::array<std::vector<std::uint8_t>, 2> past_hidden_;  // FrameSettings::hidden_tiles of these
     FrameState state_{};                                    // what the last one known reported
+    std::uint32_t splats_known_ = 0;                        // that the scene held then
     MovingPays moving_pays_;
+    std::vector<SceneChange> changes_;  // of the scene, since the last frame was recorded
     FrameShape shape_;
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;

@@ -19,7 +19,7 @@ constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{4} << 30;
 
 GpuScene::GpuScene(const Context& context, const Scene& scene, const Progress& progress) : traits_(traitsOf(scene)) {
     check(scene.size() <= gpu::kMaxItems, "{}: {} splats, at most {} can be shown", scene.name, scene.size(), gpu::kMaxItems);
-    splat_count_ = splats_held_ = static_cast<std::uint32_t>(scene.size());
+    splat_count_ = splats_held_ = splats_coming_ = static_cast<std::uint32_t>(scene.size());
     while ((1ull << chunk_bits_) < splat_count_) { ++chunk_bits_; }
     const std::uint64_t most_bytes = std::min(context.maxAllocationBytes(), kMaxChunkBytes);
     while (chunk_bits_ > 0 && ChunkLayout(std::min<std::uint64_t>(1ull << chunk_bits_, splat_count_), traits_).bytes > most_bytes) {

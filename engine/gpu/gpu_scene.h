@@ -10,6 +10,12 @@ namespace binosplat {
 
 class Commands;
 
+// A part of a scene that came, went or faded: where, in the world, and by how much its opacity changed, up to 1.
+struct SceneChange {
+    glm::vec3 low, high;
+    float amount;
+};
+
 // Positions, rotations, scales and opacities stay float32, rotations are normalised; colours are half floats (off by at most 2^-11 of
 // themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
 class GpuScene {
@@ -21,6 +27,8 @@ public:
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     // Splats that are there.
     [[nodiscard]] std::uint32_t splatsHeld() const { return splats_held_; }
+    // Splats that will be there once all changes that wait are recorded.
+    [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
     // kDiscs, kGaussians or kAntialiasedGaussians.
     [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
@@ -38,9 +46,9 @@ public:
     [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
     [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is.
-    void recordChanges(Commands& commands) const {
-        if (changes_) { changes_(commands); }
+    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is. Adds where to `seen`.
+    void recordChanges(Commands& commands, std::vector<SceneChange>& seen) const {
+        if (changes_) { changes_(commands, seen); }
     }
 
 private:
@@ -48,7 +56,7 @@ private:
     GpuScene() = default;
 
     SceneTraits traits_;
-    std::uint32_t splat_count_ = 0, splats_held_ = 0;
+    std::uint32_t splat_count_ = 0, splats_held_ = 0, splats_coming_ = 0;
     std::uint32_t chunk_bits_ = 0;
     std::size_t chunk_count_ = 0;
     gpu::DeviceAddress<gpu::SceneChunk> chunks_;
@@ -56,7 +64,7 @@ private:
     std::uint64_t bytes_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
-    std::function<void(Commands&)> changes_;
+    std::function<void(Commands&, std::vector<SceneChange>&)> changes_;
 };
 
 }  // namespace binosplat

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace binosplat {
@@ -63,7 +65,7 @@ ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, 
     scene_.chunks_ = scene_.chunk_table_.address<gpu::SceneChunk>();
     scene_.pages_ = page_table_.address<gpu::ScenePage>();
     scene_.bytes_ += scene_.chunk_table_.bytes() + page_table_.bytes();
-    scene_.changes_ = [this](Commands& commands) { recordChanges(commands); };
+    scene_.changes_ = [this](Commands& commands, std::vector<SceneChange>& seen) { recordChanges(commands, seen); };
     // The first recording tells the device of all of them.
     for (std::uint32_t page = 0; page < capacity; ++page) {
         free_.push(page);
@@ -86,6 +88,17 @@ void ResidentScene::show(const PartState& part) {
     }
 }
 
+void ResidentScene::noteChange(const PartState& part, float amount) {
+    SceneChange change{glm::vec3(std::numeric_limits<float>::infinity()), {}, amount};
+    change.high = -change.low;
+    for (const gpu::ScenePage& page : part.bounds) {
+        if (page.count == 0) { continue; }
+        change.low = glm::min(change.low, page.low);
+        change.high = glm::max(change.high, page.high);
+    }
+    if (amount > 0.0f && change.low.x <= change.high.x) { seen_.push_back(change); }
+}
+
 std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float fade) {
     assert(fade >= 0.0f && fade <= 1.0f);
     if (pages.pageCount() > freePages()) { return std::nullopt; }
@@ -106,7 +119,7 @@ std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float
         state.pages.push_back(free_.top());
         free_.pop();
     }
-    splats_added_ += state.splats;
+    scene_.splats_coming_ += state.splats;
     state.packed = std::move(pages);
     if (state.pages_to_copy > 0) { waiting_.push_back(part); }
     return part;
@@ -116,10 +129,11 @@ void ResidentScene::remove(Part part) {
     PartState& state = parts_[part];
     if (isInPlace(part)) {
         scene_.splats_held_ -= state.splats;
+        noteChange(state, state.fade);
     } else {
         waiting_.erase(std::ranges::find(waiting_, part));
     }
-    splats_added_ -= state.splats;
+    scene_.splats_coming_ -= state.splats;
     for (const std::uint32_t page : state.pages) {
         change(page, {}, 0.0f);
         free_.push(page);
@@ -131,7 +145,10 @@ void ResidentScene::remove(Part part) {
 void ResidentScene::setFade(Part part, float fade) {
     assert(fade >= 0.0f && fade <= 1.0f);
     PartState& state = parts_[part];
-    if (std::exchange(state.fade, fade) != fade && isInPlace(part)) { show(state); }
+    const float before = std::exchange(state.fade, fade);
+    if (before == fade || !isInPlace(part)) { return; }
+    show(state);
+    noteChange(state, std::abs(fade - before));
 }
 
 std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
@@ -148,12 +165,13 @@ std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
         copied_.push_back(std::move(state.packed));
         scene_.splats_held_ += state.splats;
         show(state);
+        noteChange(state, state.fade);
         waiting_.pop_front();
     }
     return copies;
 }
 
-void ResidentScene::recordChanges(Commands& commands) {
+void ResidentScene::recordChanges(Commands& commands, std::vector<SceneChange>& seen) {
     if (!hasChanges()) { return; }
     std::uint64_t waiting_pages = 0;
     for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
@@ -180,6 +198,8 @@ void ResidentScene::recordChanges(Commands& commands) {
     }
     changed_.clear();
     copied_.clear();
+    seen.insert(seen.end(), seen_.begin(), seen_.end());
+    seen_.clear();
     bool first = true;
     for (std::size_t b = 0; b < of_buffers.size(); ++b) { of_buffers[b].record(commands, staging, scene_.buffers_[b], first); }
     of_chunks.record(commands, staging, scene_.chunk_table_, first);

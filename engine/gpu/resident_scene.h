@@ -32,7 +32,7 @@ public:
     [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(pages_.size()); }
     [[nodiscard]] std::uint32_t freePages() const { return static_cast<std::uint32_t>(free_.size()); }
     // Of all parts, and of those that frames see.
-    [[nodiscard]] std::uint32_t splatsAdded() const { return splats_added_; }
+    [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }
     [[nodiscard]] std::uint32_t splatsShown() const { return scene_.splats_held_; }
 
     // The next ones are for the thread that records frames, between them. A page that was free takes the lowest place there is.
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 
     // Into a recording, before what reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
-    void recordChanges(Commands& commands);
+    void recordChanges(Commands& commands, std::vector<SceneChange>& seen);
 
 private:
     struct PartState {
@@ -61,6 +61,7 @@ private:
     };
     void change(std::uint32_t page, const gpu::ScenePage& bounds, float fade);
     void show(const PartState& part);
+    void noteChange(const PartState& part, float amount);
     // Pages that the next recording copies, and where from.
     struct PageCopy {
         std::uint32_t page;
@@ -82,7 +83,7 @@ private:
     std::vector<Part> free_parts_;
     std::deque<Part> waiting_;         // to be copied, the first one perhaps in part
     std::vector<PackedPages> copied_;  // that the next recording reads
-    std::uint32_t splats_added_ = 0;
+    std::vector<SceneChange> seen_;    // what frames see of all this
 };
 
 }  // namespace binosplat

@@ -42,12 +42,15 @@ PairArrays PairBuffers::arraysWith(const Buffer& idle, unsigned key_bits) const 
 
 glm::uvec2 tilesOf(glm::uvec2 size_px) { return (size_px + (gpu::kTileSize - 1)) / gpu::kTileSize; }
 
-FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count) {
+FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages) {
     FrameBuffers buffers;
     buffers.splat_count = splat_count;
     buffers.state = Buffer(context, "frame state", sizeof(FrameState));
     buffers.visibility =
         Buffer(context, "visibility", std::max<std::uint64_t>(buffers.cullGroups(), 1) * (gpu::kCullBlock / 8 + sizeof(gpu::uint)));
+    if (in_pages) {
+        buffers.pages = Buffer(context, "visible pages", (buffers.cullGroups() + 2 * buffers.pageWords()) * sizeof(gpu::uint));
+    }
     return buffers;
 }
 

@@ -33,8 +33,9 @@ struct TargetState {
 
 // What the device is given at the start of a frame, and what it reports at the end.
 struct FrameState {
-    std::array<gpu::EyeView, kMostTargets> views;      // a target's has its index
-    std::array<gpu::ListState, kMostTargets> visible;  // [0] is both eyes' where they share it
+    std::array<gpu::EyeView, kMostTargets> views;            // a target's has its index
+    std::array<gpu::ListState, kMostTargets> visible;        // [0] is both eyes' where they share it
+    std::array<gpu::ListState, kMostTargets> visible_pages;  // likewise, of a scene in pages
     std::array<TargetState, kMostTargets> targets;
 };
 
@@ -124,6 +125,7 @@ struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
     Buffer visibility;  // a bit a splat, then a count a workgroup
+    Buffer pages;       // of a scene in pages: the list, then a bit a page, then a count a word of these
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
@@ -136,9 +138,16 @@ struct FrameBuffers {
         return visibility.address<gpu::uint>(cullGroups() * (gpu::kCullBlock / 8));
     }
     [[nodiscard]] std::uint64_t cullGroups() const { return (std::uint64_t{splat_count} + gpu::kCullBlock - 1) / gpu::kCullBlock; }
+    [[nodiscard]] std::uint64_t pageWords() const { return (cullGroups() + 31) / 32; }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageList() const { return pages.address<gpu::uint>(); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageBits() const { return pageList().at(cullGroups()); }
+    [[nodiscard]] gpu::DeviceAddress<gpu::uint> pageWordOffsets() const { return pageBits().at(pageWords()); }
     // Offsets of the lists within `state`.
     static std::uint64_t visibleList(int i) {
         return offsetof(FrameState, visible) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState);
+    }
+    static std::uint64_t visiblePages(int i) {
+        return offsetof(FrameState, visible_pages) + static_cast<std::uint64_t>(i) * sizeof(gpu::ListState);
     }
     // Of a field of TargetState.
     static std::uint64_t targetField(int target, std::uint64_t offset) {
@@ -146,7 +155,7 @@ struct FrameBuffers {
     }
 };
 
-FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count);
+FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages = false);
 // Makes room; what was in the lists before is lost, and no more than the new is held at any time.
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
 

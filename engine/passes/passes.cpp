@@ -34,10 +34,22 @@ RasterizeKernel rasterizeKernel(std::uint32_t threads_per_cell, const Kept& kept
             .past = kept.past};
 }
 
+// A workgroup for each block of kCullBlock splats: of the whole scene, or of its visible pages.
+template <typename Pass>
+void dispatchOverBlocks(Commands& commands, const Kernel& kernel, const Pass& pass, const GpuScene& scene, const FrameBuffers& buffers,
+                        int list) {
+    if (scene.isInPages()) {
+        commands.dispatchIndirect(kernel, pass, buffers.state, FrameBuffers::visiblePages(list) + offsetof(gpu::ListState, per_item));
+    } else {
+        commands.dispatchOver(kernel, pass, scene.splatCount(), gpu::kCullBlock);
+    }
+}
+
 }  // namespace
 
 KernelTable passKernels(const Context& context, std::uint32_t wanted_threads_per_cell) {
-    KernelTable table = everyVariant<CullKernel>();
+    KernelTable table = everyVariant<CullPagesKernel>();
+    append(table, everyVariant<CullKernel>());
     append(table, everyVariant<CompactKernel>());
     append(table, sortKernels(context));
     append(table, everyVariant<ProjectKernel>([](const ProjectKernel& k) { return k.masked == 0 || k.square_boxes == 0; }));
@@ -92,23 +104,40 @@ const Sort& Passes::sort() {
     return *sort_;
 }
 
+void Passes::recordCullPages(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
+    commands.beginPass({role, FrameStage::kSort, "cull_pages"});
+    commands.dispatchOver(kernels_.get(CullPagesKernel{.splat_kind = scene.splatShape()}),
+                          gpu::CullPagesPass{.pages = scene.pages(),
+                                             .eyes = buffers.eyes(),
+                                             .page_bits = buffers.pageBits(),
+                                             .word_offsets = buffers.pageWordOffsets(),
+                                             .page_list = buffers.pageList(),
+                                             .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+                                             .page_count = static_cast<gpu::uint>(scene.chunkCount()),
+                                             .first_eye = static_cast<gpu::uint>(eyes.first),
+                                             .eye_count = static_cast<gpu::uint>(eyes.count)},
+                          scene.chunkCount());
+}
+
 void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
+    if (scene.isInPages()) { recordCullPages(commands, scene, buffers, eyes, role); }
     commands.beginPass({role, FrameStage::kSort, "cull"});
-    const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get(CullKernel{.splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0}),
-                          gpu::CullPass{.chunks = scene.chunks(),
-                                        .eyes = buffers.eyes(),
-                                        .visible_bits = buffers.visibleBits(),
-                                        .group_counts = buffers.groupCounts(),
-                                        .visible = visible,
-                                        .splat_count = scene.splatCount(),
-                                        .chunk_bits = scene.chunkBits(),
-                                        .first_eye = static_cast<gpu::uint>(eyes.first),
-                                        .eye_count = static_cast<gpu::uint>(eyes.count),
-                                        .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
-                                        .first_tile_mask = eyes.first_mask,
-                                        .last_tile_mask = eyes.last_mask},
-                          scene.splatCount(), gpu::kCullBlock);
+    const gpu::CullPass pass{.chunks = scene.chunks(),
+                             .eyes = buffers.eyes(),
+                             .page_list = buffers.pageList(),
+                             .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+                             .visible_bits = buffers.visibleBits(),
+                             .group_counts = buffers.groupCounts(),
+                             .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
+                             .splat_count = scene.splatCount(),
+                             .chunk_bits = scene.chunkBits(),
+                             .first_eye = static_cast<gpu::uint>(eyes.first),
+                             .eye_count = static_cast<gpu::uint>(eyes.count),
+                             .capacity = buffers.visible.capacity() / static_cast<gpu::uint>(eyes.shares),
+                             .first_tile_mask = eyes.first_mask,
+                             .last_tile_mask = eyes.last_mask};
+    const CullKernel kernel{.splat_kind = scene.splatShape(), .masked = eyes.first_mask.value != 0, .in_pages = scene.isInPages()};
+    dispatchOverBlocks(commands, kernels_.get(kernel), pass, scene, buffers, eyes.list);
 }
 
 void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
@@ -118,20 +147,21 @@ void Passes::recordVisible(Commands& commands, const GpuScene& scene, const Fram
 
 void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "compact"});
-    const auto visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list));
-    commands.dispatchOver(kernels_.get(CompactKernel{.by_distance = eyes.middle.has_value()}),
-                          gpu::CompactPass{.chunks = scene.chunks(),
-                                           .eyes = buffers.eyes(),
-                                           .visible_bits = buffers.visibleBits(),
-                                           .group_offsets = buffers.groupCounts(),
-                                           .visible = visible,
-                                           .keys = buffers.visible.order().keys,
-                                           .splats = buffers.visible.order().values,
-                                           .splat_count = scene.splatCount(),
-                                           .chunk_bits = scene.chunkBits(),
-                                           .order_eye = static_cast<gpu::uint>(eyes.order_eye),
-                                           .middle = eyes.middle.value_or(gpu::Place{})},
-                          scene.splatCount(), gpu::kCullBlock);
+    const gpu::CompactPass pass{.chunks = scene.chunks(),
+                                .eyes = buffers.eyes(),
+                                .page_list = buffers.pageList(),
+                                .visible_pages = buffers.state.address<gpu::ListState>(FrameBuffers::visiblePages(eyes.list)),
+                                .visible_bits = buffers.visibleBits(),
+                                .group_offsets = buffers.groupCounts(),
+                                .visible = buffers.state.address<gpu::ListState>(FrameBuffers::visibleList(eyes.list)),
+                                .keys = buffers.visible.order().keys,
+                                .splats = buffers.visible.order().values,
+                                .splat_count = scene.splatCount(),
+                                .chunk_bits = scene.chunkBits(),
+                                .order_eye = static_cast<gpu::uint>(eyes.order_eye),
+                                .middle = eyes.middle.value_or(gpu::Place{})};
+    const CompactKernel kernel{.by_distance = eyes.middle.has_value(), .in_pages = scene.isInPages()};
+    dispatchOverBlocks(commands, kernels_.get(kernel), pass, scene, buffers, eyes.list);
     commands.beginPass({role, FrameStage::kSort, "sort_depth"});
     // Four rounds: the result is where the input was.
     sort().record(commands, buffers.visible.order(), buffers.visible.spare(), buffers.scratch.address<gpu::uint>(), buffers.state,

@@ -1,5 +1,6 @@
 // The passes of a frame: those of shaders/sort and shaders/splat, as functions that record them.
 //
+//   cull_pages  which pages of a scene whose chunks come and go may hold such splats as cull keeps
 //   cull        which splats may touch a pixel of any eye
 //   compact     those in the scene's order, with the depth or the distance of their centres
 //   sort_depth  front to back
@@ -102,6 +103,7 @@ public:
     void recordTiles(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, std::span<const Patch> patches, Role role);
 
 private:
+    void recordCullPages(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
     struct EyePart;
     void record(std::span<const EyePart> parts);
     void recordProjected(const EyePart& part);

@@ -35,6 +35,7 @@ gpu::PastView pastViewOf(const Eye& now, const Eye& past, double near, const glm
 KernelTable pastKernels() {
     KernelTable table = everyVariant<WarpPastKernel>();
     append(table, everyVariant<WarpPixelsKernel>());
+    append(table, everyVariant<MarkChangedKernel>());
     append(table, everyVariant<PriceKernel>([](const PriceKernel& k) { return k.past == 1; }));
     append(table, everyVariant<SelectKernel>([](const SelectKernel& k) { return k.past == 1 && k.predicted == 1; }));
     return table;
@@ -77,6 +78,14 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     const WarpPixelsKernel pixels{
         .half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles, .some_tiles = kernel.some_tiles};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
+}
+
+void PastPasses::recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count) {
+    if (count == 0) { return; }
+    commands.beginPass({in.role, MarkChangedKernel::kStage, MarkChangedKernel::kShader});
+    const gpu::MarkChangedPass pass{
+        .tiles = in.target.tiles.address<gpu::PastTile>(), .rects = rects, .size_tiles = tilesOf(in.target.size_px), .count = count};
+    commands.dispatch(kernels_.get(MarkChangedKernel{}), pass, groupsOver(in.warp.tileCount(), gpu::kWarpGroup));
 }
 
 void PastPasses::recordChoice(Commands& commands, std::span<const PastInputs> eyes) {

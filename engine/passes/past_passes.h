@@ -2,6 +2,7 @@
 //
 //   warp_past    what the past shows, block by block, and the error to expect of each tile
 //   warp_pixels  the pixels of other blocks one by one
+//   mark_changed where the scene is another than the past saw
 //   price        what it costs to mend that, with one budget for all eyes
 //   select       the tiles that are rendered
 #pragma once
@@ -44,6 +45,8 @@ public:
 
     // The target's colours, words, tiles and depths.
     void recordWarp(Commands& commands, const PastInputs& in);
+    // Between the two: where the scene changed since the past was made.
+    void recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);
     // Which tiles of all `eyes` are rendered again. The first one's WarpView says the budget, a share of all eyes' work.
     void recordChoice(Commands& commands, std::span<const PastInputs> eyes);
 

@@ -55,6 +55,14 @@ struct WarpedPast {
 WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
                     const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
 
+// mark_changed: where something changed in the scene since the past was made, the quarters of tiles that have a pixel of the rectangle,
+// half open, are off by that amplitude more, up to what is expected at most.
+struct ChangedRect {
+    glm::uvec2 begin_px, end_px;
+    double error;
+};
+void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects);
+
 // price: adds what this frame's warp is expected to lose to the errors of tiles. Blur of what is blurred already is blurred more, so that
 // it adds up as an amplitude. Half of it is the growth that was measured, where there is one and most of the quarter was seen.
 void growErrors(std::span<PastTile> tiles);

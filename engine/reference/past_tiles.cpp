@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kChannels = 3.0, kCellPixels = kCell * kCell, kTilePixels = kTileSize * kTileSize;
 constexpr double kMeasuredShare = 0.5, kUnseenGrowth = 0.05;
-constexpr double kMostWorth = 2000.0, kStep = 0x1p-20;
+constexpr double kMostChangedError = 0.5, kMostWorth = 2000.0, kStep = 0x1p-20;
 constexpr std::uint64_t kPairsOfTile = 16, kMostCost = 0x1fffff;
 
 std::optional<MovingPixel> pixelOf(const Picture& full, std::size_t i) {
@@ -21,6 +21,27 @@ void growErrors(std::span<PastTile> tiles) {
             const double expected = std::sqrt(tile.grown[q] / (kChannels * kCellPixels));
             const double measured = tile.growth > 0.0 && expected < kUnseenGrowth ? kMeasuredShare : 0.0;
             tile.errors[q] += (1.0 - measured) * expected + measured * tile.growth;
+        }
+    }
+}
+
+void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects) {
+    const std::size_t columns = tileGrid(size_px).x;
+    std::vector<std::array<double, 4>> more(tiles.size());
+    for (const ChangedRect& rect : rects) {
+        std::vector<std::array<bool, 4>> meets(tiles.size());
+        for (std::size_t y = rect.begin_px.y; y < std::min(rect.end_px.y, size_px.y); ++y) {
+            for (std::size_t x = rect.begin_px.x; x < std::min(rect.end_px.x, size_px.x); ++x) {
+                meets[y / kTileSize * columns + x / kTileSize][y / kCell % 2 * 2 + x / kCell % 2] = true;
+            }
+        }
+        for (std::size_t t = 0; t < tiles.size(); ++t) {
+            for (std::size_t q = 0; q < 4; ++q) { more[t][q] += meets[t][q] ? rect.error : 0.0; }
+        }
+    }
+    for (std::size_t t = 0; t < tiles.size(); ++t) {
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (more[t][q] > 0.0) { tiles[t].errors[q] = std::min(tiles[t].errors[q] + more[t][q], kMostChangedError); }
         }
     }
 }

@@ -80,6 +80,20 @@ struct TileRange {
     std::uint32_t begin, end;
 };
 
+// A page: splats that come and go together. Those of them that can be seen at all, as far as each reaches until its alpha falls to 1/255,
+// lie between two corners, in the world's axes.
+struct Page {
+    glm::dvec3 low, high;
+    double reach = 0.0;       // of any one splat from its centre, where it is longest
+    std::uint32_t count = 0;  // of them; 0: there is nothing else
+};
+Page boundPage(const Scene& scene, std::size_t first, std::size_t count);
+
+// cull_pages: which pages may hold splats that cull keeps for any of the eyes (1 or 0 per page): those whose box reaches the inner side of
+// each plane of the view, and the planes are as much farther out as `slack` times how far away it lies.
+std::vector<std::uint8_t> cullPages(std::span<const Page> pages, bool gaussians, std::span<const Eye> eyes, const Settings& settings,
+                                    double slack = 0.0);
+
 // cull: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
 

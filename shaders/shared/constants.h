@@ -67,6 +67,8 @@ BINOSPLAT_CONSTANT float kMaxSigma = 1e15f;
 // and two such hits leave exactly 1e-4, which is not under it.
 BINOSPLAT_CONSTANT float kMaxAlpha = 0.99f;
 BINOSPLAT_CONSTANT float kMinAlpha = 1.0f / 255.0f;
+// rho at which an opacity of 1 falls to kMinAlpha, 2 ln 255, and a hair: no splat reaches farther.
+BINOSPLAT_CONSTANT float kMaxCut = 11.083f;
 BINOSPLAT_CONSTANT float kMinPassing = 0.01f;
 BINOSPLAT_CONSTANT float kMinTransmittance = 1e-4f;
 BINOSPLAT_CONSTANT float kLog2Of255 = 7.99435343685886f;
@@ -180,6 +182,11 @@ BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
 // much was not seen grows by the model alone.
 BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;
 BINOSPLAT_CONSTANT float kUnseenGrowth = 0.05f;
+
+// Where a part of the scene came or went, an eye's past is expected to be wrong by this amplitude, and never by more than the second: what
+// lies there is often much like what lay there, and a tile that nobody saw before is worth more.
+BINOSPLAT_CONSTANT float kChangedError = 0.125f;
+BINOSPLAT_CONSTANT float kMostChangedError = 0.5f;
 
 // Pixels of the source that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
 // two pixels beside them, and the place is up to one off.

@@ -6,12 +6,27 @@
 
 BINOSPLAT_BEGIN_SHARED
 
+// cull_pages: of a scene whose chunks come and go, the pages that may hold such splats.
+struct CullPagesPass {
+    ScenePages pages;
+    EyeViews eyes;
+    CoherentUints page_bits;     // out: a bit a page
+    CoherentUints word_offsets;  // out: how many visible pages there are before each word of these
+    Uints page_list;             // out: the visible pages, ascending
+    ListStates visible_pages;    // out; per_item is a workgroup for each
+    uint page_count;
+    uint first_eye;
+    uint eye_count;
+};
+
 // cull: which splats may touch a pixel of any eye.
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
-    Uints visible_bits;          // out: a bit a splat
-    CoherentUints group_counts;  // out: how many visible splats there are before each kCullBlock of them
+    Uints page_list;             // of a scene in pages: the blocks of kCullBlock splats that are looked at; otherwise all
+    ListStates visible_pages;    // likewise: how many
+    Uints visible_bits;          // out: a bit a splat of these blocks
+    CoherentUints group_counts;  // out: how many visible splats there are before each block
     ListStates visible;          // out
     uint splat_count;
     uint chunk_bits;
@@ -26,6 +41,8 @@ struct CullPass {
 struct CompactPass {
     SceneChunks chunks;
     EyeViews eyes;
+    Uints page_list;  // as in CullPass
+    ListStates visible_pages;
     Uints visible_bits;
     Uints group_offsets;  // CullPass::group_counts
     ListStates visible;
@@ -222,6 +239,14 @@ struct ComponentsPass {
     Uints tile_kinds;  // in and out
     WarpCounterss counters;
     uint box_capacity;
+};
+
+// mark_changed: where there is a past, what of it parts of the scene belie that came, went or faded.
+struct MarkChangedPass {
+    PastTiles tiles;  // in and out, of the picture that is made
+    ChangedRects rects;
+    uvec2 size_tiles;
+    uint count;  // of rects, at least 1
 };
 
 // price: predicted: what each tile's error costs to mend, and how much there is of each price.

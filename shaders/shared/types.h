@@ -162,6 +162,15 @@ struct PastTile {
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 
+// Where in a picture a part of the scene is seen that changed: pixels from begin to end (exclusive), and the amplitude of the error to
+// expect there of a picture that is made from its past.
+struct ChangedRect {
+    uvec2 begin_px;
+    uvec2 end_px;
+    float error;
+};
+BINOSPLAT_ARRAY_OF(ChangedRect, ChangedRects);
+
 // A block of a picture whose pixels are made from the past one by one.
 struct PastBlock {
     uint place;           // row << 16 | column, in blocks

@@ -5,14 +5,17 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "passes.h"
 #include "lib/group.glsl"
+#include "lib/list.glsl"
 const uint kSplatKind = kDiscs;  // of all kinds the centre alone
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
 layout(constant_id = 0) const bool kByDistance = false;
+layout(constant_id = 1) const bool kInPages = false;
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CompactPass pass; };
+#include "lib/block.glsl"
 
 const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
@@ -38,7 +41,7 @@ uint sortableBits(float value) {
 void main() {
     if (pass.visible.at[0].count == 0) { return; }
     const uint group = groupIndex();
-    const uint first = group * kCullBlock;
+    const uint first = firstOfBlock(group);
     const uint own_word = gl_LocalInvocationIndex;
     if (own_word < kBlockWords) { visible_words[own_word] = first < pass.splat_count ? pass.visible_bits.at[group * kBlockWords + own_word] : 0; }
     barrier();

@@ -20,6 +20,8 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not is all
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // of each eye only the tiles of its mask count
+layout(constant_id = 2) const bool kInPages = false;
+#include "lib/block.glsl"
 
 const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
@@ -116,9 +118,10 @@ void main() {
     if (gl_LocalInvocationIndex == 0) { visible_count = 0; }
     const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);
     const EyeView last_eye = shareEye(pass.eyes, pass.first_eye + pass.eye_count - 1);
+    const uint first = firstOfBlock(group);
     uint in_block = gl_LocalInvocationIndex;
     [[dont_unroll]] do {
-        const uint i = group * kCullBlock + in_block;
+        const uint i = first + in_block;
         if (i >= pass.splat_count) { break; }
         const CameraSplat splat = loadWorldSplat(pass.chunks, placeOfSplat(i, pass.chunk_bits));
         const bool visible = isWanted(cameraFromWorld(first_eye, splat), first_eye, pass.first_tile_mask) ||
@@ -130,7 +133,7 @@ void main() {
         in_block += kGroupSize;
     } while (in_block < kCullBlock);
     barrier();
-    const uint groups = groupsOver(pass.splat_count, kCullBlock);
+    const uint groups = blockCount();
     if (group < groups) {  // the last row of a dispatch may have more
         if (gl_LocalInvocationIndex < kBlockWords) {
             pass.visible_bits.at[group * kBlockWords + gl_LocalInvocationIndex] = visible_words[gl_LocalInvocationIndex];

@@ -1,0 +1,101 @@
+// cull_pages: of a scene whose chunks come and go, which pages may hold a splat that cull keeps, as a list in the scene's order. By the box
+// around all that can be seen of a page, against the planes of the view; they are widened by what the low-pass reaches on the screen.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "passes.h"
+#include "lib/group.glsl"
+#include "lib/last_group.glsl"
+#include "lib/list.glsl"
+#include "lib/sums.glsl"
+
+layout(constant_id = 0) const uint kSplatKind = kDiscs;
+
+#include "lib/splat.glsl"
+#include "lib/eye.glsl"
+
+layout(local_size_x = kGroupSize) in;
+layout(push_constant, scalar) uniform Push { CullPagesPass pass; };
+
+const uint kGroupWords = kGroupSize / 32;
+shared uint visible_words[kGroupWords];
+
+// What single precision may lose here and in cull, as a part of the distances that are summed.
+const float kRounding = 1e-5;
+
+struct Box {
+    vec3 middle, half_size;  // in the world's axes, from the eye
+};
+
+// Whether the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length. NaN does: cull sees to it.
+bool reaches(Box box, EyeView eye, vec3 normal, float least) {
+    const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y + normal.z * eye.camera_from_world_z;
+    const float rounding = kRounding * dot(abs(box.middle) + box.half_size, abs(n));
+    return !(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding < least);
+}
+
+// Of one side of the view: the points of a disc that cull looks at may lie behind the eye, where a wider plane is no wider.
+bool reachesSide(Box box, EyeView eye, vec3 normal, float wider_px, float least) {
+    return reaches(box, eye, normal, least) || reaches(box, eye, normal + vec3(0, 0, wider_px), least);
+}
+
+bool mayShow(ScenePage page, EyeView eye) {
+    const vec3 low = fromEye(eye, page.low), high = fromEye(eye, page.high);
+    const Box box = Box(0.5 * (low + high), 0.5 * (high - low));
+    if (!reaches(box, eye, vec3(0, 0, 1), eye.near)) { return false; }
+    // On the screen a 3D Gaussian reaches as far as its ellipsoid along f (1, 0, -slope), whose slope is held within the picture and a border
+    // of it (lib/gaussian.glsl): for one beside the picture no more than along the side's normal and that border times its reach in depth.
+    const vec2 size_px = vec2(eye.size_px), to_far_edge = size_px - eye.principal_px;
+    float wider_px = sqrt(kMaxCut / eye.low_pass);
+    vec2 least = vec2(0);
+    if (kSplatKind != kDiscs) {
+        wider_px = sqrt(kMaxCut * eye.screen_variance) + kOutlinePadding;
+        least = -(kDerivativeBorder * size_px + wider_px) * page.reach;
+    }
+    return reachesSide(box, eye, vec3(eye.focal_px.x, 0, eye.principal_px.x), wider_px, least.x) &&
+           reachesSide(box, eye, vec3(-eye.focal_px.x, 0, to_far_edge.x), wider_px, least.x) &&
+           reachesSide(box, eye, vec3(0, eye.focal_px.y, eye.principal_px.y), wider_px, least.y) &&
+           reachesSide(box, eye, vec3(0, -eye.focal_px.y, to_far_edge.y), wider_px, least.y);
+}
+
+// By the last workgroup: the pages of all words, in their order.
+void listPages(uint words) {
+    sumUp(pass.word_offsets, words, pass.visible_pages, pass.page_count);
+    memoryBarrierBuffer();
+    barrier();
+    if (gl_LocalInvocationIndex == 0) {
+        pass.visible_pages.at[0].per_item = dispatchOver(pass.visible_pages.at[0].count, 1);
+    }
+    uint word = gl_LocalInvocationIndex;
+    [[dont_unroll]] do {
+        if (word >= words) { break; }
+        uint bits = pass.page_bits.at[word], place = pass.word_offsets.at[word];
+        [[dont_unroll]] while (bits != 0) {
+            pass.page_list.at[place] = 32 * word + findLSB(bits);
+            bits &= bits - 1;
+            ++place;
+        }
+        word += kGroupSize;
+    } while (word < words);
+}
+
+void main() {
+    const uint group = groupIndex();
+    if (gl_LocalInvocationIndex < kGroupWords) { visible_words[gl_LocalInvocationIndex] = 0; }
+    const EyeView first_eye = shareEye(pass.eyes, pass.first_eye);
+    const EyeView last_eye = shareEye(pass.eyes, pass.first_eye + pass.eye_count - 1);
+    const uint i = group * kGroupSize + gl_LocalInvocationIndex;
+    if (i < pass.page_count) {
+        const ScenePage page = pass.pages.at[i];
+        if (page.count > 0 && (mayShow(page, first_eye) || (pass.eye_count > 1 && mayShow(page, last_eye)))) {
+            atomicOr(visible_words[gl_LocalInvocationIndex / 32], 1u << (gl_LocalInvocationIndex & 31));
+        }
+    }
+    barrier();
+    const uint words = groupsOver(pass.page_count, 32), word = group * kGroupWords + gl_LocalInvocationIndex;
+    if (gl_LocalInvocationIndex < kGroupWords && word < words) {
+        pass.page_bits.at[word] = visible_words[gl_LocalInvocationIndex];
+        pass.word_offsets.at[word] = bitCount(visible_words[gl_LocalInvocationIndex]);
+    }
+    if (isLastGroup(pass.visible_pages)) { listPages(words); }
+}
