@@ -100,7 +100,8 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: what is recorded is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_->passes, kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_, drops ? nullptr : &changes_};
+        return {kernels_->passes,           kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_,
+                drops ? nullptr : &changes_};
     }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
