@@ -58,6 +58,8 @@ TEST_CASE("bounds that are no numbers are refused") {
     CHECK(contains(broken.with("\"min\":[-4,", "\"min\":[null,"), "tree.bound.min[0]: is null, expected a number"));
     CHECK(contains(broken.with("\"min\":[-4,", "\"min\":["), "tree.bound.min: has 2 entries, expected 3"));
     CHECK(contains(broken.with("\"bound\":", "\"box\":"), "tree: has no bound"));
+    CHECK(contains(broken.with("\"min\":[-1,-2,0],\"max\":[1,", "\"min\":[2,-2,0],\"max\":[1,"),
+                   "tree.children[0].lods: lies in no box, expected a bound whose min is at most its max"));
 }
 
 TEST_CASE("names that are not those of chunks within the folder are refused") {

@@ -62,6 +62,32 @@ TEST_CASE("a level is its chunks in their order, with the environment behind") {
     CHECK(loadScene(source + "/other").name == source + "/other");
 }
 
+TEST_CASE("the tree says where each leaf lies and which splats show it, the finest level first") {
+    const std::string text = makeLodMeta();
+    const LodMeta meta = parseLodMeta(std::as_bytes(std::span(text)), "lod-meta.json");
+    REQUIRE(meta.tree.size() == 3);
+    CHECK(meta.leaves == 3);
+    for (const LodLeaf& leaf : meta.tree) {
+        CHECK(leaf.low == glm::vec3(-1.0f, -2.0f, 0.0f));
+        CHECK(leaf.high == glm::vec3(1.0f, 0.5f, 2.0f));
+    }
+    const auto isRange = [](const LodRange& range, std::uint32_t level, std::uint32_t file, std::uint64_t first, std::uint64_t count) {
+        return range.level == level && range.file == file && range.splats.first == first && range.splats.count == count;
+    };
+    REQUIRE(meta.tree[0].levels.size() == 2);
+    CHECK(isRange(meta.tree[0].levels[0], 0, 0, 5, 3));
+    CHECK(isRange(meta.tree[0].levels[1], 1, 2, 0, 6));
+    REQUIRE(meta.tree[1].levels.size() == 2);
+    CHECK(isRange(meta.tree[1].levels[1], 1, 2, 6, 2));
+    REQUIRE(meta.tree[2].levels.size() == 1);
+    CHECK(isRange(meta.tree[2].levels[0], 0, 1, 0, 8));
+    // A leaf without splats has no place, and counts as a leaf.
+    const std::string with_empty = replaced(text, R"({"0":{"file":1,"offset":0,"count":8}})", "{}");
+    const LodMeta fewer = parseLodMeta(std::as_bytes(std::span(with_empty)), "lod-meta.json");
+    CHECK(fewer.tree.size() == 2);
+    CHECK(fewer.leaves == 3);
+}
+
 namespace {
 
 // Makes bundles of some of the chunks' folders, and names them in lod-meta.json.

@@ -59,7 +59,7 @@ std::uint64_t readSplats(const JsonNode& node) {
     return splats;
 }
 
-void readLeaf(const JsonNode& lods, LodMeta& meta) {
+void readLeaf(const JsonNode& lods, LodLeaf leaf, LodMeta& meta) {
     lods.requireObject();
     std::vector<bool> present(meta.levels.size(), false);
     for (const auto& [key, value] : lods.value.items()) {
@@ -72,29 +72,35 @@ void readLeaf(const JsonNode& lods, LodMeta& meta) {
         const SplatRange range{readSplats(entry.at("offset")), readSplats(entry.at("count"))};
         if (range.count == 0) { continue; }
         meta.levels[*level].chunks[file.count()].push_back(range);
+        leaf.levels.push_back({static_cast<std::uint32_t>(*level), static_cast<std::uint32_t>(file.count()), range});
         present[*level] = true;
     }
-    const bool any = std::find(present.begin(), present.end(), true) != present.end();
+    const bool any = !leaf.levels.empty();
     for (std::size_t level = 0; level < present.size(); ++level) { meta.leaves_without[level] += any && !present[level]; }
     ++meta.leaves;
+    if (!any) { return; }  // then its box may be none, too
+    const bool is_box = glm::all(glm::lessThanEqual(leaf.low, leaf.high));
+    check(is_box, "{}: lies in no box, expected a bound whose min is at most its max", lods.place());
+    std::ranges::sort(leaf.levels, {}, &LodRange::level);
+    meta.tree.push_back(std::move(leaf));
 }
 
-// Nothing here is culled by its bounds; broken ones are a sign that the rest may be no better.
-void requireBounds(const JsonNode& bound) {
-    for (const char* corner : {"min", "max"}) {
+LodLeaf readBounds(const JsonNode& bound) {
+    const auto readCorner = [&](const char* corner) {
         const JsonNode values = bound.at(corner);
         values.requireArray(3);
-        for (std::size_t axis = 0; axis < 3; ++axis) { (void)values.at(axis).number(); }
-    }
+        return glm::vec3(values.at(0).number(), values.at(1).number(), values.at(2).number());
+    };
+    return {readCorner("min"), readCorner("max"), {}};
 }
 
 // The parser has bounded the depth.
 void readTree(const JsonNode& node, LodMeta& meta) {
-    requireBounds(node.at("bound"));
+    const LodLeaf box = readBounds(node.at("bound"));
     const bool is_leaf = node.has("lods");
     check(is_leaf != node.has("children"), "{}: has {}, expected one of them", node.place(),
           is_leaf ? "both children and lods" : "neither children nor lods");
-    if (is_leaf) { return readLeaf(node.at("lods"), meta); }
+    if (is_leaf) { return readLeaf(node.at("lods"), box, meta); }
     const JsonNode children = node.at("children");
     check(children.arraySize() > 0, "{}: is empty, expected nodes", children.place());
     for (std::size_t i = 0; i < children.arraySize(); ++i) { readTree(children.at(i), meta); }

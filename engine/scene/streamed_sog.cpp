@@ -2,13 +2,12 @@
 #include "engine/scene/streamed_sog.h"
 
 #include "engine/error.h"
-#include "engine/scene/lod_meta.h"
 #include "engine/scene/scene_builder.h"
 #include "engine/scene/sog_splats.h"
+#include "engine/scene/streamed_chunks.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <system_error>
 
 namespace binosplat {
@@ -16,9 +15,6 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A hundred thousand leaves of five levels.
-constexpr std::uint64_t kMaxLodMetaBytes = std::uint64_t{1} << 25;
 
 // A chunk and which of its splats are wanted.
 struct Chunk {
@@ -34,55 +30,8 @@ struct Level {
     const char* reason = "";  // why not the finest, if nobody asked for it
 };
 
-// lod-meta.json, and where it lies.
-struct Streamed {
-    fs::path folder;
-    std::string place;
-    LodMeta meta;
-    SceneFiles* elsewhere = nullptr;  // not in `folder`
-};
-
-Streamed readLodMeta(const fs::path& folder, const std::string& name) {
-    const std::unique_ptr<SogFiles> files = openSogFolder(folder.string());
-    const std::string place = files->place(name);
-    return {folder, place, parseLodMeta(files->read(name, kMaxLodMetaBytes), place), nullptr};
-}
-
-// Opens chunks of one scene: each lies within its folder, whatever links lead to, and is opened once.
-class ChunkOpener {
-public:
-    explicit ChunkOpener(const Streamed& scene) : scene_(scene) {}
-
-    SogSplats open(const std::string& path, const std::string& key) {
-        if (scene_.elsewhere != nullptr) { return openElsewhere(path); }
-        const std::string place = scene_.place + ": " + key;
-        const fs::path file = scene_.folder / path;
-        std::error_code error;
-        check(fs::is_regular_file(file, error), "{}: {} is not there, expected a chunk of the scene", place, file.string());
-        const fs::path folder = fs::canonical(scene_.folder, error), real = fs::canonical(file, error);
-        check(!error, "{}: {} cannot be read: {}", place, file.string(), error.message());
-        check(std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end(),
-              "{}: {} is a link to {}, expected a place within {}", place, file.string(), real.string(), folder.string());
-        check(opened_.insert(real).second, "{}: {} is a link to a chunk that is named already, expected each chunk once", place,
-              file.string());
-        const bool is_bundle = file.extension() == ".sog";
-        SogSplats splats(is_bundle ? openSogBundle(InputFile(file.string())) : openSogFolder(file.parent_path().string()));
-        splats.requirePlausibleCount();
-        return splats;
-    }
-
-private:
-    // Its pictures are asked for when the level is chosen.
-    SogSplats openElsewhere(const std::string& path) const {
-        SceneFiles& files = *scene_.elsewhere;
-        return SogSplats(fs::path(path).extension() == ".sog" ? openSogBundle(files, path) : openSogFolder(files, path));
-    }
-
-    const Streamed& scene_;
-    std::set<fs::path> opened_;
-};
-
-Level openLevel(const Streamed& scene, std::size_t index) {
+Level openLevel(StreamedChunks& scene, std::size_t index) {
+    const LodMeta& meta = scene.meta();
     Level level;
     level.index = index;
     const auto add = [&](SogSplats splats, std::vector<SplatRange> ranges) {
@@ -90,40 +39,34 @@ Level openLevel(const Streamed& scene, std::size_t index) {
         for (const SplatRange range : ranges) { level.splats += range.count; }
         level.chunks.push_back({std::move(splats), std::move(ranges)});
     };
-    if (scene.elsewhere != nullptr) {
-        std::vector<std::string> names;
-        for (const auto& [file, ranges] : scene.meta.levels[index].chunks) { names.push_back(scene.meta.files[file]); }
-        if (!scene.meta.environment.empty()) { names.push_back(scene.meta.environment); }
-        scene.elsewhere->expect(names);
-    }
-    ChunkOpener opener(scene);
-    for (const auto& [file, ranges] : scene.meta.levels[index].chunks) {
-        const std::string& path = scene.meta.files[file];
-        SogSplats splats = opener.open(path, fmt::format("filenames[{}]", file));
-        const SplatRange last = ranges.back();
-        check(last.first + last.count <= splats.count(), "{}: tree: a leaf names splat {} of filenames[{}] ({}), which has {}", scene.place,
-              last.first + last.count - 1, file, path, splats.count());
+    std::vector<std::size_t> files;
+    for (const auto& [file, ranges] : meta.levels[index].chunks) { files.push_back(file); }
+    if (scene.hasEnvironment()) { files.push_back(scene.environmentIndex()); }
+    scene.expect(files);
+    for (const auto& [file, ranges] : meta.levels[index].chunks) {
+        SogSplats splats = scene.open(file);
+        scene.requireRange(file, ranges.back(), splats);
         add(std::move(splats), ranges);
     }
-    if (!scene.meta.environment.empty()) {
-        SogSplats splats = opener.open(scene.meta.environment, "environment");
+    if (scene.hasEnvironment()) {
+        SogSplats splats = scene.open(scene.environmentIndex());
         const SplatRange all{0, splats.count()};
         add(std::move(splats), {all});
     }
     return level;
 }
 
-Level chooseLevel(const Streamed& scene, const LevelChoice& choice) {
-    const std::size_t levels = scene.meta.levels.size();
+Level chooseLevel(StreamedChunks& scene, const LevelChoice& choice) {
+    const std::size_t levels = scene.meta().levels.size();
     if (choice.level) {
-        check(*choice.level < levels, "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}", scene.place,
+        check(*choice.level < levels, "{}: lod is {}, expected one of the scene's levels of detail, 0 (the finest) to {}", scene.place(),
               *choice.level, levels - 1);
         return openLevel(scene, *choice.level);
     }
     for (std::size_t index = 0;; ++index) {
         // Not even without harmonics: nothing of it need be fetched.
         const bool is_hopeless =
-            scene.elsewhere != nullptr && index + 1 < levels && choice.fits && !choice.fits(scene.meta.levels[index].splats, 0);
+            scene.areElsewhere() && index + 1 < levels && choice.fits && !choice.fits(scene.meta().levels[index].splats, 0);
         if (is_hopeless) { continue; }
         Level level = openLevel(scene, index);
         const bool fits = !choice.fits || choice.fits(level.splats, level.sh_degree);
@@ -132,8 +75,8 @@ Level chooseLevel(const Streamed& scene, const LevelChoice& choice) {
     }
 }
 
-void noteLevel(const std::string& source, const Streamed& scene, const Level& level, LoadNotes& notes) {
-    const LodMeta& meta = scene.meta;
+void noteLevel(const std::string& source, const StreamedChunks& scene, const Level& level, LoadNotes& notes) {
+    const LodMeta& meta = scene.meta();
     for (const LodLevel& each : meta.levels) { notes.level_splats.push_back(each.splats); }
     notes.level = static_cast<std::uint32_t>(level.index);
     notes.environment_splats = level.splats - meta.levels[level.index].splats;
@@ -144,11 +87,11 @@ void noteLevel(const std::string& source, const Streamed& scene, const Level& le
     }
 }
 
-Scene readStreamedSog(const std::string& source, const Streamed& scene, const LevelChoice& choice, LoadNotes& notes,
+Scene readStreamedSog(const std::string& source, StreamedChunks scene, const LevelChoice& choice, LoadNotes& notes,
                       const Progress& progress) {
     if (progress) { progress(0.0); }
     Level level = chooseLevel(scene, choice);
-    if (scene.elsewhere != nullptr) {
+    if (scene.areElsewhere()) {
         for (const Chunk& chunk : level.chunks) { chunk.splats.expect(); }
         for (const Chunk& chunk : level.chunks) { chunk.splats.requirePlausibleCount(); }
     }
@@ -191,18 +134,12 @@ bool isStreamedSogFile(InputFile& file) {
 
 Scene readStreamedSogFolder(const std::string& folder, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {
     requireSogDecoder(folder);
-    return readStreamedSog(folder, readLodMeta(folder, "lod-meta.json"), choice, notes, progress);
+    return readStreamedSog(folder, StreamedChunks(folder), choice, notes, progress);
 }
 
 Scene readStreamedSogFile(InputFile& file, const LevelChoice& choice, LoadNotes& notes, const Progress& progress) {
     requireSogDecoder(file.name());
-    if (file.others() != nullptr) {
-        const Streamed scene{{}, file.name(), parseLodMeta(file.readWhole(kMaxLodMetaBytes), file.name()), file.others()};
-        return readStreamedSog(file.name(), scene, choice, notes, progress);
-    }
-    const fs::path path(file.name());
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    return readStreamedSog(file.name(), readLodMeta(folder, path.filename().string()), choice, notes, progress);
+    return readStreamedSog(file.name(), StreamedChunks(file), choice, notes, progress);
 }
 
 }  // namespace binosplat
