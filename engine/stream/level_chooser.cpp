@@ -1,0 +1,129 @@
+// Worth by distance and angle; a greedy walk down the list of steps.
+#include "engine/stream/level_chooser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+namespace binosplat {
+
+namespace {
+
+// By so much more a step counts that was taken the time before.
+constexpr double kKept = 1.5;
+
+struct Sphere {
+    glm::dvec3 centre;
+    double radius;
+};
+
+Sphere around(const LodLeaf& leaf) {
+    const glm::dvec3 low(leaf.low), high(leaf.high);
+    return {0.5 * (low + high), 0.5 * glm::length(high - low)};
+}
+
+// The angle by which a sphere lies beyond the edge of what an eye sees; 0 where some of it may be seen.
+double angleOutside(const Sphere& sphere, const Eye& eye, const Pose& camera_from_world) {
+    const glm::dvec3 c = transform(camera_from_world, sphere.centre);
+    const double distance = glm::length(c);
+    if (distance <= sphere.radius) { return 0.0; }
+    const double from_axis = std::acos(std::clamp(c.z / distance, -1.0, 1.0));
+    // Where the edge lies in that direction: as far as the nearer of the picture's two sides that way.
+    const Intrinsics& k = eye.intrinsics;
+    const double across = std::hypot(c.x, c.y);
+    const double least = 1e-3;  // an axis outside of the picture
+    const double side_x = c.x > 0.0 ? (eye.size_px.x - k.cx) / k.fx : k.cx / k.fx;
+    const double side_y = c.y > 0.0 ? (eye.size_px.y - k.cy) / k.fy : k.cy / k.fy;
+    double edge = std::numbers::pi / 2.0;
+    if (across > 0.0) {
+        const double inverse_tangent =
+            std::max(std::abs(c.x) / across / std::max(side_x, least), std::abs(c.y) / across / std::max(side_y, least));
+        edge = std::atan(1.0 / inverse_tangent);
+    }
+    return std::max(0.0, from_axis - std::asin(sphere.radius / distance) - edge);
+}
+
+double distanceToBox(const LodLeaf& leaf, const glm::dvec3& point) {
+    return glm::length(point - glm::clamp(point, glm::dvec3(leaf.low), glm::dvec3(leaf.high)));
+}
+
+std::uint64_t pagesOf(std::uint64_t splats, std::uint32_t page_splats) { return (splats + page_splats - 1) / page_splats; }
+
+}  // namespace
+
+void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there) {
+    const std::vector<LodRange>& levels = leaves_[leaf].levels;
+    const std::uint32_t before = choices_.levels[leaf];
+    // From the finest on, those that have fewer splats than all finer ones; the others help nobody. Then the other way round.
+    const std::size_t first = steps_.size();
+    for (std::uint32_t level = 0; level < levels.size(); ++level) {
+        const std::uint64_t splats = levels[level].splats.count;
+        if (!there.has({leaf, level}, levels[level].file) || (steps_.size() > first && splats >= steps_.back().splats)) { continue; }
+        steps_.push_back({0.0, leaf, level, 0, splats, pagesOf(splats, settings.page_splats)});
+    }
+    std::reverse(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.end());
+    std::uint64_t splats_before = 0, pages_before = 0;
+    std::size_t kept = first;
+    for (std::size_t i = first; i < steps_.size(); ++i) {
+        Step step = steps_[i];
+        const std::uint64_t splats = step.splats, pages = step.pages;
+        step.order = static_cast<std::uint32_t>(i - first);
+        const double between = std::sqrt(static_cast<double>(splats) * static_cast<double>(step.order == 0 ? splats : splats_before));
+        step.worth = weight * area_px / between;
+        if (before != LevelChoices::kNone && before <= step.level) { step.worth *= kKept; }
+        if (step.order > 0 && step.worth < settings.finest_px * settings.finest_px) { break; }
+        step.splats -= splats_before;
+        step.pages -= pages_before;
+        splats_before = splats;
+        pages_before = pages;
+        steps_[kept++] = step;
+    }
+    steps_.resize(kept);
+}
+
+const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there) {
+    choices_.levels.resize(leaves_.size(), LevelChoices::kNone);
+    steps_.clear();
+    const glm::dvec3 middle = middleOf(eyes);
+    std::vector<Pose> cameras;
+    double focal_px = 0.0;
+    for (const Eye& eye : eyes) {
+        cameras.push_back(inverse(eye.world_from_camera));
+        focal_px = std::max(focal_px, std::sqrt(eye.intrinsics.fx * eye.intrinsics.fy));
+    }
+    for (std::uint32_t l = 0; l < leaves_.size(); ++l) {
+        const Sphere sphere = around(leaves_[l]);
+        double outside = std::numbers::pi;
+        for (std::size_t e = 0; e < eyes.size(); ++e) { outside = std::min(outside, angleOutside(sphere, eyes[e], cameras[e])); }
+        // Of a leaf around the eyes most is as far away as its own size.
+        const double distance = std::max({distanceToBox(leaves_[l], middle), 0.5 * sphere.radius, settings.nearest});
+        const double size_px = focal_px * 2.0 * sphere.radius / distance;
+        // A leaf without extent is a pixel somewhere.
+        addSteps(l, std::max(size_px * size_px, 1.0), std::exp(-outside / settings.look_ahead_rad), settings, there);
+    }
+    std::ranges::sort(steps_, [](const Step& a, const Step& b) {
+        const auto key = [](const Step& step) { return std::tuple(step.order > 0, -step.worth, step.leaf, step.order); };
+        return key(a) < key(b);
+    });
+    std::vector<std::uint32_t> taken(leaves_.size(), 0);  // how many of its steps
+    std::ranges::fill(choices_.levels, LevelChoices::kNone);
+    choices_.coarsest.clear();
+    choices_.finer.clear();
+    choices_.splats = choices_.pages = 0;
+    for (const Step& step : steps_) {
+        const bool fits = choices_.splats + step.splats <= settings.splats && choices_.pages + step.pages <= settings.pages;
+        if (!fits || taken[step.leaf] != step.order) { continue; }
+        ++taken[step.leaf];
+        choices_.levels[step.leaf] = step.level;
+        choices_.splats += step.splats;
+        choices_.pages += step.pages;
+        (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level});
+    }
+    // Of those that a leaf passes on the way only the last is loaded.
+    std::erase_if(choices_.finer, [&](const LeafLevel& one) { return choices_.levels[one.leaf] != one.level; });
+    return choices_;
+}
+
+}  // namespace binosplat

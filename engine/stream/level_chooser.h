@@ -1,0 +1,79 @@
+// Which level of detail each leaf of a streamed scene is to show, by what the eyes see of it.
+//
+// n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a level of m splats to the next
+// finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance in pixels, which is also what its splats gain each if the
+// error of a leaf is its area times the square of the distance. Steps are taken from the greatest worth down while the budget lasts, and
+// not at all where splats lie closer than pixels; so splats end up as dense on the screen everywhere as the budget allows.
+#pragma once
+
+#include "engine/geometry.h"
+#include "engine/scene/lod_tree.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// A level of a leaf, by its place in LodLeaf::levels.
+struct LeafLevel {
+    std::uint32_t leaf = 0, level = 0;
+    bool operator==(const LeafLevel&) const = default;
+};
+
+struct ChoiceSettings {
+    std::uint64_t splats = 0;  // at most
+    std::uint64_t pages = 0;   // at most, of page_splats; each level of a leaf begins a page of its own
+    std::uint32_t page_splats = 512;
+    double finest_px = 0.5;        // splats need not lie closer on the screen
+    double look_ahead_rad = 0.35;  // beyond the edge of the view a step is worth e times less for each of these
+    double nearest = 0.2;          // nothing is nearer to an eye, scene units
+    bool operator==(const ChoiceSettings&) const = default;
+};
+
+struct LevelChoices {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    // By leaf the place of its level in LodLeaf::levels, kNone where not even the coarsest has room.
+    std::vector<std::uint32_t> levels;
+    // What to load, first things first: the coarsest level of every leaf, then what leaves show that are to be finer.
+    std::vector<LeafLevel> coarsest, finer;
+    std::uint64_t splats = 0, pages = 0;  // of `levels`
+};
+
+// Levels that there are to choose from: all but those in files that cannot be had, unless they are loaded already.
+struct LevelsThere {
+    std::vector<bool> broken;           // by file; may be shorter than there are files
+    std::vector<std::uint64_t> loaded;  // by leaf, a bit for each of LodLeaf::levels; may be shorter than there are leaves
+
+    [[nodiscard]] bool has(LeafLevel at, std::uint32_t file) const {
+        const bool is_loaded = at.leaf < loaded.size() && (loaded[at.leaf] >> at.level & 1) != 0;
+        return is_loaded || file >= broken.size() || !broken[file];
+    }
+    bool operator==(const LevelsThere&) const = default;
+};
+
+class LevelChooser {
+public:
+    // `leaves` outlives this.
+    explicit LevelChooser(std::span<const LodLeaf> leaves) : leaves_(leaves) {}
+
+    // For eyes that look from one head. What was chosen the time before is worth half as much again, so that small motions change nothing.
+    // The same for the same calls.
+    const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there = {});
+
+private:
+    // A step of a leaf, from nothing or from the next coarser level that counts.
+    struct Step {
+        double worth = 0.0;
+        std::uint32_t leaf = 0, level = 0, order = 0;  // order: its place among those of its leaf
+        std::uint64_t splats = 0, pages = 0;           // beyond those of the step before; whole where order is 0
+    };
+    void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there);
+
+    std::span<const LodLeaf> leaves_;
+    LevelChoices choices_;
+    std::vector<Step> steps_;  // kept for their memory
+};
+
+}  // namespace binosplat
