@@ -2,6 +2,7 @@
 #include "engine/scene/sog_splats.h"
 
 #include "engine/error.h"
+#include "engine/parallel.h"
 #include "engine/scene/quantized.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ int paletteDegree(const SogPalette& palette, const Packed& centroids) {
     fail("{}: is {} pixels wide, expected 192, 512 or 960 for SH of degree 1, 2 or 3", centroids.place, centroids.size_px.x);
 }
 
-SogPictures decodePictures(SogFiles& files, SogMeta& meta) {
+SogPictures decodePictures(SogFiles& files, SogMeta& meta, int threads) {
     Packed means_low = readPacked(files, meta.means_files[0]), means_high = readPacked(files, meta.means_files[1]);
     Packed scales = readPacked(files, meta.scales_file), quats = readPacked(files, meta.quats_file);
     Packed sh0 = readPacked(files, meta.sh0_file), centroids, labels;
@@ -70,21 +71,18 @@ SogPictures decodePictures(SogFiles& files, SogMeta& meta) {
         check(packed->pixels() <= mostPixels(total_bytes), "{}: {} pixels in a scene of {} bytes, expected fewer than 256 per byte",
               packed->place, packed->pixels(), total_bytes);
     }
-    const auto decode = [](Packed& packed) {
-        Pixels pixels = decodeWebp(packed.bytes, packed.place);
-        packed.bytes = {};
-        return pixels;
-    };
     SogPictures pictures;
-    pictures.means_low = decode(means_low);
-    pictures.means_high = decode(means_high);
-    pictures.scales = decode(scales);
-    pictures.quats = decode(quats);
-    pictures.sh0 = decode(sh0);
-    if (meta.palette) {
-        pictures.centroids = decode(centroids);
-        pictures.labels = decode(labels);
-    }
+    std::vector<std::pair<Packed*, Pixels*>> work{{&means_low, &pictures.means_low},
+                                                  {&means_high, &pictures.means_high},
+                                                  {&scales, &pictures.scales},
+                                                  {&quats, &pictures.quats},
+                                                  {&sh0, &pictures.sh0}};
+    if (meta.palette) { work.insert(work.end(), {{&centroids, &pictures.centroids}, {&labels, &pictures.labels}}); }
+    forBlocks(work.size(), 1, threads, [&](std::size_t i, std::size_t) {
+        auto& [packed, pixels] = work[i];
+        *pixels = decodeWebp(packed->bytes, packed->place);
+        packed->bytes = {};
+    });
     return pictures;
 }
 
@@ -161,8 +159,8 @@ void SogSplats::requirePlausibleCount() const {
     files_->close();
 }
 
-SogPictures SogSplats::decode() {
-    SogPictures pictures = decodePictures(*files_, meta_);
+SogPictures SogSplats::decode(int threads) {
+    SogPictures pictures = decodePictures(*files_, meta_, threads);
     files_->close();
     return pictures;
 }

@@ -34,7 +34,8 @@ public:
     // Throws Error where a picture is missing or all are too small for so many splats: room for them can be reserved.
     void requirePlausibleCount() const;
 
-    [[nodiscard]] SogPictures decode();
+    // Several pictures at a time, on so many threads.
+    [[nodiscard]] SogPictures decode(int threads = 1);
     // Of `range`, which lies below count(). `sh_degree` is the builder's, at least shDegree().
     void append(const SogPictures& pictures, SplatRange range, int sh_degree, SceneBuilder& builder, const Progress& progress) const;
 

@@ -78,10 +78,13 @@ void WebFiles::settle(const std::string& address) {
     Fetched fetched = found->second.get();
     asked_.erase(found);
     if (fetched.kind == Fetched::Kind::kNew) { cache_.keep(address, std::move(fetched.file), fetched.version); }
-    if (fetched.kind == Fetched::Kind::kRefused) { fail("{}: {}", address, fetched.reason); }
-    if (fetched.kind == Fetched::Kind::kUnreachable) {
-        const std::optional<KeptCopy> copy = cache_.find(address);
-        check(copy.has_value(), "{}: {}", address, fetched.reason);
+    const bool is_unreachable = fetched.kind == Fetched::Kind::kUnreachable;
+    const std::optional<KeptCopy> copy = is_unreachable ? cache_.find(address) : std::nullopt;
+    if (fetched.kind == Fetched::Kind::kRefused || (is_unreachable && !copy)) {
+        ++failed_count_;
+        fail("{}: {}", address, fetched.reason);
+    }
+    if (is_unreachable) {
         is_unreachable_ = true;
         if (stale_.empty()) {
             stale_ = fmt::format("{}: {}; taken as it was on {}", address, fetched.reason.substr(0, fetched.reason.find(';')),

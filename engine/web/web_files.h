@@ -42,6 +42,8 @@ public:
 
     // A sentence if a server did not answer and copies were taken for its files; else empty.
     [[nodiscard]] const std::string& stale() const { return stale_; }
+    // How many files could not be had so far: what failed may succeed later.
+    [[nodiscard]] std::uint64_t failedCount() const { return failed_count_; }
 
 private:
     void ask(const std::string& address, std::uint64_t most_bytes);
@@ -70,6 +72,7 @@ private:
     std::map<std::string, std::future<Fetched>> asked_;
     std::set<std::string> settled_;
     std::string stale_;
+    std::uint64_t failed_count_ = 0;
     bool is_unreachable_ = false;  // what is kept is taken as it is
     Fetcher fetcher_;              // first to go
 };

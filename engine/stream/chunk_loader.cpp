@@ -1,0 +1,279 @@
+// One file after the other, of each all that is wished for.
+#include "engine/stream/chunk_loader.h"
+
+#include "engine/error.h"
+#include "engine/parallel.h"
+#include "engine/scene/scene_builder.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <iterator>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+struct Cancelled {};
+
+// So many files are asked for before their turn.
+constexpr std::size_t kFilesAhead = 8;
+// Parts that are read together, before it is looked which of the others are still wished for.
+constexpr std::size_t kPartsAtOnce = 8;
+
+}  // namespace
+
+ChunkLoader::ChunkLoader(std::unique_ptr<ChunkSource> source, LoaderSettings settings)
+    : source_(std::move(source)), settings_(std::move(settings)), pause_(settings_.first_pause), troubles_(source_->fileCount()) {
+    source_->callWhileWaiting([this](double) {
+        const std::lock_guard lock(mutex_);
+        if (stops_) { throw Cancelled(); }
+    });
+    thread_ = std::thread([this] { run(); });
+}
+
+ChunkLoader::~ChunkLoader() {
+    {
+        const std::lock_guard lock(mutex_);
+        stops_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void ChunkLoader::setWishes(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer) {
+    coarsest_ = std::move(coarsest);
+    finer_ = std::move(finer);
+    for (const LoadedPart& part : done_) { removeWish(part.at); }
+    changed_.notify_all();
+}
+
+void ChunkLoader::want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer) {
+    const std::lock_guard lock(mutex_);
+    setWishes(std::move(coarsest), std::move(finer));
+}
+
+bool ChunkLoader::tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock) { setWishes(coarsest, finer); }
+    return lock.owns_lock();
+}
+
+std::vector<LoadedPart> ChunkLoader::takeDone() {
+    std::vector<LoadedPart> taken(std::make_move_iterator(done_.begin()), std::make_move_iterator(done_.end()));
+    done_.clear();
+    done_splats_ = 0;
+    changed_.notify_all();
+    return taken;
+}
+
+std::vector<LoadedPart> ChunkLoader::take() {
+    const std::lock_guard lock(mutex_);
+    return takeDone();
+}
+
+std::vector<LoadedPart> ChunkLoader::tryTake() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? takeDone() : std::vector<LoadedPart>();
+}
+
+std::vector<std::string> ChunkLoader::takeLines() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(lines_, {});
+}
+
+std::vector<std::string> ChunkLoader::tryTakeLines() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? std::exchange(lines_, {}) : std::vector<std::string>();
+}
+
+std::vector<bool> ChunkLoader::listBroken() const {
+    std::vector<bool> broken;
+    for (const Trouble& trouble : troubles_) { broken.push_back(trouble.broken); }
+    return broken;
+}
+
+std::vector<bool> ChunkLoader::brokenFiles() const {
+    const std::lock_guard lock(mutex_);
+    return listBroken();
+}
+
+std::optional<std::vector<bool>> ChunkLoader::tryBrokenFiles() const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? std::optional(listBroken()) : std::nullopt;
+}
+
+bool ChunkLoader::isDone() const {
+    const std::lock_guard lock(mutex_);
+    return done_.empty() && !nextFile();
+}
+
+bool ChunkLoader::waitForNews(std::chrono::milliseconds most) const {
+    std::unique_lock lock(mutex_);
+    const bool came = news_.wait_for(lock, most, [&] { return !done_.empty() || news_count_ != news_seen_ || !nextFile(); });
+    news_seen_ = news_count_;
+    return came;
+}
+
+std::optional<std::size_t> ChunkLoader::nextFile() const {
+    for (const std::vector<LeafLevel>* wishes : {&coarsest_, &finer_}) {
+        for (const LeafLevel at : *wishes) {
+            if (const std::size_t file = rangeOf(at).file; !troubles_[file].broken) { return file; }
+        }
+    }
+    return std::nullopt;
+}
+
+std::vector<LeafLevel> ChunkLoader::wishesIn(std::size_t file) const {
+    std::vector<LeafLevel> all;
+    for (const std::vector<LeafLevel>* wishes : {&coarsest_, &finer_}) {
+        std::ranges::copy_if(*wishes, std::back_inserter(all), [&](LeafLevel at) { return rangeOf(at).file == file; });
+        const bool is_any_left =
+            std::ranges::any_of(*wishes, [&](LeafLevel at) { return rangeOf(at).file != file && !troubles_[rangeOf(at).file].broken; });
+        if (is_any_left) { break; }  // finer ones have their turn later
+    }
+    return all;
+}
+
+std::vector<std::size_t> ChunkLoader::filesAhead() const {
+    std::vector<std::size_t> files;
+    for (const std::vector<LeafLevel>* wishes : {&coarsest_, &finer_}) {
+        for (const LeafLevel at : *wishes) {
+            const std::size_t file = rangeOf(at).file;
+            if (files.size() < kFilesAhead && !troubles_[file].broken && std::ranges::find(files, file) == files.end()) {
+                files.push_back(file);
+            }
+        }
+    }
+    return files;
+}
+
+bool ChunkLoader::isWished(LeafLevel at) const {
+    return std::ranges::find(coarsest_, at) != coarsest_.end() || std::ranges::find(finer_, at) != finer_.end();
+}
+
+void ChunkLoader::removeWish(LeafLevel at) {
+    std::erase(coarsest_, at);
+    std::erase(finer_, at);
+}
+
+void ChunkLoader::forgetTroubles() {
+    const Clock::time_point now = Clock::now();
+    for (Trouble& trouble : troubles_) {
+        if (!trouble.again || *trouble.again > now) { continue; }
+        trouble = {};
+        ++news_count_;
+    }
+}
+
+std::optional<ChunkLoader::Clock::time_point> ChunkLoader::nextAttempt() const {
+    std::optional<Clock::time_point> first;
+    for (const Trouble& trouble : troubles_) {
+        if (trouble.again && (!first || *trouble.again < *first)) { first = trouble.again; }
+    }
+    return first;
+}
+
+void ChunkLoader::run() {
+    std::unique_lock lock(mutex_);
+    while (!stops_) {
+        forgetTroubles();
+        const std::optional<std::size_t> file = nextFile();
+        if (!file) {
+            news_.notify_all();
+            if (const auto again = nextAttempt()) {
+                changed_.wait_until(lock, *again);
+            } else {
+                changed_.wait(lock);
+            }
+            continue;
+        }
+        const std::vector<LeafLevel> wishes = wishesIn(*file);
+        const std::vector<std::size_t> ahead = filesAhead();
+        lock.unlock();
+        const std::uint64_t failed_before = source_->failedFetches();
+        try {
+            source_->expect(ahead);
+            load(*file, wishes);
+        } catch (const Cancelled&) {  // the loop ends
+        } catch (const Error& error) {
+            meetTrouble(*file, error.what(), source_->failedFetches() != failed_before);
+        } catch (const std::bad_alloc&) {
+            meetTrouble(*file, fmt::format("{}: a chunk needs more memory than this machine gives", source_->name()), false);
+        } catch (const std::exception& error) { meetTrouble(*file, fmt::format("{}: {}", source_->name(), error.what()), false); }
+        lock.lock();
+    }
+}
+
+void ChunkLoader::meetTrouble(std::size_t file, const std::string& why, bool may_pass) {
+    const bool is_said = may_pass && std::exchange(said_gone_, true);
+    const std::lock_guard lock(mutex_);
+    Trouble& trouble = troubles_[file];
+    trouble.broken = true;
+    if (may_pass) {
+        trouble.again = Clock::now() + pause_;
+        pause_ = std::min<Clock::duration>(2 * pause_, settings_.most_pause);
+    }
+    if (!is_said) { lines_.push_back(why + "; what is there stays"); }
+    ++news_count_;
+    news_.notify_all();
+}
+
+const ChunkLoader::Decoded& ChunkLoader::decode(std::size_t file) {
+    const auto there = std::ranges::find(decoded_, file, &Decoded::file);
+    if (there != decoded_.end()) {
+        std::rotate(decoded_.begin(), there, there + 1);
+        return decoded_.front();
+    }
+    SogSplats splats = source_->open(file);
+    splats.expect();
+    splats.requirePlausibleCount();
+    // Room first: what was kept is not needed for what comes.
+    while (!decoded_.empty() && decoded_.size() >= settings_.kept_files) { decoded_.pop_back(); }
+    SogPictures pictures = splats.decode(settings_.threads);
+    decoded_.push_front({file, std::move(splats), std::move(pictures)});
+    pause_ = settings_.first_pause;
+    said_gone_ = false;
+    return decoded_.front();
+}
+
+LoadedPart ChunkLoader::read(const Decoded& decoded, LeafLevel at) const {
+    const SplatRange range = rangeOf(at).splats;
+    source_->requireRange(decoded.file, range, decoded.splats);
+    SceneBuilder builder(source_->name(), range.count, decoded.splats.shDegree(), true);
+    decoded.splats.append(decoded.pictures, range, decoded.splats.shDegree(), builder, {});
+    LoadNotes notes;
+    LoadedPart part{at, 0, builder.finish(notes), {}};
+    part.splats = static_cast<std::uint32_t>(part.scene.size());
+    if (settings_.finish) { settings_.finish(part); }
+    return part;
+}
+
+void ChunkLoader::load(std::size_t file, const std::vector<LeafLevel>& wishes) {
+    const Decoded& decoded = decode(file);
+    for (std::size_t first = 0; first < wishes.size();) {
+        // Those that are still wished for.
+        std::vector<LeafLevel> batch;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] { return stops_ || done_splats_ < settings_.waiting_splats; });
+            if (stops_) { throw Cancelled(); }
+            for (; first < wishes.size() && batch.size() < kPartsAtOnce; ++first) {
+                if (isWished(wishes[first])) { batch.push_back(wishes[first]); }
+            }
+        }
+        std::vector<std::optional<LoadedPart>> parts(batch.size());
+        forBlocks(batch.size(), 1, settings_.threads, [&](std::size_t i, std::size_t) { parts[i] = read(decoded, batch[i]); });
+        const std::lock_guard lock(mutex_);
+        for (std::optional<LoadedPart>& part : parts) {
+            if (!isWished(part->at)) { continue; }
+            removeWish(part->at);
+            done_splats_ += part->splats;
+            done_.push_back(std::move(*part));
+        }
+        news_.notify_all();
+    }
+}
+
+}  // namespace binosplat

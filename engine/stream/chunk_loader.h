@@ -1,0 +1,120 @@
+// Loads parts of a streamed scene beside the frames: what is wished for, in that order, on threads of its own.
+#pragma once
+
+#include "engine/gpu/packed_splats.h"
+#include "engine/scene/sog_splats.h"
+#include "engine/stream/chunk_source.h"
+#include "engine/stream/level_chooser.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace binosplat {
+
+// A level of a leaf, decoded, with three scales a splat also where these are discs. It may have fewer splats than the tree says: broken
+// ones are skipped.
+struct LoadedPart {
+    LeafLevel at;
+    std::uint32_t splats = 0;
+    Scene scene;
+    PackedPages pages;  // empty unless LoaderSettings::finish makes them of the scene
+};
+
+struct LoaderSettings {
+    int threads = 2;                              // that decode at a time
+    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: decoding waits for room from there on
+    std::size_t kept_files = 2;                   // decoded, for whoever wants more of them
+    std::chrono::milliseconds first_pause{1000};  // before a file of the web is tried again, then twice as long each time
+    std::chrono::milliseconds most_pause{30000};
+    std::function<void(LoadedPart&)> finish = {};  // what else is done to a part, on the loader's threads
+};
+
+class ChunkLoader {
+public:
+    ChunkLoader(std::unique_ptr<ChunkSource> source, LoaderSettings settings);
+    ChunkLoader(const ChunkLoader&) = delete;
+    ChunkLoader& operator=(const ChunkLoader&) = delete;
+    // Gives up where it can, and waits for the rest.
+    ~ChunkLoader();
+
+    [[nodiscard]] const ChunkSource& source() const { return *source_; }
+
+    // From now on this is wished for, and nothing else; what was taken already is not to be in it. `finer` is begun when nothing of
+    // `coarsest` is left to load.
+    void want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
+    // What is there, in the order of the wishes.
+    [[nodiscard]] std::vector<LoadedPart> take();
+    // The same for who must not wait, not even for the moment in which the loader looks through its lists: false and empty, then.
+    [[nodiscard]] bool tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer);
+    [[nodiscard]] std::vector<LoadedPart> tryTake();
+    [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
+    [[nodiscard]] std::vector<std::string> tryTakeLines();
+    // One sentence for each file that is broken or missing, and one for each time that a server does not answer; each once.
+    [[nodiscard]] std::vector<std::string> takeLines();
+    // By file whether it cannot be had now. Wishes in such files are not loaded.
+    [[nodiscard]] std::vector<bool> brokenFiles() const;
+    // Whether everything that was wished for was taken or cannot be had.
+    [[nodiscard]] bool isDone() const;
+    // Until there is something to take, a file is broken, or all is done; false where the time is up before.
+    bool waitForNews(std::chrono::milliseconds most) const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    struct Decoded {
+        std::size_t file;
+        SogSplats splats;
+        SogPictures pictures;
+    };
+    struct Trouble {
+        bool broken = false;
+        std::optional<Clock::time_point> again;  // of the web: when it is tried again
+    };
+
+    void run();
+    // With the mutex held.
+    void setWishes(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
+    [[nodiscard]] std::vector<LoadedPart> takeDone();
+    [[nodiscard]] std::vector<bool> listBroken() const;
+    [[nodiscard]] const LodRange& rangeOf(LeafLevel at) const { return source_->leaves()[at.leaf].levels[at.level]; }
+    // The file of the first wish that can be loaded.
+    [[nodiscard]] std::optional<std::size_t> nextFile() const;
+    [[nodiscard]] std::vector<LeafLevel> wishesIn(std::size_t file) const;
+    [[nodiscard]] std::vector<std::size_t> filesAhead() const;
+    [[nodiscard]] bool isWished(LeafLevel at) const;
+    void removeWish(LeafLevel at);
+    // Of files whose time has come.
+    void forgetTroubles();
+    [[nodiscard]] std::optional<Clock::time_point> nextAttempt() const;
+    const Decoded& decode(std::size_t file);
+    [[nodiscard]] LoadedPart read(const Decoded& decoded, LeafLevel at) const;
+    void load(std::size_t file, const std::vector<LeafLevel>& wishes);
+    void meetTrouble(std::size_t file, const std::string& why, bool may_pass);
+
+    std::unique_ptr<ChunkSource> source_;
+    LoaderSettings settings_;
+    std::deque<Decoded> decoded_;  // of the loader's thread; the one used last at the front
+    Clock::duration pause_;        // likewise
+    bool said_gone_ = false;       // likewise: the server does not answer, and that was said
+
+    mutable std::mutex mutex_;  // of what follows
+    mutable std::condition_variable changed_, news_;
+    bool stops_ = false;
+    std::vector<LeafLevel> coarsest_, finer_;
+    std::deque<LoadedPart> done_;
+    std::uint64_t done_splats_ = 0;
+    std::vector<std::string> lines_;
+    std::vector<Trouble> troubles_;  // by file
+    std::uint64_t news_count_ = 0;
+    mutable std::uint64_t news_seen_ = 0;
+    std::thread thread_;  // last
+};
+
+}  // namespace binosplat

@@ -1,0 +1,58 @@
+// Folders, files and addresses.
+#include "engine/stream/chunk_source.h"
+
+#include "engine/scene/address.h"
+#include "engine/scene/procedural.h"
+#include "engine/scene/streamed_sog.h"
+
+#include <filesystem>
+#include <system_error>
+
+namespace binosplat {
+
+namespace {
+
+// Around whatever there is.
+constexpr float kEverywhere = 1e6f;
+
+}  // namespace
+
+bool isStreamedScene(const std::string& source) {
+    if (isBuiltin(source)) { return false; }
+    // What an address holds is known when it is fetched; only those that say so are taken for one.
+    if (isAddress(source)) { return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json"); }
+    std::error_code unreadable;
+    if (std::filesystem::is_directory(source, unreadable)) { return isStreamedSogFolder(source); }
+    InputFile file(source);
+    return isStreamedSogFile(file);
+}
+
+ChunkSource::ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting) : name_(source) {
+    requireSogDecoder(source);
+    std::error_code unreadable;
+    if (isAddress(source)) {
+        const auto wait = [this](double share) {
+            if (while_waiting_) { while_waiting_(share); }
+        };
+        while_waiting_ = waiting;
+        web_ = std::make_unique<WebFiles>(source, web, wait);
+        meta_file_ = web_->open("");
+        chunks_ = std::make_unique<StreamedChunks>(*meta_file_);
+    } else if (std::filesystem::is_directory(source, unreadable)) {
+        chunks_ = std::make_unique<StreamedChunks>(source);
+    } else {
+        InputFile file(source);
+        chunks_ = std::make_unique<StreamedChunks>(file);
+    }
+    leaves_ = meta().tree;
+    if (chunks_->hasEnvironment()) {
+        environment_splats_ = open(chunks_->environmentIndex()).count();
+        const auto file = static_cast<std::uint32_t>(chunks_->environmentIndex());
+        if (environment_splats_ > 0) {
+            leaves_.push_back({glm::vec3(-kEverywhere), glm::vec3(kEverywhere), {{0, file, {0, environment_splats_}}}});
+        }
+    }
+    while_waiting_ = {};
+}
+
+}  // namespace binosplat
