@@ -273,6 +273,16 @@ std::vector<std::string> Context::validationMessages() const {
     return messages_.lines;
 }
 
+std::uint64_t Context::deviceMemoryBytes() const {
+    const vk::PhysicalDeviceMemoryProperties memory = physical_device_.getMemoryProperties();
+    std::uint64_t most = 0;
+    for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+        const bool is_local = static_cast<bool>(memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal);
+        if (is_local) { most = std::max<std::uint64_t>(most, memory.memoryHeaps[i].size); }
+    }
+    return most;
+}
+
 std::uint32_t Context::memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags preferred) const {
     const auto memory = physical_device_.getMemoryProperties();
     std::optional<std::uint32_t> found;

@@ -65,6 +65,8 @@ public:
     // A processor's program, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
+    // Of its own, in its largest heap.
+    [[nodiscard]] std::uint64_t deviceMemoryBytes() const;
     // Of memoryUse(); 0: none.
     [[nodiscard]] std::uint64_t memoryLimitBytes() const { return memory_limit_bytes_; }
     // Nanoseconds of a timestamp's step; 0 if the queue has none.

@@ -1,0 +1,70 @@
+// Which levels of a streamed scene's leaves are on the device, and how one takes the place of another: the new one fades in over the old
+// one, and then the old one fades out, so that there is no moment without either.
+#pragma once
+
+#include "engine/gpu/resident_scene.h"
+#include "engine/stream/chunk_loader.h"
+
+#include <cstdint>
+#include <set>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+// For the thread that records frames.
+class ShownLeaves {
+public:
+    // `leaves` outlives this.
+    ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options, std::span<const LodLeaf> leaves);
+
+    [[nodiscard]] const ResidentScene& resident() const { return resident_; }
+    void recordChanges(Commands& commands) { resident_.recordChanges(commands); }
+
+    // What leaves are to show, by leaf, as LevelChoices::levels. Until it is there a leaf goes on showing what it shows.
+    void want(const std::vector<std::uint32_t>& levels);
+    // Takes a part that is wanted, or the first of its leaf; others are dropped. False where there is no room for it now: the part is as it
+    // was.
+    [[nodiscard]] bool add(LoadedPart& part);
+    // A step of all exchanges, as a share of a fade; from 1 on they end at once.
+    void step(float share);
+    // Likewise, but what is on its way to the device counts as being there: for who brings it there before the next frame.
+    void exchangeAtOnce();
+
+    [[nodiscard]] bool has(LeafLevel at) const;
+    [[nodiscard]] bool isEmpty(std::uint32_t leaf) const { return leaves_[leaf].empty(); }
+    // Whether fewer splats are wanted of the leaf than are there.
+    [[nodiscard]] bool isTooFine(std::uint32_t leaf) const;
+    // For LevelsThere.
+    [[nodiscard]] std::vector<std::uint64_t> loadedLevels() const;
+    [[nodiscard]] std::uint32_t partCount() const { return part_count_; }
+    [[nodiscard]] bool isExchanging() const { return !changing_.empty(); }
+    // Splats of the wanted levels, and of these what is there.
+    [[nodiscard]] std::uint64_t splatsWanted() const { return splats_wanted_; }
+    [[nodiscard]] std::uint64_t splatsThere() const;
+
+private:
+    struct Shown {
+        std::uint32_t level;
+        ResidentScene::Part part;
+        float fade;
+    };
+    [[nodiscard]] std::uint64_t splatsOf(std::uint32_t leaf, std::uint32_t level) const { return tree_[leaf].levels[level].splats.count; }
+    // The part that a leaf ends with as things are; end() where it is to have none.
+    [[nodiscard]] std::vector<Shown>::iterator goalOf(std::uint32_t leaf);
+    void remove(std::uint32_t leaf, std::vector<Shown>::iterator shown);
+    // False: there is nothing left to change in this leaf.
+    bool stepLeaf(std::uint32_t leaf, float share, bool at_once);
+    // Parts that go anyway, now.
+    void makeRoom();
+
+    ResidentScene resident_;
+    std::span<const LodLeaf> tree_;
+    std::vector<std::vector<Shown>> leaves_;
+    std::vector<std::uint32_t> wanted_;
+    std::set<std::uint32_t> changing_;
+    std::uint64_t splats_wanted_ = 0;
+    std::uint32_t part_count_ = 0;
+};
+
+}  // namespace binosplat
