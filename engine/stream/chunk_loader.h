@@ -57,6 +57,7 @@ public:
     [[nodiscard]] std::vector<LoadedPart> tryTake();
     [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
     [[nodiscard]] std::vector<std::string> tryTakeLines();
+    [[nodiscard]] bool isSurelyDone() const;
     // One sentence for each file that is broken or missing, and one for each time that a server does not answer; each once.
     [[nodiscard]] std::vector<std::string> takeLines();
     // By file whether it cannot be had now. Wishes in such files are not loaded.

@@ -11,8 +11,8 @@ namespace binosplat {
 
 namespace {
 
-// By so much more a step counts that was taken the time before.
-constexpr double kKept = 1.5;
+// By so much more a step counts that was taken the time before, and by so much less one that was not.
+constexpr double kKept = 1.25;
 
 struct Sphere {
     glm::dvec3 centre;
@@ -72,7 +72,7 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
         step.order = static_cast<std::uint32_t>(i - first);
         const double between = std::sqrt(static_cast<double>(splats) * static_cast<double>(step.order == 0 ? splats : splats_before));
         step.worth = weight * area_px / between;
-        if (before != LevelChoices::kNone && before <= step.level) { step.worth *= kKept; }
+        if (!is_first_) { step.worth *= before != LevelChoices::kNone && before <= step.level ? kKept : 1.0 / kKept; }
         if (step.order > 0 && step.worth < settings.finest_px * settings.finest_px) { break; }
         step.splats -= splats_before;
         step.pages -= pages_before;
@@ -84,6 +84,7 @@ void LevelChooser::addSteps(std::uint32_t leaf, double area_px, double weight, c
 }
 
 const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there) {
+    is_first_ = choices_.levels.empty();
     choices_.levels.resize(leaves_.size(), LevelChoices::kNone);
     steps_.clear();
     const glm::dvec3 middle = middleOf(eyes);

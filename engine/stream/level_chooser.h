@@ -58,8 +58,8 @@ public:
     // `leaves` outlives this.
     explicit LevelChooser(std::span<const LodLeaf> leaves) : leaves_(leaves) {}
 
-    // For eyes that look from one head. What was chosen the time before is worth half as much again, so that small motions change nothing.
-    // The same for the same calls.
+    // For eyes that look from one head. What was chosen the time before is worth a quarter more, and what was not a fifth less, so that
+    // small motions change nothing. The same for the same calls.
     const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there = {});
 
 private:
@@ -73,6 +73,7 @@ private:
 
     std::span<const LodLeaf> leaves_;
     LevelChoices choices_;
+    bool is_first_ = true;     // nothing was chosen before
     std::vector<Step> steps_;  // kept for their memory
 };
 

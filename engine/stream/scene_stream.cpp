@@ -13,8 +13,8 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kPageSplats = gpu::kPageSplats;
-// Splats on their way to the device in one frame. A software device draws few frames, and copies at no cost to anybody else.
-constexpr std::uint64_t kBytesAFrame = std::uint64_t{8} << 20, kBytesASoftwareFrame = std::uint64_t{128} << 20;
+// Splats on their way to the device in one frame: of a headset, or where nobody waits for the next one, as on a software device.
+constexpr std::uint64_t kBytesAFrame = std::uint64_t{8} << 20, kBytesAPicture = std::uint64_t{128} << 20;
 constexpr std::chrono::milliseconds kLook(50);
 
 std::uint64_t pagesOf(std::uint64_t splats) { return (splats + kPageSplats - 1) / kPageSplats; }
@@ -90,8 +90,8 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
         memory_bytes = context.deviceMemoryBytes() / 2;
         if (context.memoryLimitBytes() > 0) { memory_bytes = std::min(memory_bytes, context.memoryLimitBytes() / 5 * 2); }
     }
-    const std::uint64_t page_bytes = ChunkLayout(kPageSplats, traits).bytes + sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
-    const std::uint64_t affordable = std::min<std::uint64_t>(memory_bytes / page_bytes, gpu::kMaxItems / kPageSplats);
+    page_bytes_ = ChunkLayout(kPageSplats, traits).bytes + sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
+    const std::uint64_t affordable = std::min<std::uint64_t>(memory_bytes / page_bytes_, gpu::kMaxItems / kPageSplats);
     const std::uint64_t wished = most_pages + std::max(largest, most_pages / 8);
     const std::uint64_t capacity = std::max<std::uint64_t>(std::min(affordable, wished), 1);
     choice_.pages =
@@ -101,10 +101,17 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
     choice_.look_ahead_rad = settings_.look_ahead_rad;
     ResidentScene::Options options;
     options.capacity_pages = static_cast<std::uint32_t>(capacity);
-    options.most_bytes_a_frame = context.isSoftware() ? kBytesASoftwareFrame : kBytesAFrame;
+    bytes_a_frame_ = settings_.pictures || context.isSoftware() ? kBytesAPicture : kBytesAFrame;
+    options.most_bytes_a_frame = bytes_a_frame_;
     leaves_ = std::make_unique<ShownLeaves>(context, traits, options, tree);
     settings_.loader.finish = [traits](LoadedPart& part) { pack(part, traits); };
     loader_ = std::make_unique<ChunkLoader>(std::move(source), settings_.loader);
+}
+
+std::uint64_t SceneStream::mostSplats() const {
+    std::uint64_t finest = 0;
+    for (const LodLeaf& leaf : source().leaves()) { finest += leaf.levels.front().splats.count; }
+    return std::min(finest, choice_.pages * kPageSplats);
 }
 
 void SceneStream::setSplatBudget(std::uint64_t splats) { choice_.splats = splats; }
@@ -181,13 +188,11 @@ void SceneStream::ask(std::span<const Eye> eyes) {
     if (planner_->ask(question)) { asked_ = std::move(question); }
 }
 
-void SceneStream::flush() {
-    Commands commands(context_);
-    while (leaves_->resident().hasChanges()) {
-        commands.begin();
-        leaves_->recordChanges(commands);
-        commands.submitAndWait();
-    }
+// What is left comes with the next frame, which so learns where it is.
+void SceneStream::flushIfMuch() {
+    const ResidentScene& resident = leaves_->resident();
+    const std::uint64_t waiting = resident.splatsAdded() - std::min(resident.splatsAdded(), resident.splatsShown());
+    if (waiting * page_bytes_ / kPageSplats > bytes_a_frame_ / 2) { leaves_->flush(context_); }
 }
 
 void SceneStream::settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress) {
@@ -204,12 +209,12 @@ void SceneStream::settleChosen(std::span<const Eye> eyes, bool coarsest_only, co
             do { wish(coarsest_only); } while (has_wishes_);
         }
         takeLoaded(true);
-        flush();
+        flushIfMuch();
         if (progress) { progress(share()); }
         (void)loader_->waitForNews(kLook);
     }
     takeLoaded(true);
-    flush();
+    flushIfMuch();
 }
 
 void SceneStream::settle(std::span<const Eye> eyes, const Progress& progress) { settleChosen(eyes, false, progress); }
@@ -217,7 +222,8 @@ void SceneStream::settle(std::span<const Eye> eyes, const Progress& progress) { 
 void SceneStream::settleCoarsest(std::span<const Eye> eyes, const Progress& progress) { settleChosen(eyes, true, progress); }
 
 bool SceneStream::isSettled() const {
-    return answered_ && !has_wishes_ && held_.empty() && !leaves_->isExchanging() && !leaves_->resident().hasChanges() && loader_->isDone();
+    return answered_ && !has_wishes_ && held_.empty() && !leaves_->isExchanging() && !leaves_->resident().hasChanges() &&
+           loader_->isSurelyDone();
 }
 
 double SceneStream::share() const {

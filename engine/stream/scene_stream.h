@@ -16,6 +16,7 @@ struct StreamSettings {
     std::uint64_t memory_bytes = 0;  // of the device, for splats; 0: half of what it has or, if less is allowed, two fifths of that
     double fade_seconds = 0.2;       // that each half of an exchange takes
     double look_ahead_rad = 0.35;    // see ChoiceSettings
+    bool pictures = false;           // frames may take their time
     // How splats are drawn, see LoadOptions.
     std::optional<int> sh_degree = {};
     bool flatten = false, antialiased = false;
@@ -38,15 +39,16 @@ public:
     [[nodiscard]] const GpuScene& scene() const { return leaves_->resident().scene(); }
     [[nodiscard]] const SceneTraits& traits() const { return leaves_->resident().traits(); }
     [[nodiscard]] const ChunkSource& source() const { return loader_->source(); }
+    // What the memory holds, or the whole scene has, if that is less.
+    [[nodiscard]] std::uint64_t mostSplats() const;
     // Splats that are chosen, at most; from the next choice on.
-    [[nodiscard]] std::uint64_t splatBudget() const { return choice_.splats; }
     void setSplatBudget(std::uint64_t splats);
 
     // For whoever shows frame after frame, before each: follows the eyes, takes what was loaded, and goes on with exchanges by a frame of
     // `step_seconds`. Never waits.
     void update(std::span<const Eye> eyes, double step_seconds);
-    // For whoever renders pictures: returns when all that these eyes ask for is on the device, apart from what cannot be had. Always the
-    // same splats in the same order for the same calls.
+    // For whoever renders pictures: returns when all that these eyes ask for is on the device or goes there with the next frame, apart from
+    // what cannot be had. Always the same splats in the same order for the same calls.
     void settle(std::span<const Eye> eyes, const Progress& progress = {});
     // The same of the coarsest level of every leaf alone, so that there is something to see.
     void settleCoarsest(std::span<const Eye> eyes, const Progress& progress = {});
@@ -69,12 +71,12 @@ private:
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
-    // Brings what was added to the device, and waits for that.
-    void flush();
+    void flushIfMuch();
 
     const Context& context_;
     StreamSettings settings_;
     ChoiceSettings choice_;
+    std::uint64_t page_bytes_ = 0, bytes_a_frame_ = 0;
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;

@@ -82,6 +82,16 @@ void ShownLeaves::exchangeAtOnce() {
     std::erase_if(changing_, [&](std::uint32_t leaf) { return !stepLeaf(leaf, 1.0f, true); });
 }
 
+void ShownLeaves::flush(const Context& context) {
+    Commands commands(context);
+    std::vector<SceneChange> seen;
+    while (resident_.hasChanges()) {
+        commands.begin();
+        resident_.recordChanges(commands, seen);
+        commands.submitAndWait();
+    }
+}
+
 void ShownLeaves::makeRoom() {
     for (const std::uint32_t leaf : changing_) {
         std::vector<Shown>& shown = leaves_[leaf];

@@ -19,7 +19,8 @@ public:
     ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options, std::span<const LodLeaf> leaves);
 
     [[nodiscard]] const ResidentScene& resident() const { return resident_; }
-    void recordChanges(Commands& commands) { resident_.recordChanges(commands); }
+    // Brings all that was added to the device, and waits for that. Frames do not learn where that was.
+    void flush(const Context& context);
 
     // What leaves are to show, by leaf, as LevelChoices::levels. Until it is there a leaf goes on showing what it shows.
     void want(const std::vector<std::uint32_t>& levels);
