@@ -23,6 +23,8 @@ Scene readSogFile(InputFile& file, LoadNotes& notes, const Progress& progress);
 // harmonics are one of 256 values each, and harmonics one of up to 65536 rows. Discs stay discs where readers know "model": "2dgs". The
 // file appears whole or not at all. Throws Error in a build that cannot encode WebP, and for more splats than pictures have pixels.
 void writeSog(const Scene& scene, const std::string& path, const Progress& progress = {});
+// The same with the splats in the scene's order, for a chunk whose parts somebody names by their places.
+void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress = {});
 // How many rows of harmonics at most.
 std::size_t sogPaletteSize(const Scene& scene);
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <thread>
 
 namespace binosplat {
@@ -112,18 +113,20 @@ std::vector<NamedBytes> encodeAll(std::vector<std::pair<std::string, Pixels>>& p
     return files;
 }
 
-}  // namespace
+std::vector<std::uint32_t> ownOrder(const SogPlaces& places) {
+    std::vector<std::uint32_t> order(places.levels.size());
+    std::iota(order.begin(), order.end(), 0u);
+    return order;
+}
 
-// A power of two: rows of the palette's picture are full.
-std::size_t sogPaletteSize(const Scene& scene) { return std::min(std::bit_floor(scene.size()), kMostPaletteEntries); }
-
-void writeSog(const Scene& scene, const std::string& path, const Progress& progress) {
+void write(const Scene& scene, const std::string& path, const Progress& progress,
+           std::vector<std::uint32_t> (*orderOf)(const SogPlaces& places)) {
     check(canDecodeWebp(), "{}: this build cannot write SOG: configure with BINOSPLAT_SOG=ON, or write PLY or SPZ", path);
     check(!scene.is_linear, "{}: cannot hold colours of linear light ({}), must be written from a display-encoded scene", path, scene.name);
     PartFile file(path);
     const glm::uvec2 size_px = choosePictureSize(scene.size(), path);
     const SogPlaces places = findSogPlaces(scene);
-    const std::vector<std::uint32_t> order = mortonOrder(places);
+    const std::vector<std::uint32_t> order = orderOf(places);
     std::vector<std::pair<std::string, Pixels>> pictures;
     const auto draw = [&](const char* name, const auto& pixelOf) {
         Pixels pixels = blank(size_px);
@@ -173,5 +176,14 @@ void writeSog(const Scene& scene, const std::string& path, const Progress& progr
     file.commit();
     if (progress) { progress(1.0); }
 }
+
+}  // namespace
+
+// A power of two: rows of the palette's picture are full.
+std::size_t sogPaletteSize(const Scene& scene) { return std::min(std::bit_floor(scene.size()), kMostPaletteEntries); }
+
+void writeSog(const Scene& scene, const std::string& path, const Progress& progress) { write(scene, path, progress, mortonOrder); }
+
+void writeSogInOrder(const Scene& scene, const std::string& path, const Progress& progress) { write(scene, path, progress, ownOrder); }
 
 }  // namespace binosplat

@@ -1,0 +1,22 @@
+// Streamed SOG scenes out of whole ones: what there is to stream where nobody has one to give.
+#pragma once
+
+#include "engine/scene/scene.h"
+
+#include <cstdint>
+#include <string>
+
+namespace binosplat::test {
+
+struct SplitSettings {
+    std::uint32_t leaf_splats = 16384;    // at most, at the finest level
+    std::uint32_t levels = 5;             // each with half of the splats of the one before, but at least one a leaf
+    std::uint32_t chunk_splats = 262144;  // of a file, at most, unless a leaf has more
+};
+
+// Writes lod-meta.json and its chunks, bundles LEVEL_NUMBER.sog, to `folder`, which is made where it is not there. The tree is cut at
+// medians. Level k keeps every 2^k-th splat of a leaf along a Morton curve, with its group's mean colour and 2^k times its area. Throws
+// Error where files cannot be written.
+void splitScene(const Scene& scene, const std::string& folder, const SplitSettings& settings = {});
+
+}  // namespace binosplat::test
