@@ -9,6 +9,8 @@
 
 TEST_SUITE_BEGIN("changes");
 
+namespace changes_test {
+
 using namespace binosplat;
 using test::Gpu;
 
@@ -134,3 +136,5 @@ TEST_CASE_FIXTURE(Gpu, "mark_changed gives the twin's errors") {
         CHECK(changed > 0);
     }
 }
+
+}  // namespace changes_test

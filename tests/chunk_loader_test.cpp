@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("chunk_loader");
 
+namespace chunk_loader_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -192,3 +194,5 @@ TEST_CASE("a server that goes away in the middle is waited for: one line, and th
     CHECK(std::ranges::count(asked, "/3_0.sog") == 1);
 }
 #endif
+
+}  // namespace chunk_loader_test

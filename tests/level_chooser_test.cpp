@@ -11,6 +11,8 @@
 
 TEST_SUITE_BEGIN("level_chooser");
 
+namespace level_chooser_test {
+
 using namespace binosplat;
 
 namespace {
@@ -206,3 +208,5 @@ TEST_CASE("leaves of odd shape, count and place are no trouble") {
     LevelChooser nothing(std::span<const LodLeaf>{});
     CHECK(choose(nothing, eyeAt(glm::dvec3(0.0)), within(1000)).levels.empty());
 }
+
+}  // namespace level_chooser_test

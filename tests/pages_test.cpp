@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("pages");
 
+namespace pages_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -207,3 +209,5 @@ TEST_CASE_FIXTURE(Gpu, "a page whose bounds are not numbers, or too large for th
         CHECK(cullPages(*this, pages, shape, {test::makeEye({64, 64})}).list == std::vector<std::uint32_t>{0, 1, 2});
     }
 }
+
+}  // namespace pages_test

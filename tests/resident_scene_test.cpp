@@ -10,6 +10,8 @@
 
 TEST_SUITE_BEGIN("resident_scene");
 
+namespace resident_scene_test {
+
 using namespace binosplat;
 using test::Gpu;
 using test::ViewedScene;
@@ -370,3 +372,5 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
         CHECK(after[1] < after[0] - 2.0);  // measured: 17.5, and 2.9 where it fades
     }
 }
+
+}  // namespace resident_scene_test

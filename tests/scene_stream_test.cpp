@@ -13,6 +13,8 @@
 
 TEST_SUITE_BEGIN("scene_stream");
 
+namespace scene_stream_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -165,3 +167,5 @@ TEST_CASE_FIXTURE(Gpu, "where a chunk is missing the coarser level stays, and on
     showUntilSettled(*stream, frame, eyes, [](int, const FrameResult&) {});
     CHECK(stream->counters().splats_resident == 8 + 8 + 8);
 }
+
+}  // namespace scene_stream_test

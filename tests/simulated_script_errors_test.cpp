@@ -39,7 +39,9 @@ struct Folder {
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
     void write(const std::string& name, const std::string& text) const { std::ofstream(path / name) << text; }
-    void refuses(const std::string& text, const std::string& part) const { simulated_script_errors_test::refuses(text, part, (path / "a.script").string()); }
+    void refuses(const std::string& text, const std::string& part) const {
+        simulated_script_errors_test::refuses(text, part, (path / "a.script").string());
+    }
 };
 
 const std::string kHeadset =

@@ -7,6 +7,8 @@
 
 TEST_SUITE_BEGIN("split_scene");
 
+namespace split_scene_test {
+
 using namespace binosplat;
 using namespace binosplat::test;
 
@@ -47,3 +49,5 @@ TEST_CASE("the finest level has every splat, each coarser one half of them, in l
     CHECK(area(coarsest) / area(finest) > 0.7);
     CHECK(area(coarsest) / area(finest) < 1.4);
 }
+
+}  // namespace split_scene_test
