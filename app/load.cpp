@@ -1,7 +1,9 @@
 // From the options to the loader.
 #include "app/load.h"
 
+#include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
+#include "engine/error.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/address.h"
 #include "engine/web/web_files.h"
@@ -11,6 +13,13 @@
 #include <algorithm>
 
 namespace binosplat {
+
+namespace {
+
+// A picture asks for what it shows, and next to nothing beside it.
+constexpr double kPictureLookAhead = 0.1;
+
+}  // namespace
 
 LevelChoice levelChoice(const LoadOptions& options, std::uint64_t memory_limit_mib) {
     if (memory_limit_mib == 0) { return {options.lod, {}}; }
@@ -42,6 +51,100 @@ Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::ui
 Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib) {
     ProgressLine line("loading " + source);
     return loadAsAsked(source, options, memory_limit_mib, notes, [&](double share) { line.show(share); });
+}
+
+bool mayStream(const std::string& source, const LoadOptions& options) {
+    check(options.splat_budget == 0 || !options.lod, "{}: lod {} is one level, splat-budget chooses among all: expected one of the two",
+          source, options.lod.value_or(0));
+    if (options.lod) { return false; }
+    const bool is_streamed = isStreamedScene(source);
+    check(options.splat_budget == 0 || is_streamed,
+          "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to choose among", source);
+    return is_streamed;
+}
+
+namespace {
+
+// As much as the finest level may take of the device, which needs some for frames.
+std::uint64_t memoryForScene(const Context& context, std::uint64_t memory_limit_mib) {
+    const std::uint64_t bytes = context.deviceMemoryBytes() / 4 * 3;
+    return memory_limit_mib > 0 ? std::min(bytes, memory_limit_mib << 20) : bytes;
+}
+
+bool fitsWhole(const Context& context, ChunkSource& source, const RunOptions& run) {
+    const LodRange* finest = nullptr;
+    for (const LodLeaf& leaf : source.leaves()) {
+        if (finest == nullptr || leaf.levels.front().level < finest->level) { finest = &leaf.levels.front(); }
+    }
+    if (finest == nullptr) { return true; }
+    const int sh_degree = std::min(source.open(finest->file).shDegree(), static_cast<int>(run.load.sh_degree.value_or(kMaxShDegree)));
+    const std::uint64_t splats = source.meta().levels.front().splats + source.environmentSplats();
+    return splats <= memoryForScene(context, run.memory_limit_mib) / deviceBytesPerSplat(sh_degree, !run.load.flatten);
+}
+
+// The coarsest level that can be had and has splats.
+Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t levels, LoadNotes& notes, const Progress& progress) {
+    LoadOptions load = run.load;
+    for (load.lod = static_cast<std::uint32_t>(levels - 1);; --*load.lod) {
+        try {
+            Scene scene = loadAsAsked(source, load, 0, notes, progress);
+            if (scene.size() > 0 || load.lod == 0u) { return scene; }
+        } catch (const Error&) {
+            if (load.lod == 0u) { throw; }
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<StreamedScene> openStreamed(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
+                                          const Progress& progress) {
+    const LoadOptions& load = run.load;
+    const bool whole_if_it_fits = purpose == StreamFor::kPictures && load.splat_budget == 0;
+    // Nothing is fetched only to find that out.
+    if (whole_if_it_fits && isAddress(source) && run.memory_limit_mib == 0) { return std::nullopt; }
+    WebSettings web{webCacheFolder(), load.cache_limit_mib << 20, {}};
+    web.fetch.attempts = 2;  // the loader tries again by itself
+    auto chunks = std::make_unique<ChunkSource>(source, web, progress);
+    if (whole_if_it_fits && fitsWhole(context, *chunks, run)) { return std::nullopt; }
+    StreamedScene scene;
+    scene.coarsest = loadCoarsest(source, run, chunks->meta().levels.size(), scene.notes, progress);
+    StreamSettings settings;
+    settings.splat_budget = load.splat_budget;
+    if (load.sh_degree) { settings.sh_degree = static_cast<int>(*load.sh_degree); }
+    settings.flatten = load.flatten;
+    settings.antialiased = load.antialiased;
+    settings.pictures = purpose == StreamFor::kPictures;
+    if (settings.pictures) { settings.look_ahead_rad = kPictureLookAhead; }
+    // Which level that was is nobody's concern.
+    std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
+    scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves in levels chosen by what is seen", source, chunks->leaves().size()));
+    scene.stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);
+    return scene;
+}
+
+namespace {
+
+void settle(SceneStream& stream, std::span<const Eye> eyes, const Progress& progress) {
+    stream.settle(eyes, [&](double share) {
+        stopIfInterrupted();
+        if (progress) { progress(share); }
+    });
+    for (const std::string& said : stream.takeLines()) { fmt::print(stderr, "binosplat: {}\n", said); }
+}
+
+}  // namespace
+
+void settleWithProgress(SceneStream& stream, std::span<const Eye> eyes) {
+    ProgressLine line("loading what is seen of " + stream.source().name());
+    settle(stream, eyes, [&](double share) { line.show(share); });
+}
+
+void settleQuietly(SceneStream& stream, std::span<const Eye> eyes) { settle(stream, eyes, {}); }
+
+FrameCounters::Streaming streamingOf(const SceneStream& stream) {
+    const StreamCounters counters = stream.counters();
+    return {counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading};
 }
 
 Scene loadAs(const RunOptions& run, const std::string& source, std::uint64_t builtin_splats) {

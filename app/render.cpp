@@ -54,11 +54,16 @@ FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const Fra
 }
 
 // The options with what they left to the file and the memory.
-RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes) {
+RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const SceneStream* stream) {
     LoadOptions& load = options.run.load;
-    if (!notes.level_splats.empty()) { load.lod = notes.level; }
-    load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
-    load.antialiased = scene.antialiased;
+    if (stream != nullptr) {
+        load.sh_degree = static_cast<std::uint32_t>(stream->traits().sh_degree);
+        load.antialiased = stream->traits().splat_kind == gpu::kAntialiasedGaussians;
+    } else {
+        if (!notes.level_splats.empty()) { load.lod = notes.level; }
+        load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
+        load.antialiased = scene.antialiased;
+    }
     if (!options.run.stereo.order) { options.run.stereo.order = scene.by_distance ? Order::kDistance : Order::kDepth; }
     return options;
 }
@@ -86,14 +91,30 @@ void runRender(const RenderOptions& options) {
     const std::optional<HeadPath> path = options.path.empty() ? std::nullopt : std::optional(readHeadPath(options));
 
     LoadNotes notes;
-    Scene scene = loadWithProgress(options.scene, options.run.load, notes, options.run.memory_limit_mib);
+    Scene scene;
+    std::optional<const Context> opened;
+    std::optional<StreamedScene> streamed;
+    if (mayStream(options.scene, options.run.load)) {
+        opened.emplace(contextOptions(options.run));
+        streamed = openStreamed(*opened, options.scene, options.run, StreamFor::kPictures);
+    }
+    SceneStream* const stream = streamed ? streamed->stream.get() : nullptr;
+    if (streamed) {
+        scene = std::move(streamed->coarsest);
+        notes = std::move(streamed->notes);
+    } else {
+        scene = loadWithProgress(options.scene, options.run.load, notes, options.run.memory_limit_mib);
+    }
     const Cameras cameras = makeCameras(options.run, camera_files, scene);
-    const Context context(contextOptions(options.run));
-    const GpuScene gpu_scene = [&] {
+    if (!opened) { opened.emplace(contextOptions(options.run)); }
+    const Context& context = *opened;
+    std::optional<const GpuScene> whole;
+    if (stream == nullptr) {
         ProgressLine line("uploading " + options.scene);
-        return GpuScene(context, scene, [&](double share) { line.show(share); });
-    }();
-    const RenderOptions used = asUsed(options, scene, notes);
+        whole.emplace(context, scene, [&](double share) { line.show(share); });
+    }
+    const GpuScene& gpu_scene = whole ? *whole : stream->scene();
+    const RenderOptions used = asUsed(options, scene, notes, stream);
     const std::vector<glm::vec3> positions = std::move(scene.positions);  // for a camera that sees none of them
     scene = {};
 
@@ -110,13 +131,16 @@ void runRender(const RenderOptions& options) {
     stopIfInterrupted();
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
-        const PathReport said{context.deviceName(), used, cameras, renderPath(frame, settings, cameras, units_per_metre, *path, files)};
+        const PathReport said{context.deviceName(), used, cameras,
+                              renderPath(frame, stream, settings, cameras, units_per_metre, *path, files)};
         report(said);
         warnOfBlindFrames(said, positions);
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        const FrameResult result = renderTimed(frame, eyes, settings);
+        if (stream != nullptr) { settleWithProgress(*stream, eyes); }
+        FrameResult result = renderTimed(frame, eyes, settings);
+        if (stream != nullptr) { result.counters.streaming = streamingOf(*stream); }
         writePictures(files, frame, settings);
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }

@@ -1,6 +1,7 @@
 // Frames along a recorded way of the head.
 #include "app/render_path.h"
 
+#include "app/load.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
 #include "engine/error.h"
@@ -59,8 +60,8 @@ HeadPath readHeadPath(const RenderOptions& options) {
     return {std::move(motion), std::move(times_s)};
 }
 
-std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& path_settings, const Cameras& start, double units_per_metre,
-                                  const HeadPath& path, OutputFiles& files) {
+std::vector<PathFrame> renderPath(StereoFrame& frame, SceneStream* stream, const FrameSettings& path_settings, const Cameras& start,
+                                  double units_per_metre, const HeadPath& path, OutputFiles& files) {
     FrameSettings settings = path_settings;
     settings.keep_past = true;
     const bool mono = settings.mode == Mode::kMono;
@@ -70,10 +71,12 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& path_
         const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
         const Cameras cameras = moveCameras(start, world_from_middle);
         const std::span<const Eye> eyes = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
+        if (stream != nullptr) { settleQuietly(*stream, eyes); }
         // The first frame of a device makes its kernels, which the report is not about.
         if (frames.empty()) { frame.render(eyes, settings); }
         line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
         FrameResult result = frame.render(eyes, settings);
+        if (stream != nullptr) { result.counters.streaming = streamingOf(*stream); }
         int eye = 0;
         for (const std::string_view name : eyeNames(mono)) {
             stopIfInterrupted();

@@ -6,6 +6,7 @@
 #include "app/report/report.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/output_files.h"
+#include "engine/stream/scene_stream.h"
 
 #include <vector>
 
@@ -20,8 +21,9 @@ struct HeadPath {
 // numbered pictures that the new ones would not replace: nobody could tell them apart.
 HeadPath readHeadPath(const RenderOptions& options);
 
-// Every frame's pictures, staged in `files`; cameras start as `start` and move with the head.
-std::vector<PathFrame> renderPath(StereoFrame& frame, const FrameSettings& settings, const Cameras& start, double units_per_metre,
-                                  const HeadPath& path, OutputFiles& files);
+// Every frame's pictures, staged in `files`; cameras start as `start` and move with the head. Each frame waits until all is there that it
+// asks for of a `stream`, which is null where the scene is whole.
+std::vector<PathFrame> renderPath(StereoFrame& frame, SceneStream* stream, const FrameSettings& settings, const Cameras& start,
+                                  double units_per_metre, const HeadPath& path, OutputFiles& files);
 
 }  // namespace binosplat

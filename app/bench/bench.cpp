@@ -2,7 +2,7 @@
 #include "app/bench/bench.h"
 
 #include "app/bench/bench_point.h"
-#include "app/load.h"
+#include "app/bench/bench_scene.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
@@ -48,9 +48,10 @@ std::size_t pointCount(const BenchPlan& plan, const RunOptions& run) {
 
 // One scene with one splat count, drawn in one way: every size, headset and view.
 std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& plan, const BenchSeries& series,
-                                    const std::vector<BenchView>& views, const Scene& scene, PointProgress& progress) {
+                                    const std::vector<BenchView>& views, const BenchScene& loaded, PointProgress& progress) {
     std::vector<BenchResult> results;
-    const GpuScene gpu_scene(context, scene);
+    const Scene& scene = loaded.scene();
+    const GpuScene& gpu_scene = loaded.gpuScene();
     for (const glm::uvec2 size_px : series.sizes_px) {
         for (const std::string& headset : plan.headsets) {
             for (const BenchView& view : views) {
@@ -58,7 +59,7 @@ std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& pla
                 if (size_px.x > 0) { run.camera.size_px = size_px; }
                 if (!headset.empty()) { run.camera.headset = headset; }
                 const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset};
+                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset, loaded.stream()};
                 std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
                 progress.next();
             }
@@ -88,7 +89,7 @@ void benchSpeed(const BenchOptions& options, const BenchPlan& plan) {
             for (const BenchSeries& series : plan.series) {
                 for (const std::uint64_t splats : countsOf(source, series)) {
                     for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
-                        const Scene scene = loadAs(drawn.run, source, splats);
+                        const BenchScene scene(context, drawn.run, source, splats);
                         std::ranges::move(benchScene(context, plan, series, drawn.views, scene, progress), std::back_inserter(run.results));
                     }
                 }
@@ -118,6 +119,10 @@ void requireScenes(const BenchPlan& plan) {
 void runBench(const BenchOptions& options) {
     const BenchPlan plan = planBench(options);
     if (!options.motion_file.empty()) { return benchMotion(options, plan); }
+    if (!options.photos_folder.empty() || options.orders) {
+        check(options.run.load.splat_budget == 0,
+              "splat-budget is {}, expected none with --photos and --orders, which compare whole scenes", options.run.load.splat_budget);
+    }
     if (!options.photos_folder.empty()) { return benchPhotos(options, plan); }
     if (options.orders) { return benchOrders(options, plan); }
     benchSpeed(options, plan);

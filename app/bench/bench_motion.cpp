@@ -1,7 +1,7 @@
 // `binosplat bench --motion`: every method at every pose of a recorded head.
 #include "app/bench/bench.h"
+#include "app/bench/bench_scene.h"
 #include "app/bench/motion_point.h"
-#include "app/load.h"
 #include "app/options/device_options.h"
 #include "app/terminal/interrupt.h"
 #include "app/terminal/progress.h"
@@ -17,18 +17,29 @@ namespace binosplat {
 
 namespace {
 
+void setStreaming(std::span<MotionFrame> frames, const SceneStream& stream) {
+    for (MotionFrame& frame : frames) {
+        frame.streaming = streamingOf(stream);
+        frame.splats_read = stream.counters().splats_read;
+    }
+}
+
 // One view of a scene at every pose.
 void playView(const Context& context, const BenchOptions& options, const BenchPlan& plan, const HeadMotion& motion,
-              const std::string& source, const Scene& scene, const GpuScene& gpu_scene, const BenchView& view, MotionRun& run) {
+              const std::string& source, const BenchScene& loaded, const BenchView& view, MotionRun& run) {
+    const GpuScene& gpu_scene = loaded.gpuScene();
     RunOptions view_run = view.run;
     const glm::uvec2 size_px = plan.series.front().sizes_px.front();
     if (size_px.x > 0) { view_run.camera.size_px = size_px; }
-    const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), scene);
+    const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), loaded.scene());
     std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
     const auto camerasAt = [&](double time_s) {
-        return moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+        const Cameras cameras = moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+        if (loaded.stream() != nullptr) { settleQuietly(*loaded.stream(), cameras.eyes); }
+        return cameras;
     };
+    if (loaded.stream() != nullptr) { settleQuietly(*loaded.stream(), start.eyes); }
     // A GPU shows how fast it is only while nobody keeps it waiting: its times are those of a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
     if (!context.isSoftware()) {
@@ -46,6 +57,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
         }
         const std::size_t first = run.frames.size();
         point.play(camerasAt(times_s[i]), i, times_s[i], run.frames);
+        if (loaded.stream() != nullptr) { setStreaming(std::span(run.frames).subspan(first), *loaded.stream()); }
         for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }
@@ -62,9 +74,8 @@ void benchMotion(const BenchOptions& options, const BenchPlan& plan) {
     MotionRun run{context.deviceName(), options.run.config, std::filesystem::path(options.motion_file).filename().string(), {}};
     for (const std::string& source : plan.scenes) {
         for (const DrawnViews& drawn : viewsOf(plan, source, options.run)) {
-            const Scene scene = loadAs(drawn.run, source);
-            const GpuScene gpu_scene(context, scene);
-            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, source, scene, gpu_scene, view, run); }
+            const BenchScene scene(context, drawn.run, source);
+            for (const BenchView& view : drawn.views) { playView(context, options, plan, motion, source, scene, view, run); }
         }
     }
     writeText(files.staging() / "motion.csv", motionCsv(run));

@@ -113,7 +113,9 @@ std::string motionCsv(const MotionRun& run) {
         ",mean_square,psnr_db,flicker,full_change,tile_steps,sharpness_gap,psnr_left_db,psnr_right_db,mse_left,mse_right,flicker_left,"
         "flicker_right,work_rendered,"
         "pixels_"
-        "warped\n";
+        "warped";
+    const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
+    csv += is_streamed ? ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading\n" : "\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
@@ -121,8 +123,14 @@ std::string motionCsv(const MotionRun& run) {
         csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", frame.worseSquare(), psnrOf(frame.worseSquare()),
                            frame.worseFlicker(), frame.full_change, frame.tile_steps, frame.sharpness_gap);
         const auto& [left, right] = frame.mean_square;
-        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", psnrOf(left), psnrOf(right), left, right,
+        csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}", psnrOf(left), psnrOf(right), left, right,
                            frame.flicker[0], frame.flicker[1], frame.work_rendered, frame.pixels_warped);
+        if (is_streamed) {
+            const FrameCounters::Streaming streaming = frame.streaming.value_or(FrameCounters::Streaming());
+            csv += fmt::format(",{},{},{},{}", frame.splats_read, streaming.splats_resident, streaming.chunks_resident,
+                               streaming.frames_waited_for_loading);
+        }
+        csv += '\n';
     }
     return csv;
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "app/bench/bench_results.h"
+#include "engine/frame/counters.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,9 @@ struct MotionFrame {
     double full_change = 0.0;  // of the full renders, mean of both eyes
     // engine/picture/pair_metrics.h; the greater of both eyes' steps.
     double tile_steps = 0.0, sharpness_gap = 0.0;
+    // Of a streamed scene: what was there of it, and how many splats the frame went through.
+    std::optional<FrameCounters::Streaming> streaming;
+    std::uint64_t splats_read = 0;
 
     [[nodiscard]] double worseSquare() const { return std::max(mean_square[0], mean_square[1]); }
     [[nodiscard]] double worseFlicker() const { return std::max(flicker[0], flicker[1]); }

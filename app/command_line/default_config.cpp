@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kHelpFrom = 36;  // columns
 
 // Values of keys that have none if nobody says so.
-constexpr std::array<std::pair<std::string_view, const char*>, 14> kExamples{{
+constexpr std::array<std::pair<std::string_view, const char*>, 15> kExamples{{
     {"eye", "[0.0, -1.5, -3.0]"},
     {"look", "[0.0, -1.0, 0.0]"},
     {"up", "[0.0, -1.0, 0.0]"},
@@ -28,6 +28,7 @@ constexpr std::array<std::pair<std::string_view, const char*>, 14> kExamples{{
     {"gaze", "[0.0, 0.0, 1.0]"},
     {"order", "\"depth\""},
     {"lod", "0"},
+    {"splat-budget", "2000000"},
     {"sh-degree", "3"},
     {"memory-limit", "4096"},
     {"device", "\"0\""},

@@ -129,6 +129,10 @@ std::span<const OptionRow<RunOptions>> runRows() {
         // Scene.
         {{"lod", "scene", kScenes, "N", "level of detail of a streamed SOG scene, 0 the finest", "the finest within --memory-limit"},
          field::count<kLoad, &LoadOptions::lod>(0, kAny32)},
+        {{"splat-budget", "scene", kWearer, "N",
+          "splats of a streamed SOG scene that are there at a time: levels are chosen by what the eyes see",
+          "the finest level, or what the memory holds"},
+         noneIfZero(field::count<kLoad, &LoadOptions::splat_budget>(1, kMaxSplats))},
         {{"sh-degree", "scene", kScenes, "N", "highest band of colours that is kept; lower ones take less memory and time", "the scene's"},
          field::count<kLoad, &LoadOptions::sh_degree>(0, kMaxShDegree)},
         {{"flatten", "scene", kScenes, "", "draw 3D Gaussians as discs, without the shortest axis of each"},

@@ -65,6 +65,7 @@ inline constexpr double kDefaultIpdMetres = 0.063;
 // How a scene is loaded: which part, and how 3D Gaussians are drawn.
 struct LoadOptions {
     std::optional<std::uint32_t> lod;        // level of detail, 0 the finest; absent: the finest that fits
+    std::uint64_t splat_budget = 0;          // of a scene with levels, chosen leaf by leaf by what the eyes see; 0: as many as fit
     std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     std::uint64_t cache_limit_mib = 4096;    // of the disk, for scenes from the web

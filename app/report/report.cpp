@@ -90,6 +90,16 @@ std::vector<double> sortedTotals(const PathReport& report) {
     return totals;
 }
 
+// What of a streamed scene there was to see, from frame to frame; empty for others.
+std::string streamedLine(const PathReport& report) {
+    const auto of = [](const PathFrame& frame) { return frame.frame.counters.splats_read; };
+    if (!report.frames.front().frame.counters.streaming) { return {}; }
+    const auto [least, most] = std::ranges::minmax(report.frames, {}, of);
+    const std::uint64_t budget = report.options.run.load.splat_budget;
+    return fmt::format("  {} to {} splats drawn in a frame{}\n", of(least), of(most),
+                       budget > 0 ? fmt::format(", of a budget of {}", budget) : std::string());
+}
+
 }  // namespace
 
 PassTimes addUp(const PassTimes& times) {
@@ -136,7 +146,8 @@ std::string reportTable(const PathReport& report) {
     const std::vector<double> totals = sortedTotals(report);
     return fmt::format("{}, {}, {}x{} per eye, on {}\n  {} frames along {}, median {:.3f} ms, longest {:.3f} ms\n", report.options.scene,
                        nameOf(report.options.run.stereo.mode), report.start.middle.size_px.x, report.start.middle.size_px.y, report.device,
-                       totals.size(), report.options.path, totals[totals.size() / 2], totals.back());
+                       totals.size(), report.options.path, totals[totals.size() / 2], totals.back()) +
+           streamedLine(report);
 }
 
 std::string reportTable(const FrameReport& report) {

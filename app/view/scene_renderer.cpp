@@ -22,7 +22,7 @@ glm::dvec3 colourOf(Backdrop backdrop) { return glm::dvec3(backdrop == Backdrop:
 
 SceneRenderer::SceneRenderer(const xr::Instance& instance, const Context& context, const RunOptions& options, const FrameLog& log,
                              vk::Format format)
-    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format) {
+    : instance_(instance), options_(options), log_(log), format_(format), presenter_(context, format), has_gpu_(!context.isSoftware()) {
     if (const std::optional<xr::InsetSizes> inset = xr::findInset(instance)) { context_px_ = inset->context_px; }
     presenter_.makeKernels(instance.takesDepth(), instance.canSeeThrough());
 }
@@ -118,6 +118,7 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const
         const auto at = static_cast<std::size_t>(e);
         eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, headset.images->partPx()));
     }
+    scene.follow(eyes_, headset.session.stepSeconds());
     try {
         scene.frame.makeRoom(eyes_, frame_);
         glm::uvec2 largest_px = headset.images->partPx();
@@ -182,6 +183,8 @@ void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const 
         last_ = std::move(*known);
         last_.gpu_total_ms += insets_ms_;
     }
+    scene.count(last_.counters);
+    if (known && scene.stream) { fitSplats(*scene.stream, headset.session.periodMs()); }
     met_.add(headset.session.periodMs(), headset.session.lostPeriods());
     governor_.measure({.gpu_ms = last_.gpu_total_ms,
                        .period_ms = headset.session.periodMs(),
@@ -201,6 +204,15 @@ void SceneRenderer::recordEyes(Commands& commands, EyeImages& images, const Ster
         // The window shows the dominant eye, or what is made of it where that is the point.
         const bool shown = is_mono || (e == frame_.dominant) != tint;
         if (window != nullptr && window->drawn() && shown) { window->keepEye(commands, presenter_.pixels(), images.partPx(), format_); }
+    }
+}
+
+void SceneRenderer::fitSplats(SceneStream& stream, double period_ms) {
+    // A processor has no time for any number.
+    if (options_.load.splat_budget > 0 || !has_gpu_) { return; }
+    if (!splat_budget_) { splat_budget_.emplace(stream.mostSplats()); }
+    if (splat_budget_->measure(last_.gpu_total_ms, period_ms, last_.counters.splats_read)) {
+        stream.setSplatBudget(splat_budget_->splats());
     }
 }
 

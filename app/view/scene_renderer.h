@@ -3,6 +3,7 @@
 
 #include "app/terminal/frame_log.h"
 #include "app/view/governor/met_displays.h"
+#include "app/view/governor/splat_budget.h"
 #include "app/view/headset/connected_headset.h"
 #include "app/view/panel/panel_content.h"
 #include "app/view/scenes/scene_loader.h"
@@ -55,6 +56,7 @@ public:
     void forgetScene() {
         forgetLastFrame();
         governor_.forget();
+        splat_budget_.reset();
     }
     [[nodiscard]] const std::string& governorSentence() const { return governor_.sentence(); }
     // How many displays have a new picture, and how large that is.
@@ -71,6 +73,8 @@ private:
                                                 const FrameViews& views, Order usual_order);
     // Those of `frame` into `images`.
     void recordEyes(Commands& commands, EyeImages& images, const StereoFrame& frame, bool tint, MirrorWindow* window);
+    // As many splats of a streamed scene as a frame has time for, where nobody says a number.
+    void fitSplats(SceneStream& stream, double period_ms);
     void sayHidden(bool one_eye);
     void sayCutShort();
     void sayGoverned();
@@ -80,7 +84,9 @@ private:
     const FrameLog& log_;
     vk::Format format_;
     Presenter presenter_;
+    bool has_gpu_;
     Governor governor_;
+    std::optional<SplatBudget> splat_budget_;  // of the streamed scene that is shown
     MetDisplays met_;
     FrameSettings frame_;        // prepared
     std::vector<Eye> eyes_;      // prepared

@@ -49,6 +49,8 @@ private:
     bool prepareScene(const FrameViews& views);
     // Hands, rays and what else hangs in the room in this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
+    // What is wrong with a streamed scene, and once that all is there.
+    void sayStreamed(SceneStream& stream);
     void showFrame(const FrameViews& views);
     // Without hands and rays, or without depth, where the runtime refuses these.
     void submitFrame(const FrameViews& views);
@@ -100,6 +102,7 @@ private:
     PictureWriter pictures_;
     bool picture_asked_ = false;  // of the next frame
     std::uint64_t frames_of_scene_ = 0;
+    bool said_there_ = false;               // that all of a streamed scene is there which is seen at first
     std::optional<std::size_t> viewpoint_;  // the one gone to last
     Pose room_from_head_;                   // as last known
     bool recentre_asked_ = false, leaving_ = false, waits_for_kernels_ = false;

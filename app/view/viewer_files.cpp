@@ -16,6 +16,7 @@ void Viewer::takeScene() {
     renderer_.forgetScene();
     viewpoint_.reset();
     frames_of_scene_ = 0;
+    said_there_ = false;
     remember(complaint);
 }
 

@@ -62,6 +62,7 @@ void Viewer::drawFrame() {
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(headset(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         ++frames_of_scene_;
+        if (scene->stream) { sayStreamed(*scene->stream); }
         if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
@@ -72,6 +73,15 @@ void Viewer::drawFrame() {
     showFrame(views);
     sayChange();
     panel_.keepFrameTime();
+}
+
+void Viewer::sayStreamed(SceneStream& stream) {
+    for (const std::string& line : stream.tryTakeLines()) { say(line); }
+    if (said_there_ || !stream.isSettled()) { return; }
+    said_there_ = true;
+    const StreamCounters counters = stream.counters();
+    log_.say(fmt::format("all that is seen is there: {} splats, {} levels of leaves; frames that waited for it: {}",
+                         counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading));
 }
 
 bool Viewer::prepareScene(const FrameViews& views) {

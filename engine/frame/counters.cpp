@@ -50,6 +50,11 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         names["frames_cut_short"] = ahead->frames_cut_short;
         names["frames_done_again"] = ahead->frames_done_again;
     }
+    if (streaming) {
+        names["splats_resident"] = streaming->splats_resident;
+        names["chunks_resident"] = streaming->chunks_resident;
+        names["frames_waited_for_loading"] = streaming->frames_waited_for_loading;
+    }
     return names;
 }
 

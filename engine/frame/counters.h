@@ -49,6 +49,11 @@ struct FrameCounters {
         std::uint64_t frames_cut_short = 0, frames_done_again = 0;
     };
     std::optional<Ahead> ahead;
+    // Of a scene that is streamed, from whoever streams it.
+    struct Streaming {
+        std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0;
+    };
+    std::optional<Streaming> streaming;
 
     // As reports name them; none of a frame that was not drawn.
     [[nodiscard]] std::map<std::string, std::uint64_t> named() const;

@@ -21,6 +21,18 @@ constexpr double kReadingShare = 0.8;
 
 struct Cancelled {};
 
+// Somebody's who stands there, about as wide as a headset's.
+Eye startEye(const View& start) {
+    constexpr glm::uvec2 kSizePx(1024, 1024);
+    return {lookAt(start.eye, start.look, start.up), intrinsicsFromFovX(glm::radians(100.0), kSizePx), kSizePx};
+}
+
+// Of the whole scene, not of its coarsest level.
+void tellOfStream(SceneFacts& facts, const SceneStream& stream) {
+    facts.splats = stream.source().meta().levels.front().splats + stream.source().environmentSplats();
+    facts.device_bytes = stream.scene().bytes();
+}
+
 }  // namespace
 
 std::string placeOf(const std::string& scene) {
@@ -32,8 +44,18 @@ std::string placeOf(const std::string& scene) {
 
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
 
-SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead)
-    : scene_(std::move(scene)), ahead_(std::move(ahead)), thread_([this, &context, run = std::move(options)] { load(context, run); }) {}
+void LoadedScene::follow(std::span<const Eye> eyes, double step_seconds) {
+    if (stream) { stream->update(eyes, step_seconds); }
+}
+
+void LoadedScene::count(FrameCounters& counters) const {
+    if (stream) { counters.streaming = streamingOf(*stream); }
+}
+
+SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead, bool settled)
+    : scene_(std::move(scene)),
+      ahead_(std::move(ahead)),
+      thread_([this, &context, run = std::move(options), settled] { load(context, run, settled); }) {}
 
 SceneLoader::~SceneLoader() {
     cancelled_ = true;
@@ -51,7 +73,7 @@ void SceneLoader::expect(const FramesAhead& ahead) {
     ahead_ = ahead;
 }
 
-void SceneLoader::load(const Context& context, const RunOptions& options) {
+void SceneLoader::load(const Context& context, const RunOptions& options, bool settled) {
     try {
         LoadNotes notes;
         // Readers may report from threads of their own, which must not throw.
@@ -59,16 +81,29 @@ void SceneLoader::load(const Context& context, const RunOptions& options) {
             if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
             progress_ = kReadingShare * share;
         };
-        Scene scene = loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
+        std::optional<StreamedScene> streamed;
+        if (mayStream(scene_, options.load)) { streamed = openStreamed(context, scene_, options, StreamFor::kFrames, reading); }
+        if (streamed) { notes = std::move(streamed->notes); }
+        Scene scene =
+            streamed ? std::move(streamed->coarsest) : loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
         reading(1.0);
         const View start = startView(scene, options.camera, options.metres_per_unit);
         SceneFacts facts = factsOf(scene, notes, scene_);
         const glm::dvec3 up = upOfScene(scene, scene_, start.up);
         const std::optional<double> floor = floorHeight(scene, up);
-        loaded_ = std::make_unique<LoadedScene>(context, scene, [this](double share) {
+        const auto bringing = [this](double share) {
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
-        });
+        };
+        if (streamed) {
+            loaded_ = std::make_unique<LoadedScene>(context, std::move(streamed->stream));
+            const Eye eye = startEye(start);
+            SceneStream& stream = *loaded_->stream;
+            settled ? stream.settle({&eye, 1}, bringing) : stream.settleCoarsest({&eye, 1}, bringing);
+            tellOfStream(facts, stream);
+        } else {
+            loaded_ = std::make_unique<LoadedScene>(context, scene, bringing);
+        }
         loaded_->name = scene_;
         loaded_->place = placeOf(scene_);
         try {

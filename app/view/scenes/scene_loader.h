@@ -6,6 +6,7 @@
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/viewpoints.h"
 #include "engine/frame/stereo_frame.h"
+#include "engine/stream/scene_stream.h"
 
 #include <atomic>
 #include <exception>
@@ -17,12 +18,21 @@
 
 namespace binosplat {
 
-// A scene that can be shown. Stays where it is: the frame refers to the scene.
+// A scene that can be shown, whole or streamed. Stays where it is: the frame refers to the scene.
 struct LoadedScene {
     LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
-        : gpu_scene(context, scene, progress), frame(context, gpu_scene) {}
+        : whole(std::make_unique<GpuScene>(context, scene, progress)), gpu_scene(*whole), frame(context, gpu_scene) {}
+    LoadedScene(const Context& context, std::unique_ptr<SceneStream> streamed)
+        : stream(std::move(streamed)), gpu_scene(stream->scene()), frame(context, gpu_scene) {}
+    // Before a frame of such eyes: of a streamed scene what they ask for comes nearer. Never waits.
+    void follow(std::span<const Eye> eyes, double step_seconds);
+    // What there is of a streamed scene, into a frame's counters.
+    void count(FrameCounters& counters) const;
+
     std::string name;
-    GpuScene gpu_scene;
+    std::unique_ptr<GpuScene> whole;      // or
+    std::unique_ptr<SceneStream> stream;  // that loads while it is shown
+    const GpuScene& gpu_scene;            // of either
     StereoFrame frame;
     std::unique_ptr<StereoFrame> insets;  // of a headset that takes some, once it was asked for them
     Similarity start;                     // see startPlacement
@@ -45,8 +55,9 @@ std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene);
 // Loads on a thread of its own.
 class SceneLoader {
 public:
-    // With `ahead` it also makes the kernels of its frames, unless others of its kind were shown before.
-    SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {});
+    // With `ahead` it also makes the kernels of its frames, unless others of its kind were shown before. A streamed scene is done when the
+    // coarsest level of all its leaves is there, or with `settled` all that the start asks for.
+    SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead = {}, bool settled = false);
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
     // Gives up where it can, and waits for the rest.
@@ -67,7 +78,7 @@ public:
     [[nodiscard]] const FramesAhead& madeFor() const { return *made_for_; }
 
 private:
-    void load(const Context& context, const RunOptions& options);
+    void load(const Context& context, const RunOptions& options, bool settled);
     void makeKernels(const Context& context, const RunOptions& options);
     // The end, unless other kernels than those that were made are wanted.
     bool finish();

@@ -14,7 +14,11 @@ ShownScene::ShownScene(const Context& context, const ViewOptions& options, const
     begin(options.scene);
 }
 
-std::optional<double> ShownScene::loading() const { return loader_ ? std::optional(loader_->progress()) : std::nullopt; }
+std::optional<double> ShownScene::loading() const {
+    if (loader_) { return loader_->progress(); }
+    if (!scene_ || !scene_->stream || scene_->stream->share() >= 1.0) { return std::nullopt; }
+    return scene_->stream->share();
+}
 
 bool ShownScene::isLoading() const {
     return loader_ || maker_ ||
@@ -32,7 +36,7 @@ void ShownScene::begin(const std::string& scene) {
     asked_ = scene;
     RunOptions run = options_.run;
     if (scene != options_.scene) { run.camera.cameras_file.clear(); }  // which are of that one
-    loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_);
+    loader_ = std::make_unique<SceneLoader>(context_, scene, std::move(run), ahead_, options_.load_first);
 }
 
 void ShownScene::beginBeside(int step, FileWorker& files) {

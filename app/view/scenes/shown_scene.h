@@ -23,7 +23,7 @@ public:
     [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
     // Its name, or until it is there what was asked for.
     [[nodiscard]] const std::string& name() const { return scene_ ? scene_->name : asked_; }
-    // Share done of the next one; empty if none is on its way.
+    // Share done of the next one or, where none is on its way, of what the wearer sees of a streamed one; empty if that is all there.
     [[nodiscard]] std::optional<double> loading() const;
     // Whether a thread still loads anything, wanted or given up.
     [[nodiscard]] bool isLoading() const;
