@@ -113,17 +113,22 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const
                             const FrameViews& views) {
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
     eyes_.clear();
+    inset_eyes_.clear();
     for (const int e : {kLeft, kRight}) {
         if (settings.showsOneEye() && e != frame_.dominant) { continue; }
         const auto at = static_cast<std::size_t>(e);
         eyes_.push_back(eyeInScene(scene_from_room, views.room_from_eyes[at], views.eyes[at].fov, headset.images->partPx()));
     }
-    scene.follow(eyes_, headset.session.stepSeconds());
+    if (headset.inset) { aimInsets(headset, scene_from_room, views); }
+    std::vector<Eye> all = eyes_;
+    all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
+    scene.follow(all, headset.session.stepSeconds());
     try {
         scene.frame.makeRoom(eyes_, frame_);
         glm::uvec2 largest_px = headset.images->partPx();
         if (headset.inset) {
-            prepareInsets(headset, scene, scene_from_room, views);
+            if (!scene.insets) { scene.insets = StereoFrame::beside(scene.frame); }
+            scene.insets->makeRoom(inset_eyes_, inset_frame_);
             largest_px = glm::max(largest_px, headset.inset_images->partPx());
         }
         presenter_.makeRoom(largest_px, headset.images->takesDepth());
@@ -133,13 +138,10 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const
     }
 }
 
-void SceneRenderer::prepareInsets(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room,
-                                  const FrameViews& views) {
-    if (!scene.insets) { scene.insets = StereoFrame::beside(scene.frame); }
+void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views) {
     inset_frame_ = frame_;
     inset_frame_.hidden_tiles = {};
     inset_frame_.gazes = {};
-    inset_eyes_.clear();
     const glm::uvec2 size_px = headset.inset_images->partPx();
     for (const int e : {kLeft, kRight}) {
         if (!drawsEye(e)) { continue; }
@@ -150,7 +152,6 @@ void SceneRenderer::prepareInsets(ConnectedHeadset& headset, LoadedScene& scene,
         Eye& about = eyes_[inset_eyes_.size() - 1];
         about.own_pixel_px = std::min(about.intrinsics.fx / inset.intrinsics.fx, 1.0);
     }
-    scene.insets->makeRoom(inset_eyes_, inset_frame_);
 }
 
 void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,

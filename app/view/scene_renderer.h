@@ -67,7 +67,8 @@ private:
     void makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, glm::uvec2 inset_px);
     [[nodiscard]] glm::uvec2 sizePx(double scale) const;
     [[nodiscard]] glm::uvec2 insetPx(const ConnectedHeadset& headset, double scale) const;
-    void prepareInsets(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const FrameViews& views);
+    // Where they look, after the eyes that they are part of.
+    void aimInsets(const ConnectedHeadset& headset, const Similarity& scene_from_room, const FrameViews& views);
     [[nodiscard]] bool drawsEye(int eye) const { return frame_.mode != Mode::kMono || eye == frame_.dominant; }
     [[nodiscard]] FrameSettings settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale,
                                                 const FrameViews& views, Order usual_order);

@@ -9,6 +9,9 @@
 namespace binosplat {
 namespace {
 
+// Changes of a scene that a frame is told and has not drawn: of some seconds, while a scene is loaded.
+constexpr std::size_t kMostTold = 65536;
+
 // What a past must have in common with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
 
@@ -17,15 +20,33 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       kernels_(std::make_shared<FrameKernels>(context, options.threads_per_cell)),
+      together_(std::make_shared<std::vector<StereoFrame*>>(1, this)),
       room_(context, options.first_capacity),
       flights_{Flight(context), Flight(context)} {
     show(scene);
 }
 
+StereoFrame::~StereoFrame() { std::erase(*together_, this); }
+
 std::unique_ptr<StereoFrame> StereoFrame::beside(const StereoFrame& other) {
     auto frame = std::make_unique<StereoFrame>(other.context_, *other.scene_);
     frame->kernels_ = other.kernels_;
+    frame->together_ = other.together_;
+    frame->together_->push_back(frame.get());
     return frame;
+}
+
+// The scene tells each of its changes once.
+void StereoFrame::tellOthers(std::span<const SceneChange> changes) {
+    for (StereoFrame* const other : *together_) {
+        if (other == this) { continue; }
+        other->told_.insert(other->told_.end(), changes.begin(), changes.end());
+        // One that is not drawn any more: what it has is too old.
+        if (other->told_.size() > kMostTold) {
+            other->pasts_ = {};
+            other->told_.clear();
+        }
+    }
 }
 
 void StereoFrame::show(const GpuScene& scene) {
@@ -34,6 +55,7 @@ void StereoFrame::show(const GpuScene& scene) {
     moving_pays_.forget();
     pasts_ = {};
     changes_.clear();
+    told_.clear();
     room_.show(scene);
 }
 
@@ -259,7 +281,13 @@ void StereoFrame::record(const FrameSettings& settings, const Append& append) {
     flight().settings = settings;
     flight().settings.hidden_tiles = {};
     flight().asked = moving_pays_.asked();
+    const std::size_t told_from = changes_.size();
+    changes_.insert(changes_.end(), told_.begin(), told_.end());
+    const std::size_t told_to = changes_.size();
+    told_.clear();
     recorder().record(flight().commands, plan_);
+    tellOthers(std::span(changes_).first(told_from));
+    tellOthers(std::span(changes_).subspan(told_to));
     changes_.clear();
     recorder().recordReport(flight().commands, flight().readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));

@@ -19,6 +19,9 @@ public:
     static constexpr double kRoomAhead = FrameRoom::kRoomAhead;
 
     StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options = {});
+    StereoFrame(const StereoFrame&) = delete;
+    StereoFrame& operator=(const StereoFrame&) = delete;
+    ~StereoFrame();
     // Another frame of the scene that `other` shows, with pictures and pasts of its own. Kernels that either makes are there for both, and
     // one thread has both.
     static std::unique_ptr<StereoFrame> beside(const StereoFrame& other);
@@ -105,6 +108,7 @@ private:
     }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
+    void tellOthers(std::span<const SceneChange> changes);
     // Plans it without a past, whatever there is.
     void planAnew(const FrameSettings& settings);
     // Plans it, and has room for it as far as anything is known.
@@ -133,6 +137,7 @@ private:
     const Context& context_;
     const GpuScene* scene_ = nullptr;
     std::shared_ptr<FrameKernels> kernels_;
+    std::shared_ptr<std::vector<StereoFrame*>> together_;  // frames that share these, this one too
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
     Pasts pasts_;                                           // that it leaves
@@ -142,6 +147,7 @@ private:
     std::uint32_t splats_known_ = 0;                        // that the scene held then
     MovingPays moving_pays_;
     std::vector<SceneChange> changes_;  // of the scene, since the last frame was recorded
+    std::vector<SceneChange> told_;     // those that frames beside this one have recorded
     FrameShape shape_;
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;
