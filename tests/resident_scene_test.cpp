@@ -375,4 +375,38 @@ TEST_CASE_FIXTURE(Gpu, "where a part is exchanged, pictures that are made from t
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "of a scene that is seen in part, a frame looks at the pages that may be seen, and says how many") {
+    ViewedScene view = test::viewBuiltin("builtin:atelier", {96, 96}, 100000);
+    view.scene = test::inMortonOrder(view.scene);
+    const std::uint32_t pages = test::pagesOf(view.scene.size());
+    std::vector<reference::Page> bounds;
+    for (std::uint32_t p = 0; p < pages; ++p) {
+        const std::size_t first = std::size_t{p} * gpu::kPageSplats;
+        bounds.push_back(reference::boundPage(view.scene, first, std::min<std::size_t>(gpu::kPageSplats, view.scene.size() - first)));
+    }
+    const test::WholeInPages whole(context(), view.scene, 50);
+    StereoFrame frame(context(), whole.resident.scene());
+    const test::KeptKernels kept(context(), frame);
+    for (const double zoom : {1.0, 2.0, 8.0, 16.0}) {
+        CAPTURE(zoom);
+        Eye eye = view.eye;
+        eye.intrinsics.fx *= zoom;
+        eye.intrinsics.fy *= zoom;
+        const FrameResult result = frame.render({&eye, 1}, makeSettings(Mode::kMono));
+        const auto found = reference::cullPages(bounds, false, {&eye, 1}, {});
+        const auto seen = static_cast<double>(std::ranges::count(found, 1));
+        CHECK(count(result, "pages_resident") == pages);
+        CHECK(std::abs(static_cast<double>(count(result, "pages_seen")) - seen) <= 2.0);
+        CHECK(count(result, "splats_visible") > 0);
+        // Boxes see about twice the pages that hold a visible splat, not more.
+        const auto visible = reference::cull(view.scene, {&eye, 1}, {});
+        std::size_t needed = 0;
+        for (std::uint32_t p = 0; p < pages; ++p) {
+            const auto first = visible.begin() + p * gpu::kPageSplats, end = std::min(first + gpu::kPageSplats, visible.end());
+            needed += std::find(first, end, 1) != end ? 1 : 0;
+        }
+        CHECK(static_cast<double>(count(result, "pages_seen")) <= 2.5 * static_cast<double>(needed) + 4.0);
+    }
+}
+
 }  // namespace resident_scene_test

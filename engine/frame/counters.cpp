@@ -19,6 +19,10 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         names["pixels" + eye] = target.pixels;
         names["pixel_bytes" + eye] = target.pixel_bytes;
     }
+    if (pages) {
+        names["pages_resident"] = pages->resident;
+        names["pages_seen"] = pages->seen;
+    }
     if (periphery) {
         names["tile_pairs_half_size"] = periphery->tile_pairs;
         names["tiles_half_size"] = periphery->half_tiles;

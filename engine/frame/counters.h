@@ -38,6 +38,11 @@ struct FrameCounters {
     std::uint64_t commands = 0, splats_read = 0;
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
+    // Of a scene of which parts come and go: pages that hold splats, and those that cull looked at for the list that needed most.
+    struct Pages {
+        std::uint64_t resident = 0, seen = 0;
+    };
+    std::optional<Pages> pages;
     // An eye in two pictures: what the smaller one took, and how many tiles of each are rendered.
     struct Periphery {
         std::uint64_t tile_pairs = 0, half_tiles = 0, sharp_tiles = 0, bytes = 0;

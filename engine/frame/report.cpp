@@ -158,6 +158,10 @@ FrameResult reportFrame(const FrameFacts& frame, std::uint64_t mark) {
     FrameCounters& counters = result.counters;
     counters.commands = frame.commands.count();
     counters.splats_read = frame.scene.splatsHeld();
+    if (frame.scene.isInPages()) {
+        const auto seen = std::ranges::max(frame.state.visible_pages, {}, &gpu::ListState::count).count;
+        counters.pages = {.resident = frame.scene.pagesHeld(), .seen = seen};
+    }
     counters.scene_bytes = frame.scene.bytes();
     counters.visible_bytes = lists.visible.bytes();
     counters.pair_bytes = lists.pairs.bytes();

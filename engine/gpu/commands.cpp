@@ -120,7 +120,8 @@ const Buffer& Commands::staging(std::uint64_t bytes) {
     if (staging_.bytes() < bytes) {
         staging_ = {};
         constexpr std::uint64_t kStep = 1 << 20;  // so that it seldom grows
-        staging_ = Buffer(context_, "staging", (bytes + kStep - 1) / kStep * kStep, MemoryKind::kUpload);
+        const std::uint64_t rounded = std::min((bytes + kStep - 1) / kStep * kStep, std::max(bytes, context_.maxAllocationBytes()));
+        staging_ = Buffer(context_, "staging", rounded, MemoryKind::kUpload);
     }
     return staging_;
 }

@@ -27,6 +27,8 @@ public:
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     // Splats that are there.
     [[nodiscard]] std::uint32_t splatsHeld() const { return splats_held_; }
+    // Likewise pages, where it is in these.
+    [[nodiscard]] std::uint32_t pagesHeld() const { return pages_held_; }
     // Splats that will be there once all changes that wait are recorded.
     [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
@@ -56,7 +58,7 @@ private:
     GpuScene() = default;
 
     SceneTraits traits_;
-    std::uint32_t splat_count_ = 0, splats_held_ = 0, splats_coming_ = 0;
+    std::uint32_t splat_count_ = 0, splats_held_ = 0, splats_coming_ = 0, pages_held_ = 0;
     std::uint32_t chunk_bits_ = 0;
     std::size_t chunk_count_ = 0;
     gpu::DeviceAddress<gpu::SceneChunk> chunks_;

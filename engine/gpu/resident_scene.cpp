@@ -14,6 +14,9 @@
 namespace binosplat {
 namespace {
 
+// What the device's tables say of a page.
+constexpr std::uint64_t kEntryBytes = sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
+
 // Parts of one copy, put together where they lie one after another on both sides.
 class CopyParts {
 public:
@@ -38,13 +41,17 @@ private:
 }  // namespace
 
 ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, const Options& options)
-    : page_bytes_(ChunkLayout(gpu::kPageSplats, traits).bytes),
-      most_pages_a_frame_(std::max<std::uint64_t>(options.most_bytes_a_frame / page_bytes_, 1)) {
+    : page_bytes_(ChunkLayout(gpu::kPageSplats, traits).bytes) {
     const std::uint32_t capacity = options.capacity_pages;
     check(capacity > 0 && capacity <= gpu::kMaxItems / gpu::kPageSplats, "{} pages of {} splats, 1 to {} can be held", capacity,
           gpu::kPageSplats, gpu::kMaxItems / gpu::kPageSplats);
-    check(page_bytes_ <= context.maxAllocationBytes(), "{}: a page of {} splats needs {} bytes, one allocation holds at most {}",
-          context.deviceName(), gpu::kPageSplats, page_bytes_, context.maxAllocationBytes());
+    const std::uint64_t table_bytes = capacity * kEntryBytes, most_bytes = context.maxAllocationBytes();
+    check(page_bytes_ + table_bytes <= most_bytes,
+          "{}: a page of {} splats and a table of {} pages need {} bytes, one allocation holds at most {}", context.deviceName(),
+          gpu::kPageSplats, capacity, page_bytes_ + table_bytes, most_bytes);
+    // Staging is one allocation, and rounded up.
+    const std::uint64_t staged_bytes = std::min(options.most_bytes_a_frame, (most_bytes - table_bytes) / 2);
+    most_pages_a_frame_ = std::max<std::uint64_t>(staged_bytes / page_bytes_, 1);
     pages_per_buffer_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(context.maxAllocationBytes() / page_bytes_, capacity));
     const ChunkLayout layout(gpu::kPageSplats, traits);
     for (std::uint32_t first = 0; first < capacity; first += pages_per_buffer_) {
@@ -129,6 +136,7 @@ void ResidentScene::remove(Part part) {
     PartState& state = parts_[part];
     if (isInPlace(part)) {
         scene_.splats_held_ -= state.splats;
+        scene_.pages_held_ -= static_cast<std::uint32_t>(state.pages.size());
         noteChange(state, state.fade);
     } else {
         waiting_.erase(std::ranges::find(waiting_, part));
@@ -164,6 +172,7 @@ std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
         if (state.pages_to_copy > 0) { break; }
         copied_.push_back(std::move(state.packed));
         scene_.splats_held_ += state.splats;
+        scene_.pages_held_ += static_cast<std::uint32_t>(state.pages.size());
         show(state);
         noteChange(state, state.fade);
         waiting_.pop_front();
@@ -175,8 +184,7 @@ void ResidentScene::recordChanges(Commands& commands, std::vector<SceneChange>& 
     if (!hasChanges()) { return; }
     std::uint64_t waiting_pages = 0;
     for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
-    const Buffer& staging = commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ +
-                                             pages_.size() * (sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage)));
+    const Buffer& staging = commands.staging(std::min(waiting_pages, most_pages_a_frame_) * page_bytes_ + pages_.size() * kEntryBytes);
     const std::vector<PageCopy> copies = takeWaiting();
     std::ranges::sort(changed_);
     std::uint8_t* const to = staging.mapped<std::uint8_t>().data();

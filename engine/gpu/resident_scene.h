@@ -69,7 +69,7 @@ private:
     };
     std::vector<PageCopy> takeWaiting();
 
-    std::uint64_t page_bytes_, most_pages_a_frame_;
+    std::uint64_t page_bytes_, most_pages_a_frame_ = 1;
     std::uint32_t pages_per_buffer_ = 1;
     GpuScene scene_;  // its buffers hold the pages
     Buffer page_table_;

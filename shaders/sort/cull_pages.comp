@@ -61,11 +61,10 @@ bool mayShow(ScenePage page, EyeView eye) {
 // By the last workgroup: the pages of all words, in their order.
 void listPages(uint words) {
     sumUp(pass.word_offsets, words, pass.visible_pages, pass.page_count);
-    memoryBarrierBuffer();
+    memoryBarrierBuffer();  // as in lib/last_group.glsl: the sums are handed from the threads that made them to all
     barrier();
-    if (gl_LocalInvocationIndex == 0) {
-        pass.visible_pages.at[0].per_item = dispatchOver(pass.visible_pages.at[0].count, 1);
-    }
+    memoryBarrierBuffer();
+    if (gl_LocalInvocationIndex == 0) { pass.visible_pages.at[0].per_item = dispatchOver(pass.visible_pages.at[0].count, 1); }
     uint word = gl_LocalInvocationIndex;
     [[dont_unroll]] do {
         if (word >= words) { break; }
