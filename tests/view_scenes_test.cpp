@@ -4,6 +4,9 @@
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene.h"
 #include "tests/panel_sketch.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/split_scene.h"
+#endif
 #include "tests/view_panel.h"
 
 #include <doctest/doctest.h>
@@ -63,6 +66,29 @@ TEST_CASE("the next scene comes while this one stays, and one that cannot be rea
     // There was always something to see.
     for (std::size_t frame = 4; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
 }
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("a streamed scene is there at once, becomes finer while frames go on, and says what is missing") {
+    const Workplace work;
+    splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
+               {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
+    fs::remove(work.path / "split" / "0_2.sog");
+    const ViewRun run =
+        runView(work, "streamed", "rate 45\nsize 96 96\nframes every 1\nhead 0 position 0 1.6 0\nhead 2 position 0 1.6 0\nhead 3 position 0 1.6 0 turn 90 0\nat 6 exit\n",
+                "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
+    checkClean(run);
+    const std::string& output = run.outcome.output;
+    CHECK(output.find("shows split") < output.find("all that is seen is there: "));
+    CHECK(says(run, "all that is seen is there: "));
+    CHECK(says(run, "16 levels of leaves; frames that waited for it: 0"));
+    CHECK(says(run, "0_2.sog is not there, expected a chunk of the scene; what is there stays"));
+    REQUIRE(run.frames.size() > 4);
+    for (std::size_t frame = 2; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }
+    const Image third = run.eye(2, kLeft);
+    const auto [least, most] = std::ranges::minmax(third.values);
+    CHECK(most - least > 0.2f);
+}
+#endif
 
 TEST_CASE("a scene is chosen on the panel, in the folder of the one that is shown, and both are remembered") {
     const Workplace work;
