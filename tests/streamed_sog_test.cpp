@@ -1,8 +1,11 @@
 // Streamed SOG: a level is its chunks, splat by splat; the choice of a level; progress; what the program says.
+#include "engine/scene/lod_meta.h"
 #include "tests/run_program.h"
 #include "tests/streamed_scenes.h"
 
 #include <sys/resource.h>
+
+#include <span>
 
 TEST_SUITE_BEGIN("streamed_sog");
 
