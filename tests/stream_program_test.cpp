@@ -12,6 +12,8 @@
 
 TEST_SUITE_BEGIN("stream_program");
 
+namespace stream_program_test {
+
 namespace fs = std::filesystem;
 using namespace binosplat;
 using namespace binosplat::test;
@@ -129,3 +131,5 @@ TEST_CASE("a chunk that is missing is one line, and the picture is made of what 
     CHECK(work.run("render split" + kCamera + "--splat-budget 16000 --out less").exit_code == 0);
     CHECK(work.report("less")["counters"]["chunks_resident"] == 16);
 }
+
+}  // namespace stream_program_test

@@ -73,9 +73,10 @@ TEST_CASE("a streamed scene is there at once, becomes finer while frames go on, 
     splitScene(makeBuiltin("builtin:atelier", 16'000), (work.path / "split").string(),
                {.leaf_splats = 1000, .levels = 4, .chunk_splats = 4000});
     fs::remove(work.path / "split" / "0_2.sog");
-    const ViewRun run =
-        runView(work, "streamed", "rate 45\nsize 96 96\nframes every 1\nhead 0 position 0 1.6 0\nhead 2 position 0 1.6 0\nhead 3 position 0 1.6 0 turn 90 0\nat 6 exit\n",
-                "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
+    const ViewRun run = runView(work, "streamed",
+                                "rate 45\nsize 96 96\nframes every 1\nhead 0 position 0 1.6 0\nhead 2 position 0 1.6 0\nhead 3 position 0 "
+                                "1.6 0 turn 90 0\nat 6 exit\n",
+                                "split --load-first --mode shared --hide-hands --hide-panel --splat-budget 9000", kWhileLoading);
     checkClean(run);
     const std::string& output = run.outcome.output;
     CHECK(output.find("shows split") < output.find("all that is seen is there: "));
