@@ -112,7 +112,7 @@ TEST_CASE("nearer leaves show more, and splats that would lie closer than half a
         before = level;
         if (z < 2) { continue; }
         // The step that was not taken would have led to less than half a pixel, the last one that was did not.
-        const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0);
+        const double size_px = 500.0 * std::sqrt(3.0) / (static_cast<double>(z) + 1.0 + 0.25 * std::sqrt(3.0));
         const auto apart = [&](std::uint32_t a, std::uint32_t b) {
             const auto& levels = leaves[z * 64 + 32].levels;
             return size_px / std::pow(static_cast<double>(levels[a].splats.count) * static_cast<double>(levels[b].splats.count), 0.25);

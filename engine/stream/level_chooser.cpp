@@ -98,8 +98,8 @@ const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const Choice
         const Sphere sphere = around(leaves_[l]);
         double outside = std::numbers::pi;
         for (std::size_t e = 0; e < eyes.size(); ++e) { outside = std::min(outside, angleOutside(sphere, eyes[e], cameras[e])); }
-        // Of a leaf around the eyes most is as far away as its own size.
-        const double distance = std::max({distanceToBox(leaves_[l], middle), 0.5 * sphere.radius, settings.nearest});
+        // Most of a leaf is farther away than its nearest point.
+        const double distance = std::max(distanceToBox(leaves_[l], middle) + 0.5 * sphere.radius, settings.nearest);
         const double size_px = focal_px * 2.0 * sphere.radius / distance;
         // A leaf without extent is a pixel somewhere.
         addSteps(l, std::max(size_px * size_px, 1.0), std::exp(-outside / settings.look_ahead_rad), settings, there);
@@ -120,10 +120,10 @@ const LevelChoices& LevelChooser::choose(std::span<const Eye> eyes, const Choice
         choices_.levels[step.leaf] = step.level;
         choices_.splats += step.splats;
         choices_.pages += step.pages;
-        (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level});
+        if (step.order < 2) { (step.order == 0 ? choices_.coarsest : choices_.finer).push_back({step.leaf, step.level}); }
     }
-    // Of those that a leaf passes on the way only the last is loaded.
-    std::erase_if(choices_.finer, [&](const LeafLevel& one) { return choices_.levels[one.leaf] != one.level; });
+    // The leaves that gain most by their first step are the first to be finer; of those that they pass only the last level is loaded.
+    for (LeafLevel& one : choices_.finer) { one.level = choices_.levels[one.leaf]; }
     return choices_;
 }
 
