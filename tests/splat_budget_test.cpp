@@ -5,6 +5,8 @@
 
 TEST_SUITE_BEGIN("splat_budget");
 
+namespace splat_budget_test {
+
 using namespace binosplat;
 
 namespace {
@@ -35,3 +37,5 @@ TEST_CASE("a streamed scene has as many splats as frames have time for, between 
     for (int frame = 0; frame < 4000; ++frame) { small.measure(100.0, kPeriodMs, small.splats()); }
     CHECK(small.splats() == 1000);
 }
+
+}  // namespace splat_budget_test
