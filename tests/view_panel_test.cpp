@@ -181,10 +181,10 @@ TEST_CASE("shaders are reloaded by a button, all or none, with a verdict") {
     const ViewRun black = click("black-run", "black");
     CHECK(says(black, " shaders reloaded in "));
     CHECK_FALSE(sameAfterwards(black));
-    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/sort/cull.comp is not there"));
+    CHECK(says(click("missing", "nowhere"), "shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
     // A pipe would keep the compiler, and the wearer, waiting.
-    REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull.comp").exit_code == 0);
-    CHECK(says(click("pipe-run", "pipe"), "shaders stay as they were: pipe/sort/cull.comp is not a file"));
+    REQUIRE(work.runCommand("mkdir -p pipe/sort && mkfifo pipe/sort/cull_pages.comp").exit_code == 0);
+    CHECK(says(click("pipe-run", "pipe"), "shaders stay as they were: pipe/sort/cull_pages.comp is not a file"));
 }
 
 TEST_CASE("nobody reloads shaders who was not told where they are") {
@@ -195,7 +195,7 @@ TEST_CASE("nobody reloads shaders who was not told where they are") {
     checkClean(run);
     CHECK_FALSE(says(run, "shaders"));
     const ViewRun told = runView(work, "told", script, kScene + withMethodPage(work), kValidated + " BINOSPLAT_SHADERS=nowhere");
-    CHECK(says(told, "shaders stay as they were: nowhere/sort/cull.comp is not there"));
+    CHECK(says(told, "shaders stay as they were: nowhere/sort/cull_pages.comp is not there"));
 }
 
 }  // namespace view_panel_test

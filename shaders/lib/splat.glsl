@@ -35,8 +35,8 @@ struct SplatPlace {
 SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
 vec3 positionOf(SceneChunks chunks, SplatPlace at) { return Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]; }
 
-// The same in world space.
-CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
+// The same in world space, of a chunk that is not faded.
+CameraSplat loadUnfadedSplat(SceneChunks chunks, SplatPlace at) {
     const uvec2 positions = chunks.at[at.chunk].positions;
     Vec4s rotations = chunks.at[at.chunk].rotations;
     Vec2s scales = chunks.at[at.chunk].scales;
@@ -46,7 +46,13 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     splat.centre = Vec3s(positions).at[at.in_chunk];
     splat.scale = scales.at[at.in_chunk];
     splat.thickness = kSplatKind != kDiscs ? Floats(thicknesses).at[at.in_chunk] : 0;
-    splat.opacity = Floats(opacities).at[at.in_chunk] * chunks.at[at.chunk].fade;
+    splat.opacity = Floats(opacities).at[at.in_chunk];
+    return splat;
+}
+
+CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
+    CameraSplat splat = loadUnfadedSplat(chunks, at);
+    splat.opacity *= chunks.at[at.chunk].fade;
     return splat;
 }
 

@@ -123,7 +123,9 @@ void main() {
     [[dont_unroll]] do {
         const uint i = first + in_block;
         if (i >= pass.splat_count) { break; }
-        const CameraSplat splat = loadWorldSplat(pass.chunks, placeOfSplat(i, pass.chunk_bits));
+        const SplatPlace at = placeOfSplat(i, pass.chunk_bits);
+        CameraSplat splat = loadUnfadedSplat(pass.chunks, at);
+        if (kInPages) { splat.opacity *= pass.chunks.at[at.chunk].fade; }
         const bool visible = isWanted(cameraFromWorld(first_eye, splat), first_eye, pass.first_tile_mask) ||
                              (pass.eye_count > 1 && isWanted(cameraFromWorld(last_eye, splat), last_eye, pass.last_tile_mask));
         if (visible) {
