@@ -119,7 +119,7 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
 
 TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters stay there") {
     PanelSketch sketch;
-    ScenePicture picture{"red", {}};
+    ScenePicture picture{"red", "a.png", {}};
     for (std::size_t i = 0; i < std::size_t{kScenePicturePx.x} * kScenePicturePx.y; ++i) {
         picture.rgba.insert(picture.rgba.end(), {200, 10, 20, 255});
     }
@@ -138,6 +138,16 @@ TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters
     CHECK(std::array{middle[0], middle[1], middle[2], middle[3]} == std::array<unsigned char, 4>{200, 10, 20, 255});
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
     sketch.draw();
+    // A later picture of the same scene takes its place; those of others stay.
+    ScenePicture other = picture, later = picture;
+    other.key = "other";
+    other.file = "b.png";
+    later.key = "later";
+    CHECK(sketch.bringLetters("", {other}));
+    CHECK(sketch.bringLetters("", {later}));
+    CHECK(sketch.font->pictures().size() == 2);
+    CHECK(sketch.font->pictures().contains("later"));
+    CHECK(sketch.font->pictures().contains("other"));
 }
 
 TEST_CASE("size and height are changed while their buttons are held, and what moves and what is behind is chosen by name") {

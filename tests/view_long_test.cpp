@@ -166,7 +166,8 @@ TEST_CASE_FIXTURE(Walk, "nor does the host's memory grow, and what was made for 
     INFO("stderr: " << outcome().errors);
     CHECK(outcome().exit_code == 0);
     CHECK(outcome().errors.empty());
-    CHECK(medianHeapBytes(later()) <= medianHeapBytes(warm()) + (256u << 10));
+    // Scenes take turns, and either half of the walk may have a little more of the larger one.
+    CHECK(medianHeapBytes(later()) <= medianHeapBytes(warm()) + (512u << 10));
     const std::uint64_t resident = most(warm(), &Alive::resident_bytes);
     CHECK(most(later(), &Alive::resident_bytes) <= resident + resident / 50 + (8u << 20));
     CHECK(warm().back().kernels_made > 10);

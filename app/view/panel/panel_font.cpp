@@ -203,6 +203,10 @@ bool PanelFont::want(std::string_view text, const std::vector<ScenePicture>& pic
         words.clear();
     }
     if (shows_new && pictures_.size() + pictures.size() > kMostPictures) { pictures_.clear(); }
+    std::erase_if(pictures_, [&](const auto& kept) {
+        return std::ranges::any_of(pictures,
+                                   [&](const ScenePicture& later) { return later.file == kept.second.file && later.key != kept.first; });
+    });
     for (const ScenePicture& picture : pictures) { pictures_.emplace(picture.key, picture); }
     if (added_.size() + brought.size() > kMostAdded) { added_.clear(); }
     if (words_.size() + words.size() > kMostWords) { words_.clear(); }

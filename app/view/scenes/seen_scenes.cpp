@@ -78,6 +78,7 @@ SeenScene findSeenScene(const std::string& scene) {
         seen.about = seen.about.substr(0, seen.about.find('\n'));
         const Image picture = readPicture(file);
         if (picture.size_px != kScenePicturePx || picture.channels < 3) { return seen; }
+        seen.picture.file = file;
         seen.picture.key = fmt::format("{} {}", file, written.time_since_epoch().count());
         for (std::size_t i = 0; i < picture.pixelCount(); ++i) {
             const float* pixel = picture.values.data() + i * static_cast<std::size_t>(picture.channels);

@@ -12,9 +12,10 @@ namespace binosplat {
 
 inline constexpr glm::uvec2 kScenePicturePx(88, 66);
 
-// In 8-bit RGBA, kScenePicturePx large. `key` is another one for another picture, and empty where there is none.
+// In 8-bit RGBA, kScenePicturePx large. `key` is another one for another picture, and empty where there is none; a later picture in the
+// same file takes the place of an earlier one.
 struct ScenePicture {
-    std::string key;
+    std::string key, file;
     std::vector<unsigned char> rgba;
 };
 
