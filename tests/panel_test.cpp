@@ -254,7 +254,7 @@ TEST_CASE("scenes are looked for by clicks: down, up, to other places, page by p
     sketch.click("Up");
     CHECK(sketch.chooser.list().title == work.path.string());
     sketch.click("Built-in");
-    CHECK(sketch.click("fence").chosen_scene == "builtin:fence");
+    CHECK(sketch.click("step-edge").chosen_scene == "builtin:step-edge");
     sketch.click("Up");  // there is none above
     CHECK(sketch.chooser.list().title == "Built-in scenes");
     sketch.click("Recent");

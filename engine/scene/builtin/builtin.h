@@ -16,5 +16,7 @@ Scene makeStepEdge();
 Scene makeFence();
 Scene makeAtelier(std::uint64_t splats, const Progress& progress);
 View atelierView();
+Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_t frame);
+View clockworkView();
 
 }  // namespace binosplat::builtin

@@ -224,6 +224,10 @@ bool isHidden(const Patch& patch, const Room& room) {
     return false;
 }
 
+double weightOf(const Patch& patch, const Room& room) {
+    return isHidden(patch, room) ? 0.0 : static_cast<double>(patch.size_m.x) * patch.size_m.y * patch.detail;
+}
+
 }  // namespace
 
 Patch& Draft::add(Patch patch) {
@@ -231,17 +235,20 @@ Patch& Draft::add(Patch patch) {
     return patches_.back();
 }
 
+double Draft::weight(const Room& room) const {
+    double sum = 0.0;
+    for (const Patch& patch : patches_) { sum += weightOf(patch, room); }
+    return sum;
+}
+
 Scene Draft::make(std::uint64_t count, const Room& room, const Progress& progress) const {
     // Patch i gets the splats between two rounded points of the running sum: exactly `count` in all, and small patches get their
     // share on average even where it is under one.
     std::vector<std::uint64_t> starts{0};
-    double total = 0.0, running = 0.0;
-    const auto weight = [&room](const Patch& patch) {
-        return isHidden(patch, room) ? 0.0 : static_cast<double>(patch.size_m.x) * patch.size_m.y * patch.detail;
-    };
-    for (const Patch& patch : patches_) { total += weight(patch); }
+    const double total = weight(room);
+    double running = 0.0;
     for (const Patch& patch : patches_) {
-        running += weight(patch);
+        running += weightOf(patch, room);
         starts.push_back(static_cast<std::uint64_t>(std::llround(running / total * static_cast<double>(count))));
     }
     starts.back() = count;
