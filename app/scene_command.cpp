@@ -17,7 +17,8 @@ void runScene(const SceneOptions& options) {
     Scene scene;
     {
         ProgressLine line("making " + source);
-        scene = makeBuiltin(source, options.splats, [&](double share) { line.show(share); });
+        scene = makeBuiltin(
+            source, options.splats, [&](double share) { line.show(share); }, options.frame);
     }
     ProgressLine line("writing " + options.out.string());
     writePly(scene, options.out.string(), [&](double share) { line.show(share); });

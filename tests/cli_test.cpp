@@ -241,6 +241,19 @@ TEST_CASE("aSceneCanBeWrittenAndDescribed") {
     CHECK(work.run("info one.ply >/dev/full").exit_code == 1);
 }
 
+TEST_CASE("aFrameOfASceneThatMovesCanBeWritten") {
+    const Workplace work;
+    CHECK(work.run("scene clockwork --splats 2000 --out first.ply").exit_code == 0);
+    CHECK(work.run("scene clockwork --splats 2000 --frame 70 --out later.ply").exit_code == 0);
+    CHECK(work.run("scene clockwork --splats 2000 --frame 120 --out again.ply").exit_code == 0);
+    CHECK(work.runCommand("cmp first.ply later.ply").exit_code == 1);
+    CHECK(work.runCommand("cmp first.ply again.ply").exit_code == 0);
+    // Splats of opacity 0 are written and read like others.
+    CHECK(work.run("info later.ply").output.find("splats             2000\n") != std::string::npos);
+    checkRefused(work.run("scene fence --frame 1 --out fence.ply"), 1,
+                 "builtin:fence: frame 1 asked for, expected 0: this scene does not move");
+}
+
 TEST_CASE("whatTwoHintsSayOfAFileIsSaidOnceInItsNotes") {
     const Workplace work;
     std::string ply = "ply\nformat ascii 1.0\ncomment SplatRenderMode: mip\nelement vertex 1\n";

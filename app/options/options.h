@@ -132,6 +132,7 @@ struct InfoOptions {
 struct SceneOptions {
     std::string name;
     std::uint64_t splats = 0;  // 0: the scene's own default
+    std::uint64_t frame = 0;   // of one that moves
     std::filesystem::path out;
 };
 
