@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <utility>
+
 namespace binosplat {
 
 namespace {
@@ -48,8 +50,11 @@ void runKernels(const KernelsOptions& options) {
     std::string text;
     std::optional<ProgressLine> progress("kernels");
     const KernelTable variants = allKernels(context);
+    // Lives until the next one is made: RADV gives its memory for code back once no kernel is left there, and takes 8 MiB anew for the
+    // next.
+    Kernel last;
     for (const KernelVariant& variant : variants) {
-        const Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
+        Kernel kernel(context, variant, has_statistics ? Kernel::Keep::kStatistics : Kernel::Keep::kNothing);
         Json constants = Json::object(), statistics = Json::object();
         for (const auto& [name, value] : variant.constants) { constants[name] = value; }
         for (const auto& [name, value] : has_statistics ? kernel.statistics(context) : KernelStatistics{}) {
@@ -58,6 +63,7 @@ void runKernels(const KernelsOptions& options) {
         text += lineOfKernel(variant, statistics);
         kernels.push_back({{"shader", variant.shader}, {"constants", constants}, {"statistics", statistics}});
         progress->show(static_cast<double>(kernels.size()) / static_cast<double>(variants.size()));
+        last = std::move(kernel);
     }
     progress.reset();
     context.requireNoValidationMessages();
