@@ -13,6 +13,6 @@ uint sortBlockKeys(uint count) { return kSortBlock * max(groupsOver(count, kSort
 // A list of `needed` items, or an empty one if that is more than `capacity`: the frame is then void and done again.
 ListState makeList(uint needed, uint capacity) {
     const uint count = needed <= capacity ? needed : 0;
-    return ListState(needed, count, /*groups_done*/ 0, uint[kMaxSortRuns / 4](0, 0, 0, 0), dispatchOver(count, kGroupSize), dispatchOver(count, kListBlock),
+    return ListState(needed, count, /*groups_done*/ 0, uvec4(0), dispatchOver(count, kGroupSize), dispatchOver(count, kListBlock),
                      dispatchOver(count, sortBlockKeys(count)));
 }

@@ -102,11 +102,11 @@ struct DispatchSize {
 struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
-    uint groups_done;                        // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
-    uint run_groups_done[kMaxSortRuns / 4];  // the same for each run of a sort's blocks, a byte each
-    DispatchSize per_item;                   // workgroups of kGroupSize
-    DispatchSize per_block;                  // workgroups of kListBlock
-    DispatchSize per_sort_block;             // workgroups of sortBlockKeys, see lib/list.glsl
+    uint groups_done;             // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
+    uvec4 run_groups_done;        // the same for each of the kMaxSortRuns runs of a sort's blocks, a byte each
+    DispatchSize per_item;        // workgroups of kGroupSize
+    DispatchSize per_block;       // workgroups of kListBlock
+    DispatchSize per_sort_block;  // workgroups of sortBlockKeys, see lib/list.glsl
 };
 BINOSPLAT_ARRAY_OF(ListState, ListStates);
 
