@@ -61,4 +61,19 @@ std::vector<gpu::ChangedRect> rectsOf(std::span<const SceneChange> changes, cons
     return rects;
 }
 
+double changedShare(std::span<const SceneChange> changes, const Eye& eye, double near) {
+    if (changes.empty()) { return 0.0; }
+    const glm::uvec2 tiles = tilesOf(eye.size_px);
+    std::vector<bool> changed(std::size_t{tiles.x} * tiles.y, false);
+    for (const gpu::ChangedRect& rect : rectsOf(changes, eye, near)) {
+        if (rect.error < 0.5f * gpu::kChangedError) { continue; }
+        const glm::uvec2 begin = rect.begin_px / gpu::kTileSize, end = tilesOf(rect.end_px);
+        for (std::uint32_t y = begin.y; y < end.y; ++y) {
+            const auto row = changed.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * tiles.x);
+            std::fill(row + begin.x, row + end.x, true);
+        }
+    }
+    return static_cast<double>(std::ranges::count(changed, true)) / static_cast<double>(changed.size());
+}
+
 }  // namespace binosplat

@@ -58,6 +58,7 @@ std::map<std::string, std::uint64_t> FrameCounters::named() const {
         names["splats_resident"] = streaming->splats_resident;
         names["chunks_resident"] = streaming->chunks_resident;
         names["frames_waited_for_loading"] = streaming->frames_waited_for_loading;
+        names["scene_frames_late"] = streaming->scene_frames_late;
     }
     return names;
 }

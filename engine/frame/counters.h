@@ -54,9 +54,9 @@ struct FrameCounters {
         std::uint64_t frames_cut_short = 0, frames_done_again = 0;
     };
     std::optional<Ahead> ahead;
-    // Of a scene that is streamed, from whoever streams it.
+    // Of a scene that is streamed or moves, from whoever brings it.
     struct Streaming {
-        std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0;
+        std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0, scene_frames_late = 0;
     };
     std::optional<Streaming> streaming;
 

@@ -45,7 +45,7 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
     commands.begin();
-    if (changes != nullptr) { scene.recordChanges(commands, *changes); }
+    if (changes_known) { scene.recordChanges(commands); }
     commands.update(room.lists().state, &state, sizeof(state));
 }
 
@@ -154,7 +154,9 @@ void FrameRecorder::recordChoice(Commands& commands, const FramePlan& plan) cons
 void FrameRecorder::recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const {
     // The picture of an eye that is rendered in full has seen them, and so has what is made from it.
     const bool sees_all = std::ranges::any_of(plan.targets, [](const TargetPlan& target) { return target.choice == TileChoice::kAll; });
-    if (changes == nullptr || changes->empty() || sees_all) { return; }
+    if (!changes_known || sees_all) { return; }
+    const std::optional<std::span<const SceneChange>> changes = scene.changesSince(*changes_known);
+    if (!changes || changes->empty()) { return; }
     std::vector<gpu::ChangedRect> rects;
     std::vector<std::size_t> begins;
     for (const PastInputs& picture : pictures) {

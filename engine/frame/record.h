@@ -28,8 +28,8 @@ struct FrameRecorder {
     PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
-    // What is recorded is going to be submitted, and brings the scene's changes. They are added to those since the last frame was recorded.
-    std::vector<SceneChange>* changes = nullptr;
+    // Where what is recorded is going to be submitted, and so brings the scene's changes: which of these the pasts know, see GpuScene.
+    std::optional<std::uint64_t> changes_known;
 
     // The whole frame, from Commands::begin on.
     void record(Commands& commands, const FramePlan& plan) const;

@@ -1,6 +1,7 @@
 // Frames one after another: what each prepares, when it is waited for, and when it is done again.
 #include "engine/frame/stereo_frame.h"
 
+#include "engine/frame/changes.h"
 #include "engine/frame/report.h"
 
 #include <algorithm>
@@ -9,8 +10,10 @@
 namespace binosplat {
 namespace {
 
-// Changes of a scene that a frame is told and has not drawn: of some seconds, while a scene is loaded.
-constexpr std::size_t kMostTold = 65536;
+// Where the scene changed, tiles are rendered beside the budget, of which this share is left to the others: so many in these parts of the
+// picture as in the rest, and a little more. Of a picture that changed by more than the second figure a past has nothing to give: the other
+// eye costs less.
+constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.45;
 
 // What a past must have in common with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
@@ -20,33 +23,17 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       kernels_(std::make_shared<FrameKernels>(context, options.threads_per_cell)),
-      together_(std::make_shared<std::vector<StereoFrame*>>(1, this)),
       room_(context, options.first_capacity),
       flights_{Flight(context), Flight(context)} {
     show(scene);
 }
 
-StereoFrame::~StereoFrame() { std::erase(*together_, this); }
+StereoFrame::~StereoFrame() = default;
 
 std::unique_ptr<StereoFrame> StereoFrame::beside(const StereoFrame& other) {
     auto frame = std::make_unique<StereoFrame>(other.context_, *other.scene_);
     frame->kernels_ = other.kernels_;
-    frame->together_ = other.together_;
-    frame->together_->push_back(frame.get());
     return frame;
-}
-
-// The scene tells each of its changes once.
-void StereoFrame::tellOthers(std::span<const SceneChange> changes) {
-    for (StereoFrame* const other : *together_) {
-        if (other == this) { continue; }
-        other->told_.insert(other->told_.end(), changes.begin(), changes.end());
-        // One that is not drawn any more: what it has is too old.
-        if (other->told_.size() > kMostTold) {
-            other->pasts_ = {};
-            other->told_.clear();
-        }
-    }
 }
 
 void StereoFrame::show(const GpuScene& scene) {
@@ -54,8 +41,7 @@ void StereoFrame::show(const GpuScene& scene) {
     scene_ = &scene;
     moving_pays_.forget();
     pasts_ = {};
-    changes_.clear();
-    told_.clear();
+    changes_known_ = scene.changesRecorded();
     room_.show(scene);
 }
 
@@ -237,7 +223,7 @@ void StereoFrame::makeRoomForVisible() {
 
 Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
     if (!settings.keep_past || eyes.size() != 2 || !pasts_.of_eyes[0] || !pasts_.of_eyes[1] ||
-        askedApartFromSizes(settings) != past_shape_) {
+        askedApartFromSizes(settings) != past_shape_ || !scene_->changesSince(changes_known_)) {
         return {};
     }
     for (std::size_t e = 0; e < eyes.size(); ++e) {
@@ -249,6 +235,13 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
         if (same_size ? !std::ranges::equal(hidden, past_hidden_[e]) : hidden.empty() != past_hidden_[e].empty()) { return {}; }
     }
     return pasts_;
+}
+
+double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const {
+    if (settings.mode != Mode::kTemporal || eyes.size() != 2) { return 0.0; }
+    std::vector<SceneChange> changes(scene_->changesNoted().begin(), scene_->changesNoted().end());
+    if (const auto recorded = scene_->changesSince(changes_known_)) { changes.insert(changes.end(), recorded->begin(), recorded->end()); }
+    return 0.5 * (binosplat::changedShare(changes, eyes[0], settings.near) + binosplat::changedShare(changes, eyes[1], settings.near));
 }
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
@@ -268,7 +261,11 @@ bool StereoFrame::isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& s
 void StereoFrame::prepare(std::span<const Eye> eyes, const FrameSettings& settings) {
     const MovingPays::Asked asked = MovingPays::askedBy(eyes, settings);
     const bool may_move = moving_pays_.mayMove(settings, asked);
-    plan_ = planFrame(settings, eyes, may_move, pastsFor(eyes, settings));
+    const double changed = changedShare(eyes, settings);
+    plan_ = planFrame(settings, eyes, may_move, changed > kMostChanged ? Pasts() : pastsFor(eyes, settings));
+    if (changed <= kMostChanged) {
+        plan_.budget = std::min(std::max(plan_.budget, kMoreWhereChanged * changed + kBudgetBesideChanges * plan_.budget), 1.0);
+    }
     room_.fitPictures(plan_, settings.hidden_tiles);
     room_.fitLists(plan_);
     moving_pays_.ask(asked, may_move);
@@ -281,14 +278,8 @@ void StereoFrame::record(const FrameSettings& settings, const Append& append) {
     flight().settings = settings;
     flight().settings.hidden_tiles = {};
     flight().asked = moving_pays_.asked();
-    const std::size_t told_from = changes_.size();
-    changes_.insert(changes_.end(), told_.begin(), told_.end());
-    const std::size_t told_to = changes_.size();
-    told_.clear();
     recorder().record(flight().commands, plan_);
-    tellOthers(std::span(changes_).first(told_from));
-    tellOthers(std::span(changes_).subspan(told_to));
-    changes_.clear();
+    changes_known_ = scene_->changesRecorded();
     recorder().recordReport(flight().commands, flight().readback);
     pasts_ = pastsAfter(plan_, pastsFor(eyes_, settings));
     past_shape_ = askedApartFromSizes(settings);

@@ -103,12 +103,18 @@ private:
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
     // `drops`: what is recorded is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
-        return {kernels_->passes,           kernels_->warp_passes, kernels_->past_passes, kernels_->periphery_passes, *scene_, room_,
-                drops ? nullptr : &changes_};
+        return {kernels_->passes,
+                kernels_->warp_passes,
+                kernels_->past_passes,
+                kernels_->periphery_passes,
+                *scene_,
+                room_,
+                drops ? std::nullopt : std::optional(changes_known_)};
     }
     // What the frames before leave to one of these.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    void tellOthers(std::span<const SceneChange> changes);
+    // Of both eyes' tiles, the share in which the scene is another than the last frame shows; both eyes.
+    [[nodiscard]] double changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const;
     // Plans it without a past, whatever there is.
     void planAnew(const FrameSettings& settings);
     // Plans it, and has room for it as far as anything is known.
@@ -137,7 +143,6 @@ private:
     const Context& context_;
     const GpuScene* scene_ = nullptr;
     std::shared_ptr<FrameKernels> kernels_;
-    std::shared_ptr<std::vector<StereoFrame*>> together_;  // frames that share these, this one too
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
     Pasts pasts_;                                           // that it leaves
@@ -146,8 +151,7 @@ private:
     FrameState state_{};                                    // what the last one known reported
     std::uint32_t splats_known_ = 0;                        // that the scene held then
     MovingPays moving_pays_;
-    std::vector<SceneChange> changes_;  // of the scene, since the last frame was recorded
-    std::vector<SceneChange> told_;     // those that frames beside this one have recorded
+    std::uint64_t changes_known_ = 0;  // of the scene, see GpuScene::changesSince: what the last frame shows
     FrameShape shape_;
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;

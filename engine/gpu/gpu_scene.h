@@ -4,6 +4,8 @@
 #include "engine/gpu/packed_splats.h"
 
 #include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace binosplat {
@@ -48,9 +50,18 @@ public:
     [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
     [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is. Adds where to `seen`.
-    void recordChanges(Commands& commands, std::vector<SceneChange>& seen) const {
-        if (changes_) { changes_(commands, seen); }
+    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is.
+    void recordChanges(Commands& commands) const {
+        if (record_changes_) { record_changes_(commands); }
+    }
+    // Where that was, all that was ever recorded, counted; and what came after the first `known` of it, until the next recordChanges().
+    // Empty where so old ones are forgotten.
+    // Those to come with the next one are known before that, as far as they were noted.
+    [[nodiscard]] std::span<const SceneChange> changesNoted() const { return changes_noted_; }
+    [[nodiscard]] std::uint64_t changesRecorded() const { return changes_forgotten_ + changes_.size(); }
+    [[nodiscard]] std::optional<std::span<const SceneChange>> changesSince(std::uint64_t known) const {
+        if (known < changes_forgotten_) { return std::nullopt; }
+        return std::span(changes_).subspan(static_cast<std::size_t>(known - changes_forgotten_));
     }
 
 private:
@@ -66,7 +77,9 @@ private:
     std::uint64_t bytes_ = 0;
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
-    std::function<void(Commands&, std::vector<SceneChange>&)> changes_;
+    std::function<void(Commands&)> record_changes_;
+    std::vector<SceneChange> changes_noted_, changes_;  // of these the latest
+    std::uint64_t changes_forgotten_ = 0;
 };
 
 }  // namespace binosplat

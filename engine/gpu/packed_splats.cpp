@@ -37,39 +37,53 @@ std::optional<glm::vec4> rotationToShow(const Scene& scene, std::uint64_t splat)
     return glm::vec4(rotation / length);
 }
 
-// Of the page's splats that can be seen, all that is not fainter than kMinAlpha, and a hair for what the device rounds.
+constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
+
+// How far a splat of this opacity is seen, in scales.
+double reachOf(float opacity) { return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding); }
+
+// Of the page's splats that can be seen.
 gpu::ScenePage boundsOf(const Scene& scene, std::uint64_t first, std::uint64_t count) {
-    constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-    double reach = 0.0;
-    std::uint32_t shown = 0;
+    PageBounds bounds;
     for (std::uint64_t i = first; i < first + count; ++i) {
         const std::optional<glm::vec4> rotation = rotationToShow(scene, i);
-        if (!(scene.opacities[i] >= gpu::kMinAlpha) || !rotation) { continue; }
-        const double cut = std::max(2.0 * std::log(255.0 * static_cast<double>(scene.opacities[i])), 0.0) + kRounding;
-        const glm::dvec4 q(*rotation);
-        const glm::dmat3 axes = glm::mat3_cast(glm::dquat(q.w, q.x, q.y, q.z));
-        const glm::dvec3 scales(scene.scales[i], scene.isGaussian3d() ? scene.thicknesses[i] : 0.0f);
-        const glm::dvec3 u = scales.x * axes[0], v = scales.y * axes[1], w = scales.z * axes[2];
-        const double radius = std::sqrt(cut) * kHair;
-        const glm::dvec3 half = radius * glm::sqrt(u * u + v * v + w * w), centre(scene.positions[i]);
-        low = glm::min(low, centre - half);
-        high = glm::max(high, centre + half);
-        reach = std::max({reach, radius * std::abs(scales.x), radius * std::abs(scales.y), radius * std::abs(scales.z)});
-        ++shown;
+        if (!rotation) { continue; }
+        const glm::vec3 scales(scene.scales[i], scene.isGaussian3d() ? scene.thicknesses[i] : 0.0f);
+        bounds.add(scene.positions[i], glm::quat(rotation->w, rotation->x, rotation->y, rotation->z), scales, scene.opacities[i]);
     }
-    if (shown == 0) { return {}; }
-    // As floats, outwards.
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    gpu::ScenePage page{.low = {}, .reach = std::nextafter(static_cast<float>(reach), kFar), .high = {}, .count = shown};
-    for (int axis = 0; axis < 3; ++axis) {
-        page.low[axis] = std::nextafter(static_cast<float>(low[axis]), -kFar);
-        page.high[axis] = std::nextafter(static_cast<float>(high[axis]), kFar);
-    }
-    return page;
+    return bounds.page();
 }
 
 }  // namespace
+
+glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity) {
+    const glm::dmat3 axes = glm::mat3_cast(glm::dquat(rotation.w, rotation.x, rotation.y, rotation.z));
+    const glm::dvec3 u = static_cast<double>(scales.x) * axes[0], v = static_cast<double>(scales.y) * axes[1],
+                     w = static_cast<double>(scales.z) * axes[2];
+    return reachOf(opacity) * glm::sqrt(u * u + v * v + w * w);
+}
+
+void PageBounds::add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity) {
+    if (!(opacity >= gpu::kMinAlpha)) { return; }
+    const glm::dvec3 half = halfExtentOf(rotation, scales, opacity), at(centre);
+    low_ = glm::min(low_, at - half);
+    high_ = glm::max(high_, at + half);
+    const glm::dvec3 reaches = reachOf(opacity) * glm::abs(glm::dvec3(scales));
+    reach_ = std::max({reach_, reaches.x, reaches.y, reaches.z});
+    ++shown_;
+}
+
+gpu::ScenePage PageBounds::page() const {
+    if (shown_ == 0) { return {}; }
+    // As floats, outwards.
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    gpu::ScenePage page{.low = {}, .reach = std::nextafter(static_cast<float>(reach_), kFar), .high = {}, .count = shown_};
+    for (int axis = 0; axis < 3; ++axis) {
+        page.low[axis] = std::nextafter(static_cast<float>(low_[axis]), -kFar);
+        page.high[axis] = std::nextafter(static_cast<float>(high_[axis]), kFar);
+    }
+    return page;
+}
 
 SceneTraits traitsOf(const Scene& scene) {
     return {.sh_degree = scene.sh_degree,

@@ -7,6 +7,7 @@
 #include "shaders/shared/types.h"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,23 @@ struct ChunkLayout {
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
                 std::uint8_t* to);
 
+// Half the size of the box in the world's axes around all of a splat that is not fainter than kMinAlpha, and a hair for what the device
+// rounds. `scales` are along the axes of `rotation`, which is of unit length (a disc's third is 0); nothing is seen of an opacity below
+// kMinAlpha.
+glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity);
+
+// What the device is told of a page: the box around these, and how many can be seen.
+class PageBounds {
+public:
+    void add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity);
+    [[nodiscard]] gpu::ScenePage page() const;
+
+private:
+    glm::dvec3 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
+    double reach_ = 0.0;
+    std::uint32_t shown_ = 0;
+};
+
 // Some splats in pages of kPageSplats, each laid out by itself, with the bounds of each; the last is filled up with splats that are never
 // seen. Made on any thread.
 class PackedPages {
@@ -49,6 +67,9 @@ public:
     // Splats [first, first + count) of `scene`. Throws Error where these are discs and the traits' 3D Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
     PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
+    // One page that was packed before, as it was.
+    PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::span<const std::uint8_t> bytes)
+        : splat_count_(splats), pages_{page}, bytes_(bytes.begin(), bytes.end()) {}
     PackedPages() = default;
 
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }

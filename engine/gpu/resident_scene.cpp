@@ -16,6 +16,8 @@ namespace {
 
 // What the device's tables say of a page.
 constexpr std::uint64_t kEntryBytes = sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
+// Of some seconds, while a scene is loaded: a picture that is older than these has no more to give.
+constexpr std::size_t kMostChangesKept = 65536;
 
 // Parts of one copy, put together where they lie one after another on both sides.
 class CopyParts {
@@ -72,7 +74,7 @@ ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, 
     scene_.chunks_ = scene_.chunk_table_.address<gpu::SceneChunk>();
     scene_.pages_ = page_table_.address<gpu::ScenePage>();
     scene_.bytes_ += scene_.chunk_table_.bytes() + page_table_.bytes();
-    scene_.changes_ = [this](Commands& commands, std::vector<SceneChange>& seen) { recordChanges(commands, seen); };
+    scene_.record_changes_ = [this](Commands& commands) { recordChanges(commands); };
     // The first recording tells the device of all of them.
     for (std::uint32_t page = 0; page < capacity; ++page) {
         free_.push(page);
@@ -103,10 +105,10 @@ void ResidentScene::noteChange(const PartState& part, float amount) {
         change.low = glm::min(change.low, page.low);
         change.high = glm::max(change.high, page.high);
     }
-    if (amount > 0.0f && change.low.x <= change.high.x) { seen_.push_back(change); }
+    if (amount > 0.0f && change.low.x <= change.high.x) { note(change); }
 }
 
-std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float fade) {
+std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float fade, Note note) {
     assert(fade >= 0.0f && fade <= 1.0f);
     if (pages.pageCount() > freePages()) { return std::nullopt; }
     assert(pages.bytes().size() == pages.pageCount() * page_bytes_);  // of the same traits
@@ -121,6 +123,7 @@ std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float
     state.splats = pages.splatCount();
     state.pages_to_copy = pages.pageCount();
     state.fade = fade;
+    state.note = note;
     state.bounds = pages.pages();
     for (std::uint32_t i = 0; i < pages.pageCount(); ++i) {
         state.pages.push_back(free_.top());
@@ -132,12 +135,12 @@ std::optional<ResidentScene::Part> ResidentScene::add(PackedPages&& pages, float
     return part;
 }
 
-void ResidentScene::remove(Part part) {
+void ResidentScene::remove(Part part, Note note) {
     PartState& state = parts_[part];
     if (isInPlace(part)) {
         scene_.splats_held_ -= state.splats;
         scene_.pages_held_ -= static_cast<std::uint32_t>(state.pages.size());
-        noteChange(state, state.fade);
+        if (note == Note::kAll) { noteChange(state, state.fade); }
     } else {
         waiting_.erase(std::ranges::find(waiting_, part));
     }
@@ -174,13 +177,13 @@ std::vector<ResidentScene::PageCopy> ResidentScene::takeWaiting() {
         scene_.splats_held_ += state.splats;
         scene_.pages_held_ += static_cast<std::uint32_t>(state.pages.size());
         show(state);
-        noteChange(state, state.fade);
+        if (state.note == Note::kAll) { noteChange(state, state.fade); }
         waiting_.pop_front();
     }
     return copies;
 }
 
-void ResidentScene::recordChanges(Commands& commands, std::vector<SceneChange>& seen) {
+void ResidentScene::recordChanges(Commands& commands) {
     if (!hasChanges()) { return; }
     std::uint64_t waiting_pages = 0;
     for (const Part part : waiting_) { waiting_pages += parts_[part].pages_to_copy; }
@@ -206,8 +209,12 @@ void ResidentScene::recordChanges(Commands& commands, std::vector<SceneChange>& 
     }
     changed_.clear();
     copied_.clear();
-    seen.insert(seen.end(), seen_.begin(), seen_.end());
-    seen_.clear();
+    if (scene_.changes_.size() > kMostChangesKept) {
+        scene_.changes_forgotten_ += scene_.changes_.size();
+        scene_.changes_.clear();
+    }
+    scene_.changes_.insert(scene_.changes_.end(), scene_.changes_noted_.begin(), scene_.changes_noted_.end());
+    scene_.changes_noted_.clear();
     bool first = true;
     for (std::size_t b = 0; b < of_buffers.size(); ++b) { of_buffers[b].record(commands, staging, scene_.buffers_[b], first); }
     of_chunks.record(commands, staging, scene_.chunk_table_, first);

@@ -37,11 +37,17 @@ public:
 
     // The next ones are for the thread that records frames, between them. A page that was free takes the lowest place there is.
 
+    // What pictures from before are told of a part that comes or goes: that all about it is other than it was, or nothing, where whoever
+    // calls knows better and notes it.
+    enum class Note { kAll, kNone };
+
     // Splats that are copied by the next frames, in the order in which they were added, and seen from the first on that has all of the
     // part. Nothing where there are not enough free pages: then `pages` is as it was. `fade`: see setFade.
-    std::optional<Part> add(PackedPages&& pages, float fade = 1.0f);
+    std::optional<Part> add(PackedPages&& pages, float fade = 1.0f, Note note = Note::kAll);
     // Not seen from the next frame on; its pages are free at once.
-    void remove(Part part);
+    void remove(Part part, Note note = Note::kAll);
+    // Something is other than it was from the next frame on.
+    void note(const SceneChange& change) { scene_.changes_noted_.push_back(change); }
     // What the opacity of its splats is multiplied with from the next frame on, 0 to 1. At 0 it costs nothing.
     void setFade(Part part, float fade);
     // Whether the frames that are recorded from now on find all of it in place.
@@ -49,7 +55,7 @@ public:
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 
     // Into a recording, before what reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
-    void recordChanges(Commands& commands, std::vector<SceneChange>& seen);
+    void recordChanges(Commands& commands);
 
 private:
     struct PartState {
@@ -57,6 +63,7 @@ private:
         PackedPages packed;                // until it is copied
         std::uint32_t pages_to_copy = 0, splats = 0;
         float fade = 1.0f;
+        Note note = Note::kAll;
         std::vector<gpu::ScenePage> bounds;
     };
     void change(std::uint32_t page, const gpu::ScenePage& bounds, float fade);
@@ -83,7 +90,6 @@ private:
     std::vector<Part> free_parts_;
     std::deque<Part> waiting_;         // to be copied, the first one perhaps in part
     std::vector<PackedPages> copied_;  // that the next recording reads
-    std::vector<SceneChange> seen_;    // what frames see of all this
 };
 
 }  // namespace binosplat

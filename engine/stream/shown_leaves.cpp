@@ -84,10 +84,9 @@ void ShownLeaves::exchangeAtOnce() {
 
 void ShownLeaves::flush(const Context& context) {
     Commands commands(context);
-    std::vector<SceneChange> seen;
     while (resident_.hasChanges()) {
         commands.begin();
-        resident_.recordChanges(commands, seen);
+        resident_.recordChanges(commands);
         commands.submitAndWait();
     }
 }
