@@ -169,9 +169,12 @@ TEST_CASE("a folder is streamed SOG, SOG, a training's output or a moving scene,
     }
     place("frame_9.txt", "no scene"), place("frame_10.txt", "no scene"), place("alone_1.ply", withSplats(1));
     CHECK(loadError(root.string()) == four);
-    place("step_10.ply", withSplats(1)), place("step_9.ply", withSplats(1)), place("step_100.ply", withSplats(1));
-    CHECK(contains(loadError(root.string()),
-                   "garden: a moving scene, 3 numbered files from step_9.ply to step_100.ply: these cannot be shown yet"));
+    place("step_10.ply", withSplats(1)), place("step_9.ply", withSplats(2)), place("step_100.ply", withSplats(1));
+    LoadNotes of_moving;
+    CHECK(loadScene(root.string(), 0, &of_moving).size() == 2);
+    REQUIRE(of_moving.lines.size() == 1);
+    CHECK(contains(of_moving.lines[0], "garden: a moving scene of 3 frames, of which"));
+    CHECK(contains(of_moving.lines[0], "step_9.ply was loaded"));
 
     place("point_cloud/iteration_7000/point_cloud.ply", withSplats(7));
     CHECK(loadScene(root.string()).size() == 7);

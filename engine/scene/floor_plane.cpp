@@ -33,7 +33,7 @@ struct Plane {
 
 // Of the box with nine tenths of the samples along each axis: its diagonal; and the middle of all.
 double sizeOf(const std::vector<SplatSample>& samples, glm::dvec3& middle) {
-    glm::dvec3 sides;
+    glm::dvec3 sides(0.0);
     std::vector<double> values(samples.size());
     for (int axis = 0; axis < 3; ++axis) {
         std::ranges::transform(samples, values.begin(), [&](const SplatSample& sample) { return sample.centre[axis]; });

@@ -9,6 +9,7 @@
 #include "engine/scene/ply.h"
 #include "engine/scene/procedural.h"
 #include "engine/scene/scene_folder.h"
+#include "engine/scene/scene_series.h"
 #include "engine/scene/sog.h"
 #include "engine/scene/splat_file.h"
 #include "engine/scene/spz.h"
@@ -104,15 +105,6 @@ const SceneFormat* findFormat(Source& source) {
     std::error_code error;
     static_cast<void>(std::filesystem::directory_iterator(folder.path, error));
     check(!error, "{}: cannot be read: {}", folder.path, error.message());
-    const std::vector<std::string> numbered = findNumberedFiles(folder.path);
-    if (!numbered.empty()) {
-        Source first{numbered.front(), std::make_unique<InputFile>(numbered.front()), folder.level},
-            last{numbered.back(), std::make_unique<InputFile>(numbered.back()), folder.level};
-        const SceneFormat* format = findFormat(first);
-        check(format == nullptr || format != findFormat(last),
-              "{}: a moving scene, {} numbered files from {} to {}: these cannot be shown yet, expected one of its files", folder.path,
-              numbered.size(), std::filesystem::path(first.path).filename().string(), std::filesystem::path(last.path).filename().string());
-    }
     fail(
         "{}: is a directory, expected one with lod-meta.json (streamed SOG), meta.json (SOG), "
         "point_cloud/iteration_N/point_cloud.ply (a training's output) or numbered files of one format (a moving scene)",
@@ -125,18 +117,31 @@ Scene loadFrom(Source& source, LoadNotes& notes, const Progress& progress) {
         return readWhole(*format, source, notes, progress);
     }
     if (source.file == nullptr) {
-        const std::optional<TrainingOutput> training = findTrainingOutput(source.path);
-        if (!training) { refuseFolder(source); }
-        Source newest{training->scene, std::make_unique<InputFile>(training->scene), source.level};
-        Scene scene = loadFrom(newest, notes, progress);
-        notes.lines.push_back(fmt::format("{}: a training's output, of which {} was loaded", source.path, training->scene));
-        return scene;
+        const auto loadOne = [&](const std::string& path, const std::string& of) {
+            Source one{path, std::make_unique<InputFile>(path), source.level};
+            Scene scene = loadFrom(one, notes, progress);
+            notes.lines.push_back(fmt::format("{}: {}, of which {} was loaded", source.path, of, path));
+            return scene;
+        };
+        if (const std::optional<TrainingOutput> training = findTrainingOutput(source.path)) {
+            return loadOne(training->scene, "a training's output");
+        }
+        if (!isMovingScene(source.path)) { refuseFolder(source); }
+        const SceneSeries series(source.path);
+        return loadOne(series.nameOf(0), fmt::format("a moving scene of {} frames", series.size()));
     }
     check(source.file->sizeBytes() > 0, "{}: is empty, expected a scene file: {}", source.path, listFormats());
     fail("{}: not a scene file of a known format, expected {} or builtin:NAME", source.path, listFormats());
 }
 
 }  // namespace
+
+std::string formatOfFile(const std::string& path) {
+    const LevelChoice no_level;
+    Source source{path, std::make_unique<InputFile>(path), no_level};
+    const SceneFormat* const format = findFormat(source);
+    return format == nullptr ? "" : format->name;
+}
 
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes) {
     if (scene.sh_degree <= sh_degree) { return; }

@@ -66,11 +66,14 @@ struct LevelChoice {
 // Called now and then with the share done, 0 to 1.
 using Progress = std::function<void(double)>;
 
-// Loads `source`: a file; a directory, which is a SOG scene or a training's output, of which the newest scene is taken; or builtin:NAME
-// (then `builtin_splats` sets the size, 0 for its default).
+// Loads `source`: a file; a directory, which is a SOG scene, a training's output, of which the newest scene is taken, or a moving scene, of
+// which the first frame is; or builtin:NAME (then `builtin_splats` sets the size, 0 for its default).
 // Needs at most twice the scene's own size in host memory. Throws Error with file, place, what is wrong and what was expected.
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
+
+// What a file is a scene of, by its content: the name of a format, empty where it is none. Throws Error where it cannot be opened.
+std::string formatOfFile(const std::string& path);
 
 // The same of a file that is open, wherever its scene's other files are.
 class InputFile;

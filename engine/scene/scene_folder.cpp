@@ -6,6 +6,8 @@
 #include "engine/scene/streamed_sog.h"
 
 #include <algorithm>
+#include <charconv>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <system_error>
@@ -68,7 +70,7 @@ fs::path findCameraFile(const fs::path& scene) {
     return {};
 }
 
-std::vector<std::string> findNumberedFiles(const fs::path& folder) {
+std::vector<std::vector<NumberedFile>> findNumberedFiles(const fs::path& folder) {
     // By what is left of a name without one of its numbers; a name with several numbers belongs to as many groups.
     std::map<std::string, std::map<std::pair<std::size_t, std::string>, std::string>> groups;
     std::error_code error;
@@ -86,13 +88,19 @@ std::vector<std::string> findNumberedFiles(const fs::path& folder) {
                                                                             entry->path().string());
         }
     }
-    std::vector<std::string> largest;
+    std::vector<std::vector<NumberedFile>> found;
     for (const auto& [pattern, files] : groups) {
-        if (files.size() < 2 || files.size() <= largest.size()) { continue; }
-        largest.clear();
-        for (const auto& [number, file] : files) { largest.push_back(file); }
+        if (files.size() < 2) { continue; }
+        std::vector<NumberedFile>& group = found.emplace_back();
+        for (const auto& [digits, file] : files) {
+            std::uint64_t number = 0;  // of none but zeros
+            const char* const begin = digits.second.data();
+            if (std::from_chars(begin, begin + digits.second.size(), number).ec == std::errc::result_out_of_range) { number = ~number; }
+            group.push_back({file, number});
+        }
     }
-    return largest;
+    std::ranges::stable_sort(found, std::greater{}, [](const std::vector<NumberedFile>& group) { return group.size(); });
+    return found;
 }
 
 }  // namespace binosplat

@@ -1,6 +1,7 @@
 // Folders that are no format of their own: the output of a training, or the numbered files of a moving scene.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,8 +22,12 @@ std::optional<TrainingOutput> findTrainingOutput(const std::filesystem::path& fo
 // there is none.
 std::filesystem::path findCameraFile(const std::filesystem::path& scene);
 
-// Files whose names differ in one number alone, in the order of that number; the largest such group of the folder. Empty: there are no
-// two.
-std::vector<std::string> findNumberedFiles(const std::filesystem::path& folder);
+struct NumberedFile {
+    std::string path;
+    std::uint64_t number = 0;  // beyond what that holds: the highest there is
+};
+
+// Files whose names differ in one number alone, in the order of that number: every such group of two or more, the largest first.
+std::vector<std::vector<NumberedFile>> findNumberedFiles(const std::filesystem::path& folder);
 
 }  // namespace binosplat

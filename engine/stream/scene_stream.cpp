@@ -233,7 +233,7 @@ double SceneStream::share() const {
 
 StreamCounters SceneStream::counters() const {
     const ResidentScene& resident = leaves_->resident();
-    return {resident.splatsAdded(), resident.splatsShown(), leaves_->partCount(), 0};
+    return {resident.splatsAdded(), resident.splatsShown(), leaves_->partCount(), 0, 0};
 }
 
 }  // namespace binosplat

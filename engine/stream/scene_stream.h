@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/stream/level_planner.h"
+#include "engine/stream/live_scene.h"
 #include "engine/stream/shown_leaves.h"
 
 #include <memory>
@@ -23,45 +24,31 @@ struct StreamSettings {
     LoaderSettings loader = {};  // but its `finish`
 };
 
-struct StreamCounters {
-    std::uint64_t splats_resident = 0, splats_read = 0;  // on the device; of these, those that the next frame goes through
-    std::uint64_t chunks_resident = 0;                   // levels of leaves
-    std::uint64_t frames_waited_for_loading = 0;         // update() never waits
-};
-
-class SceneStream {
+class SceneStream final : public LiveScene {
 public:
     // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error where that memory is not to be had, and
     // where no chunk of the coarsest level can be opened.
     SceneStream(const Context& context, std::unique_ptr<ChunkSource> source, StreamSettings settings);
 
-    // What frames render.
-    [[nodiscard]] const GpuScene& scene() const { return leaves_->resident().scene(); }
-    [[nodiscard]] const SceneTraits& traits() const { return leaves_->resident().traits(); }
+    [[nodiscard]] const std::string& name() const override { return source().name(); }
+    [[nodiscard]] const GpuScene& scene() const override { return leaves_->resident().scene(); }
+    [[nodiscard]] const SceneTraits& traits() const override { return leaves_->resident().traits(); }
     [[nodiscard]] const ChunkSource& source() const { return loader_->source(); }
     // What the memory holds, or the whole scene has, if that is less.
     [[nodiscard]] std::uint64_t mostSplats() const;
     // Splats that are chosen, at most; from the next choice on.
     void setSplatBudget(std::uint64_t splats);
 
-    // For whoever shows frame after frame, before each: follows the eyes, takes what was loaded, and goes on with exchanges by a frame of
-    // `step_seconds`. Never waits.
-    void update(std::span<const Eye> eyes, double step_seconds);
-    // For whoever renders pictures: returns when all that these eyes ask for is on the device or goes there with the next frame, apart from
-    // what cannot be had. Always the same splats in the same order for the same calls.
-    void settle(std::span<const Eye> eyes, const Progress& progress = {});
+    void update(std::span<const Eye> eyes, double step_seconds) override;
+    void settle(std::span<const Eye> eyes, const Progress& progress = {}) override;
     // The same of the coarsest level of every leaf alone, so that there is something to see.
     void settleCoarsest(std::span<const Eye> eyes, const Progress& progress = {});
 
-    // Whether update() has nothing left to do for the eyes that it was told last, apart from what cannot be had.
-    [[nodiscard]] bool isSettled() const;
-    // Of what the eyes ask for, the share that is there, 0 to 1.
-    [[nodiscard]] double share() const;
-    [[nodiscard]] StreamCounters counters() const;
-    // What is wrong with files and servers, one sentence each, once.
-    [[nodiscard]] std::vector<std::string> takeLines() { return loader_->takeLines(); }
-    // The same for who must not wait: perhaps later.
-    [[nodiscard]] std::vector<std::string> tryTakeLines() { return loader_->tryTakeLines(); }
+    [[nodiscard]] bool isSettled() const override;
+    [[nodiscard]] double share() const override;
+    [[nodiscard]] StreamCounters counters() const override;
+    [[nodiscard]] std::vector<std::string> takeLines() override { return loader_->takeLines(); }
+    [[nodiscard]] std::vector<std::string> tryTakeLines() override { return loader_->tryTakeLines(); }
 
 private:
     // Wishes for what is chosen and not there.

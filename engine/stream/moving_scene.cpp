@@ -1,0 +1,229 @@
+// From time to scene frames, and from these to the device.
+#include "engine/stream/moving_scene.h"
+
+#include "engine/error.h"
+#include "engine/scene/procedural.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace binosplat {
+namespace {
+
+// A time that should begin a frame may be a little before it.
+constexpr double kHairFrames = 1e-4;
+// Time that goes on by more than that, or back, was set.
+constexpr double kMostStepSeconds = 0.5;
+// For frames with more splats than the sizes of files let expect.
+constexpr double kSpareRoom = 1.25;
+constexpr std::uint32_t kSparePages = 8;
+
+}  // namespace
+
+MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress)
+    : context_(context), series_(std::move(series)), settings_(std::move(settings)) {
+    const auto drawn = [this](Scene scene, LoadNotes& notes) {
+        if (settings_.draw_as) { settings_.draw_as(scene, notes); }
+        return scene;
+    };
+    first_ = drawn(series_.load(series_.sceneOf(0), notes_, progress), notes_);
+    notes_.lines.insert(notes_.lines.end(), series_.lines().begin(), series_.lines().end());
+    traits_ = traitsOf(first_);
+    SeriesLoader::Settings reading;
+    if (settings_.memory_bytes > 0) { reading.most_bytes = settings_.memory_bytes; }
+    reading.threads = settings_.threads;
+    loader_ = std::make_unique<SeriesLoader>(
+        [this, drawn](std::size_t scene) {
+            LoadNotes ignored;
+            return drawn(series_.load(scene, ignored), ignored);
+        },
+        series_.sceneCount(), traits_, reading);
+    shown_ = std::make_shared<const SceneFrame>(makeSceneFrame(first_, traits_));
+    const auto pages = static_cast<double>(shown_->size());
+    ResidentScene::Options options;
+    options.capacity_pages = static_cast<std::uint32_t>(
+                                 std::min(pages * series_.growth() * kSpareRoom, double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
+                             kSparePages;
+    // A scene frame is seen at once or not yet.
+    options.most_bytes_a_frame = options.capacity_pages * ChunkLayout(gpu::kPageSplats, traits_).bytes;
+    resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
+    for (const auto& page : *shown_) { parts_.push_back(resident_->add(PackedPages(page->splats, page->bounds, page->bytes)).value()); }
+    wantFrom(0);
+    thread_ = std::thread([this] { run(); });
+}
+
+MovingScene::~MovingScene() {
+    {
+        const std::lock_guard lock(mutex_);
+        stops_ = true;
+    }
+    asked_changed_.notify_all();
+    thread_.join();
+}
+
+MovingScene::Moment MovingScene::momentAt(double time_s) const {
+    const auto frames = static_cast<double>(series_.size());
+    double place = time_s * settings_.rate_hz;
+    place -= frames * std::floor(place / frames);
+    const double frame = std::floor(place + kHairFrames);
+    if (frame >= frames) { return {}; }
+    const bool is_between = settings_.blend && place - frame > kHairFrames;
+    return {static_cast<std::size_t>(frame), is_between ? static_cast<float>(place - frame) : 0.0f};
+}
+
+// A loop of files need not end as it begins.
+std::size_t MovingScene::sceneAfter(std::size_t frame) const {
+    if (frame + 1 < series_.size()) { return series_.sceneOf(frame + 1); }
+    return series_.sceneOf(isBuiltin(series_.name()) ? 0 : frame);
+}
+
+bool MovingScene::isBetween(Moment moment) const {
+    return moment.share > 0.0f && sceneAfter(moment.frame) != series_.sceneOf(moment.frame);
+}
+
+void MovingScene::wantFrom(std::size_t frame) {
+    if (wanted_from_ == frame) { return; }
+    std::vector<std::size_t> scenes;
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+        const std::size_t scene = series_.sceneOf((frame + i) % series_.size());
+        if (scenes.empty() || scenes.back() != scene) { scenes.push_back(scene); }
+    }
+    if (scenes.size() > 1 && scenes.back() == scenes.front()) { scenes.pop_back(); }
+    if (loader_->tryWant(scenes)) { wanted_from_ = frame; }
+}
+
+std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) const {
+    Question question{shown_, loader_->tryGet(series_.sceneOf(moment.frame)), nullptr, moment, time_set_};
+    if (!question.first) { return std::nullopt; }
+    if (!isBetween(moment)) { return question; }
+    question.second = loader_->tryGet(sceneAfter(moment.frame));
+    // What cannot be had is not waited for.
+    if (!question.second && !loader_->isSurelyBroken(sceneAfter(moment.frame))) { return std::nullopt; }
+    return question;
+}
+
+MovingScene::Frame MovingScene::frameOf(const Question& question) const {
+    if (!question.second || !correspond(*question.first, *question.second, traits_)) { return question.first; }
+    return std::make_shared<const SceneFrame>(between(*question.first, *question.second, question.moment.share, traits_));
+}
+
+void MovingScene::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        asked_changed_.wait(lock, [&] { return stops_ || question_; });
+        if (stops_) { return; }
+        const Question question = *std::exchange(question_, std::nullopt);
+        lock.unlock();
+        Step step{question.from, frameOf(question), question.moment, {}, question.time_set};
+        step.difference = differenceOf(*step.from, *step.to, traits_);
+        lock.lock();
+        answer_ = std::move(step);
+    }
+}
+
+void MovingScene::ask(Moment moment) {
+    std::optional<Question> question = questionFor(moment);
+    if (!question) { return; }
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) { return; }
+    question_ = std::move(question);
+    is_asked_ = true;
+    asked_changed_.notify_all();
+}
+
+std::optional<MovingScene::Step> MovingScene::tryTakeStep() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? std::exchange(answer_, std::nullopt) : std::nullopt;
+}
+
+void MovingScene::take(Step&& step) {
+    moment_ = step.moment;
+    if (step.to->size() > resident_->capacityPages()) {
+        lines_.push_back(fmt::format("{}: has {} splats, there is room for {}, as the sizes of files let expect; it is left out",
+                                     series_.nameOf(series_.sceneOf(step.moment.frame)), splatsIn(*step.to),
+                                     std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats));
+        return;
+    }
+    for (const std::uint32_t page : step.difference.pages) {
+        if (page < parts_.size()) { resident_->remove(parts_[page], ResidentScene::Note::kNone); }
+    }
+    parts_.resize(step.to->size());
+    // The lowest places that are free are those of these pages: splats stay in their order.
+    for (const std::uint32_t page : step.difference.pages) {
+        if (page >= parts_.size()) { continue; }
+        const SplatPage& now = *(*step.to)[page];
+        parts_[page] = resident_->add(PackedPages(now.splats, now.bounds, now.bytes), 1.0f, ResidentScene::Note::kNone).value();
+    }
+    for (const SceneChange& change : step.difference.changes) { resident_->note(change); }
+    shown_ = std::move(step.to);
+}
+
+void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/) {
+    const double passed_s = time_s_ - std::exchange(told_s_, time_s_);
+    const bool goes_on = passed_s >= 0.0 && passed_s <= kMostStepSeconds;
+    const double step_s = goes_on ? passed_s : 0.0;
+    const Moment now = momentAt(time_s_);
+    wantFrom(now.frame);
+    if (!goes_on) {
+        ++time_set_;
+        next_.reset();
+    }
+    if (std::optional<Step> step = tryTakeStep()) {
+        is_asked_ = false;
+        if (step->time_set == time_set_ && step->from == shown_) { next_ = std::move(step); }
+    }
+
+    const auto frames = static_cast<double>(series_.size());
+    const auto placeOf = [](Moment moment) { return static_cast<double>(moment.frame) + static_cast<double>(moment.share); };
+    // How far one lies behind another, the shorter way about the loop.
+    const auto behind = [&](Moment moment, Moment other) {
+        const double distance = placeOf(other) - placeOf(moment);
+        return distance - frames * std::round(distance / frames);
+    };
+    const double early = settings_.blend ? 0.5 * step_s * settings_.rate_hz + kHairFrames : 0.0;
+    if (next_ && behind(next_->moment, now) >= -early) { take(*std::exchange(next_, std::nullopt)); }
+    const bool is_broken = loader_->isSurelyBroken(series_.sceneOf(now.frame));
+    const bool is_late = settings_.blend ? std::abs(behind(moment_, now)) >= 1.0 : moment_.frame != now.frame;
+    if (is_late && !is_broken && late_ != now.frame) {
+        late_ = now.frame;
+        ++late_count_;
+    }
+    Moment following = momentAt(time_s_ + step_s);
+    if (!settings_.blend && following.frame == now.frame && (moment_.frame == now.frame || is_broken)) {
+        following.frame = (now.frame + 1) % series_.size();
+    }
+    // What comes later than that was meant for another pace.
+    if (next_ && behind(following, next_->moment) > kHairFrames) { next_.reset(); }
+    if (!next_ && !is_asked_ && !(following == moment_)) { ask(following); }
+}
+
+void MovingScene::settle(std::span<const Eye> /*eyes*/, const Progress& progress) {
+    const Moment moment = momentAt(time_s_);
+    told_s_ = time_s_;
+    next_.reset();
+    if (moment == moment_) { return; }
+    if (progress) { progress(0.0); }
+    wantFrom(moment.frame);
+    Question question{shown_, loader_->get(series_.sceneOf(moment.frame)), nullptr, moment, ++time_set_};
+    if (isBetween(moment)) { question.second = loader_->get(sceneAfter(moment.frame)); }
+    Step step{shown_, frameOf(question), moment, {}, time_set_};
+    check(step.to->size() <= resident_->capacityPages(), "{}: has {} splats, there is room for {}, as the sizes of files let expect",
+          series_.nameOf(series_.sceneOf(moment.frame)), splatsIn(*step.to), std::uint64_t{resident_->capacityPages()} * gpu::kPageSplats);
+    step.difference = differenceOf(*step.from, *step.to, traits_);
+    take(std::move(step));
+}
+
+bool MovingScene::isSettled() const { return moment_ == momentAt(time_s_) && !resident_->hasChanges(); }
+
+StreamCounters MovingScene::counters() const { return {resident_->splatsAdded(), resident_->splatsShown(), parts_.size(), 0, late_count_}; }
+
+std::vector<std::string> MovingScene::tryTakeLines() {
+    std::vector<std::string> lines = std::exchange(lines_, {}), of_loader = loader_->tryTakeLines();
+    lines.insert(lines.end(), of_loader.begin(), of_loader.end());
+    return lines;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,121 @@
+// A scene that moves, as frames see it: the scene frame of the time, or what lies between two.
+#pragma once
+
+#include "engine/gpu/resident_scene.h"
+#include "engine/scene/scene_series.h"
+#include "engine/stream/live_scene.h"
+#include "engine/stream/series_loader.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace binosplat {
+
+struct MovingSettings {
+    double rate_hz = 30.0;           // scene frames a second
+    bool blend = false;              // show what lies between two frames, where their splats correspond
+    std::uint64_t memory_bytes = 0;  // of the host, for frames that are read ahead; 0: as SeriesLoader has it
+    int threads = 1;                 // that read
+    // As the scene is drawn; on any thread.
+    std::function<void(Scene&, LoadNotes&)> draw_as = {};
+};
+
+class MovingScene final : public LiveScene {
+public:
+    // Reads the first frame; see notes(). Throws Error where that cannot be had, or the device has no memory for it.
+    MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress = {});
+    ~MovingScene() override;
+
+    [[nodiscard]] const std::string& name() const override { return series_.name(); }
+    [[nodiscard]] const GpuScene& scene() const override { return resident_->scene(); }
+    [[nodiscard]] const SceneTraits& traits() const override { return traits_; }
+    [[nodiscard]] const SceneSeries& series() const { return series_; }
+    // How long it takes to begin again.
+    [[nodiscard]] double seconds() const { return static_cast<double>(series_.size()) / settings_.rate_hz; }
+    [[nodiscard]] double rateHz() const { return settings_.rate_hz; }
+    // That of the time, 0 .. size() - 1.
+    [[nodiscard]] std::size_t frameAt(double time_s) const { return momentAt(time_s).frame; }
+    // The first frame, for what asks how a scene lies; once.
+    [[nodiscard]] Scene takeFirst() { return std::move(first_); }
+    [[nodiscard]] const LoadNotes& notes() const { return notes_; }
+
+    // Before or after the loop is within it, too.
+    void setTime(double time_s) override { time_s_ = time_s; }
+    void update(std::span<const Eye> eyes, double step_seconds) override;
+    void settle(std::span<const Eye> eyes, const Progress& progress = {}) override;
+    [[nodiscard]] bool isSettled() const override;
+    [[nodiscard]] double share() const override { return 1.0; }
+    [[nodiscard]] StreamCounters counters() const override;
+    // settle() throws for what it cannot do without; who shows frames is told of what is broken, see tryTakeLines().
+    [[nodiscard]] std::vector<std::string> takeLines() override { return std::exchange(lines_, {}); }
+    [[nodiscard]] std::vector<std::string> tryTakeLines() override;
+
+private:
+    using Frame = SeriesLoader::Frame;
+    // A scene frame, and how far it is on to the next.
+    struct Moment {
+        std::size_t frame = 0;
+        float share = 0.0f;
+        bool operator==(const Moment&) const = default;
+    };
+    // A step from what is shown to another moment.
+    struct Step {
+        Frame from, to;
+        Moment moment;
+        FrameDifference difference;
+        std::uint64_t time_set = 0;
+    };
+    struct Question {
+        Frame from, first, second;  // `second` is null where nothing lies between
+        Moment moment;
+        std::uint64_t time_set = 0;  // so many times before it was asked
+    };
+
+    [[nodiscard]] Moment momentAt(double time_s) const;
+    [[nodiscard]] std::size_t sceneAfter(std::size_t frame) const;
+    [[nodiscard]] bool isBetween(Moment moment) const;
+    [[nodiscard]] Frame frameOf(const Question& question) const;
+    // Where all is read that the moment needs.
+    [[nodiscard]] std::optional<Question> questionFor(Moment moment) const;
+    void wantFrom(std::size_t frame);
+    void ask(Moment moment);
+    [[nodiscard]] std::optional<Step> tryTakeStep();
+    void take(Step&& step);
+    void run();
+
+    const Context& context_;
+    SceneSeries series_;
+    MovingSettings settings_;
+    Scene first_;
+    LoadNotes notes_;
+    SceneTraits traits_;
+    std::unique_ptr<SeriesLoader> loader_;
+    std::unique_ptr<ResidentScene> resident_;
+    std::vector<ResidentScene::Part> parts_;  // by page
+    std::vector<std::string> lines_;          // for takeLines
+    Frame shown_;
+    Moment moment_;  // of what is shown
+    double time_s_ = 0.0, told_s_ = 0.0;
+    std::optional<std::size_t> late_, wanted_from_;
+    std::uint64_t late_count_ = 0;
+    std::uint64_t time_set_ = 0;  // how often the time did not go on by a step
+    bool is_asked_ = false;       // and not answered yet
+    std::optional<Step> next_;
+
+    std::mutex mutex_;  // of what follows
+    std::condition_variable asked_changed_;
+    bool stops_ = false;
+    std::optional<Question> question_;
+    std::optional<Step> answer_;
+    std::thread thread_;  // last: makes steps
+};
+
+}  // namespace binosplat

@@ -1,0 +1,81 @@
+// Reads the frames of a moving scene ahead, on threads of its own, as many as memory allows.
+#pragma once
+
+#include "engine/stream/scene_frames.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace binosplat {
+
+class SeriesLoader {
+public:
+    using Frame = std::shared_ptr<const SceneFrame>;
+    struct Settings {
+        std::uint64_t most_bytes = std::uint64_t{1} << 30;  // of frames that are kept, but at least of kLeastKept
+        int threads = 1;
+    };
+    static constexpr std::size_t kLeastKept = 3;
+    // Called on any thread, for several scenes at a time; throws Error.
+    using Load = std::function<Scene(std::size_t scene)>;
+
+    SeriesLoader(Load load, std::size_t scenes, const SceneTraits& traits, const Settings& settings);
+    SeriesLoader(const SeriesLoader&) = delete;
+    SeriesLoader& operator=(const SeriesLoader&) = delete;
+    // Waits for what is being read.
+    ~SeriesLoader();
+
+    // What will be needed, the next one first; what was read before and is needed last makes room. Waits for nobody: false if the loader
+    // is just looking through its lists, ask again.
+    [[nodiscard]] bool tryWant(const std::vector<std::size_t>& scenes);
+    // Null where it is not there now. Never waits.
+    [[nodiscard]] Frame tryGet(std::size_t scene) const;
+    // Whether it cannot be had. Never waits; perhaps later.
+    [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
+    // Waits until it is there. Throws Error where it cannot be had.
+    [[nodiscard]] Frame get(std::size_t scene);
+    // One sentence for each scene that cannot be had, once.
+    [[nodiscard]] std::vector<std::string> takeLines();
+    [[nodiscard]] std::vector<std::string> tryTakeLines();
+    [[nodiscard]] std::uint64_t bytesKept() const;
+
+private:
+    struct Kept {
+        Frame frame;
+        std::uint64_t bytes = 0;  // beside what the one before it has, too
+    };
+    struct Trouble {
+        std::string what;
+        bool said = false;
+    };
+
+    void run();
+    // With the mutex held. What to read next, once there is room.
+    [[nodiscard]] std::optional<std::size_t> next();
+    [[nodiscard]] std::size_t orderOf(std::size_t scene) const;
+    [[nodiscard]] std::vector<std::string> linesOf();
+
+    Load load_;
+    SceneTraits traits_;
+    Settings settings_;
+
+    mutable std::mutex mutex_;  // of what follows
+    mutable std::condition_variable wanted_changed_, news_;
+    bool stops_ = false;
+    std::vector<std::size_t> wanted_;
+    std::vector<bool> reading_;
+    std::map<std::size_t, Kept> kept_;
+    std::map<std::size_t, Trouble> troubles_;
+    std::uint64_t bytes_ = 0, largest_ = 0;
+    std::vector<std::thread> threads_;  // last
+};
+
+}  // namespace binosplat

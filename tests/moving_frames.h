@@ -1,0 +1,37 @@
+// A scene with a part that slides, by scene frame, as files and as it should be.
+#pragma once
+
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace binosplat::test {
+
+// The atelier, of which what stands before the walls slides to the right and turns as it goes.
+inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
+    Scene scene = makeBuiltin("builtin:atelier", splats);
+    const auto angle = static_cast<float>(0.02 * frame);
+    const glm::quat turn(std::cos(angle), 0.0f, std::sin(angle), 0.0f);
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+        glm::vec3& p = scene.positions[i];
+        if (!(std::abs(p.x) < 0.8f && p.z > 1.5f && p.z < 3.5f && p.y > -1.4f)) { continue; }
+        p.x += static_cast<float>(0.02 * frame);
+        scene.rotations[i] = turn * scene.rotations[i];
+    }
+    return scene;
+}
+
+// Frames 1 to `count` as FOLDER/frame_0001.ply and so on.
+inline void writeSliding(const std::string& folder, int count, std::uint64_t splats = 8'000) {
+    std::filesystem::create_directories(folder);
+    for (int frame = 0; frame < count; ++frame) {
+        writePly(slidingAtelier(frame, splats), (std::filesystem::path(folder) / fmt::format("frame_{:04}.ply", frame + 1)).string());
+    }
+}
+
+}  // namespace binosplat::test
