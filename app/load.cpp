@@ -6,11 +6,13 @@
 #include "engine/error.h"
 #include "engine/gpu/gpu_scene.h"
 #include "engine/scene/address.h"
+#include "engine/scene/scene_series.h"
 #include "engine/web/web_files.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 
 namespace binosplat {
 
@@ -53,14 +55,14 @@ Scene loadWithProgress(const std::string& source, const LoadOptions& options, Lo
     return loadAsAsked(source, options, memory_limit_mib, notes, [&](double share) { line.show(share); });
 }
 
-bool mayStream(const std::string& source, const LoadOptions& options) {
+bool mayLive(const std::string& source, const LoadOptions& options) {
     check(options.splat_budget == 0 || !options.lod, "{}: lod {} is one level, splat-budget chooses among all: expected one of the two",
           source, options.lod.value_or(0));
     if (options.lod) { return false; }
     const bool is_streamed = isStreamedScene(source);
     check(options.splat_budget == 0 || is_streamed,
           "{}: has no levels of detail, expected a streamed SOG scene (lod-meta.json) for --splat-budget to choose among", source);
-    return is_streamed;
+    return is_streamed || isMovingScene(source);
 }
 
 namespace {
@@ -95,10 +97,30 @@ Scene loadCoarsest(const std::string& source, const RunOptions& run, std::size_t
     }
 }
 
+OpenedScene openMoving(const Context& context, const std::string& source, const RunOptions& run, const Progress& progress) {
+    MovingSettings settings;
+    settings.rate_hz = run.load.scene_rate_hz;
+    settings.blend = run.load.scene_blend;
+    settings.memory_bytes = run.memory_limit_mib << 20;
+    settings.threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()) / 2, 1, 4);
+    settings.draw_as = [load = run.load](Scene& scene, LoadNotes& notes) { drawAs(load, scene, notes); };
+    auto moving = std::make_unique<MovingScene>(context, SceneSeries(source), std::move(settings), progress);
+    OpenedScene scene;
+    scene.moving = moving.get();
+    scene.sample = moving->takeFirst();
+    scene.sample.name = source;
+    scene.notes = moving->notes();
+    scene.notes.lines.push_back(
+        fmt::format("{}: a moving scene of {} frames, {} a second", source, moving->series().size(), run.load.scene_rate_hz));
+    scene.live = std::move(moving);
+    return scene;
+}
+
 }  // namespace
 
-std::optional<StreamedScene> openStreamed(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
-                                          const Progress& progress) {
+std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
+                                    const Progress& progress) {
+    if (!isStreamedScene(source)) { return openMoving(context, source, run, progress); }
     const LoadOptions& load = run.load;
     const bool whole_if_it_fits = purpose == StreamFor::kPictures && load.splat_budget == 0;
     // Nothing is fetched only to find that out.
@@ -107,8 +129,8 @@ std::optional<StreamedScene> openStreamed(const Context& context, const std::str
     web.fetch.attempts = 2;  // the loader tries again by itself
     auto chunks = std::make_unique<ChunkSource>(source, web, progress);
     if (whole_if_it_fits && fitsWhole(context, *chunks, run)) { return std::nullopt; }
-    StreamedScene scene;
-    scene.coarsest = loadCoarsest(source, run, chunks->meta().levels.size(), scene.notes, progress);
+    OpenedScene scene;
+    scene.sample = loadCoarsest(source, run, chunks->meta().levels.size(), scene.notes, progress);
     StreamSettings settings;
     settings.splat_budget = load.splat_budget;
     if (load.sh_degree) { settings.sh_degree = static_cast<int>(*load.sh_degree); }
@@ -119,32 +141,34 @@ std::optional<StreamedScene> openStreamed(const Context& context, const std::str
     // Which level that was is nobody's concern.
     std::erase_if(scene.notes.lines, [](const std::string& line) { return line.find(": level of detail ") != std::string::npos; });
     scene.notes.lines.push_back(fmt::format("{}: streamed, {} leaves in levels chosen by what is seen", source, chunks->leaves().size()));
-    scene.stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);
+    auto stream = std::make_unique<SceneStream>(context, std::move(chunks), settings);
+    scene.stream = stream.get();
+    scene.live = std::move(stream);
     return scene;
 }
 
 namespace {
 
-void settle(SceneStream& stream, std::span<const Eye> eyes, const Progress& progress) {
-    stream.settle(eyes, [&](double share) {
+void settle(LiveScene& scene, std::span<const Eye> eyes, const Progress& progress) {
+    scene.settle(eyes, [&](double share) {
         stopIfInterrupted();
         if (progress) { progress(share); }
     });
-    for (const std::string& said : stream.takeLines()) { fmt::print(stderr, "binosplat: {}\n", said); }
+    for (const std::string& said : scene.takeLines()) { fmt::print(stderr, "binosplat: {}\n", said); }
 }
 
 }  // namespace
 
-void settleWithProgress(SceneStream& stream, std::span<const Eye> eyes) {
-    ProgressLine line("loading what is seen of " + stream.source().name());
-    settle(stream, eyes, [&](double share) { line.show(share); });
+void settleWithProgress(LiveScene& scene, std::span<const Eye> eyes) {
+    ProgressLine line("loading what is seen of " + scene.name());
+    settle(scene, eyes, [&](double share) { line.show(share); });
 }
 
-void settleQuietly(SceneStream& stream, std::span<const Eye> eyes) { settle(stream, eyes, {}); }
+void settleQuietly(LiveScene& scene, std::span<const Eye> eyes) { settle(scene, eyes, {}); }
 
-FrameCounters::Streaming streamingOf(const SceneStream& stream) {
-    const StreamCounters counters = stream.counters();
-    return {counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading};
+FrameCounters::Streaming streamingOf(const LiveScene& scene) {
+    const StreamCounters counters = scene.counters();
+    return {counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading, counters.scene_frames_late};
 }
 
 Scene loadAs(const RunOptions& run, const std::string& source, std::uint64_t builtin_splats) {

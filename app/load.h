@@ -4,6 +4,7 @@
 #include "app/options/options.h"
 #include "engine/frame/counters.h"
 #include "engine/scene/scene.h"
+#include "engine/stream/moving_scene.h"
 #include "engine/stream/scene_stream.h"
 
 #include <cstdint>
@@ -24,11 +25,13 @@ Scene loadAsAsked(const std::string& source, const LoadOptions& options, std::ui
 // With progress on the terminal.
 Scene loadWithProgress(const std::string& source, const LoadOptions& options, LoadNotes& notes, std::uint64_t memory_limit_mib = 0);
 
-// A streamed scene that is not loaded whole.
-struct StreamedScene {
-    std::unique_ptr<SceneStream> stream;
-    Scene coarsest;   // its coarsest level, for what asks how a scene lies
-    LoadNotes notes;  // of that
+// A scene that is not loaded whole: streamed, or moving.
+struct OpenedScene {
+    std::unique_ptr<LiveScene> live;
+    SceneStream* stream = nullptr;  // the same, where it is streamed
+    MovingScene* moving = nullptr;  // likewise
+    Scene sample;                   // its coarsest level or its first frame, for what asks how a scene lies
+    LoadNotes notes;                // of that
 };
 enum class StreamFor {
     kPictures,  // loaded whole where its finest level fits and nobody asks for less
@@ -36,15 +39,15 @@ enum class StreamFor {
 };
 // Whether `source` is one, and is not to be loaded whole as a level that the options name. Throws Error where the options ask for splats of
 // a scene that has no levels to choose from, or for a level as well.
-bool mayStream(const std::string& source, const LoadOptions& options);
-// Of a source that may stream; empty where it is to be loaded whole.
-std::optional<StreamedScene> openStreamed(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
-                                          const Progress& progress = {});
-// Until all is there that the eyes ask for, with progress on the terminal, or without. Says what cannot be had.
-void settleWithProgress(SceneStream& stream, std::span<const Eye> eyes);
-void settleQuietly(SceneStream& stream, std::span<const Eye> eyes);
-// What there is of a streamed scene, for reports.
-FrameCounters::Streaming streamingOf(const SceneStream& stream);
+bool mayLive(const std::string& source, const LoadOptions& options);
+// Of such a source; empty where it is to be loaded whole all the same.
+std::optional<OpenedScene> openLive(const Context& context, const std::string& source, const RunOptions& run, StreamFor purpose,
+                                    const Progress& progress = {});
+// Until all is there that the eyes and the time ask for, with progress on the terminal, or without. Says what cannot be had.
+void settleWithProgress(LiveScene& scene, std::span<const Eye> eyes);
+void settleQuietly(LiveScene& scene, std::span<const Eye> eyes);
+// What there is of it, for reports.
+FrameCounters::Streaming streamingOf(const LiveScene& scene);
 
 // For commands that print no notes.
 Scene loadAs(const RunOptions& run, const std::string& source, std::uint64_t builtin_splats = 0);

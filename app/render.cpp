@@ -54,11 +54,11 @@ FrameResult renderTimed(StereoFrame& frame, std::span<const Eye> eyes, const Fra
 }
 
 // The options with what they left to the file and the memory.
-RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const SceneStream* stream) {
+RenderOptions asUsed(RenderOptions options, const Scene& scene, const LoadNotes& notes, const LiveScene* live) {
     LoadOptions& load = options.run.load;
-    if (stream != nullptr) {
-        load.sh_degree = static_cast<std::uint32_t>(stream->traits().sh_degree);
-        load.antialiased = stream->traits().splat_kind == gpu::kAntialiasedGaussians;
+    if (live != nullptr) {
+        load.sh_degree = static_cast<std::uint32_t>(live->traits().sh_degree);
+        load.antialiased = live->traits().splat_kind == gpu::kAntialiasedGaussians;
     } else {
         if (!notes.level_splats.empty()) { load.lod = notes.level; }
         load.sh_degree = static_cast<std::uint32_t>(scene.sh_degree);
@@ -93,15 +93,15 @@ void runRender(const RenderOptions& options) {
     LoadNotes notes;
     Scene scene;
     std::optional<const Context> opened;
-    std::optional<StreamedScene> streamed;
-    if (mayStream(options.scene, options.run.load)) {
+    std::optional<OpenedScene> opened_scene;
+    if (mayLive(options.scene, options.run.load)) {
         opened.emplace(contextOptions(options.run));
-        streamed = openStreamed(*opened, options.scene, options.run, StreamFor::kPictures);
+        opened_scene = openLive(*opened, options.scene, options.run, StreamFor::kPictures);
     }
-    SceneStream* const stream = streamed ? streamed->stream.get() : nullptr;
-    if (streamed) {
-        scene = std::move(streamed->coarsest);
-        notes = std::move(streamed->notes);
+    LiveScene* const live = opened_scene ? opened_scene->live.get() : nullptr;
+    if (opened_scene) {
+        scene = std::move(opened_scene->sample);
+        notes = std::move(opened_scene->notes);
     } else {
         scene = loadWithProgress(options.scene, options.run.load, notes, options.run.memory_limit_mib);
     }
@@ -109,12 +109,12 @@ void runRender(const RenderOptions& options) {
     if (!opened) { opened.emplace(contextOptions(options.run)); }
     const Context& context = *opened;
     std::optional<const GpuScene> whole;
-    if (stream == nullptr) {
+    if (live == nullptr) {
         ProgressLine line("uploading " + options.scene);
         whole.emplace(context, scene, [&](double share) { line.show(share); });
     }
-    const GpuScene& gpu_scene = whole ? *whole : stream->scene();
-    const RenderOptions used = asUsed(options, scene, notes, stream);
+    const GpuScene& gpu_scene = whole ? *whole : live->scene();
+    const RenderOptions used = asUsed(options, scene, notes, live);
     const std::vector<glm::vec3> positions = std::move(scene.positions);  // for a camera that sees none of them
     scene = {};
 
@@ -132,15 +132,15 @@ void runRender(const RenderOptions& options) {
     if (path) {
         const double units_per_metre = 1.0 / options.run.metres_per_unit;
         const PathReport said{context.deviceName(), used, cameras,
-                              renderPath(frame, stream, settings, cameras, units_per_metre, *path, files)};
+                              renderPath(frame, live, settings, cameras, units_per_metre, *path, files)};
         report(said);
         warnOfBlindFrames(said, positions);
     } else {
         settings.keep_classes = true;
         const std::span<const Eye> eyes = mode == Mode::kMono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        if (stream != nullptr) { settleWithProgress(*stream, eyes); }
+        if (live != nullptr) { settleWithProgress(*live, eyes); }
         FrameResult result = renderTimed(frame, eyes, settings);
-        if (stream != nullptr) { result.counters.streaming = streamingOf(*stream); }
+        if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         writePictures(files, frame, settings);
         report(FrameReport{context.deviceName(), used, cameras, result});
         for (const std::string& phrase : result.left_out) { fmt::print("  left out: {}\n", phrase); }

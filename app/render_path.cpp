@@ -60,7 +60,7 @@ HeadPath readHeadPath(const RenderOptions& options) {
     return {std::move(motion), std::move(times_s)};
 }
 
-std::vector<PathFrame> renderPath(StereoFrame& frame, SceneStream* stream, const FrameSettings& path_settings, const Cameras& start,
+std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files) {
     FrameSettings settings = path_settings;
     settings.keep_past = true;
@@ -71,12 +71,15 @@ std::vector<PathFrame> renderPath(StereoFrame& frame, SceneStream* stream, const
         const Pose world_from_middle = path.motion.cameraAt(time_s, start.middle.world_from_camera, units_per_metre);
         const Cameras cameras = moveCameras(start, world_from_middle);
         const std::span<const Eye> eyes = mono ? std::span(&cameras.middle, 1) : std::span<const Eye>(cameras.eyes);
-        if (stream != nullptr) { settleQuietly(*stream, eyes); }
+        if (live != nullptr) {
+            live->setTime(time_s - path.times_s.front());
+            settleQuietly(*live, eyes);
+        }
         // The first frame of a device makes its kernels, which the report is not about.
         if (frames.empty()) { frame.render(eyes, settings); }
         line.show(static_cast<double>(frames.size()) / static_cast<double>(path.times_s.size()));
         FrameResult result = frame.render(eyes, settings);
-        if (stream != nullptr) { result.counters.streaming = streamingOf(*stream); }
+        if (live != nullptr) { result.counters.streaming = streamingOf(*live); }
         int eye = 0;
         for (const std::string_view name : eyeNames(mono)) {
             stopIfInterrupted();

@@ -6,7 +6,7 @@
 #include "app/report/report.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/output_files.h"
-#include "engine/stream/scene_stream.h"
+#include "engine/stream/live_scene.h"
 
 #include <vector>
 
@@ -22,8 +22,8 @@ struct HeadPath {
 HeadPath readHeadPath(const RenderOptions& options);
 
 // Every frame's pictures, staged in `files`; cameras start as `start` and move with the head. Each frame waits until all is there that it
-// asks for of a `stream`, which is null where the scene is whole.
-std::vector<PathFrame> renderPath(StereoFrame& frame, SceneStream* stream, const FrameSettings& settings, const Cameras& start,
+// asks for of a `live` scene, which is null where the scene is whole; one that moves begins with the first frame.
+std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& settings, const Cameras& start,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files);
 
 }  // namespace binosplat

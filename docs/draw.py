@@ -20,6 +20,8 @@ WORDS = {
     "input/menu/click": "menu",
     "input/y/click": "Y",
     "input/b/click": "B",
+    "input/x/click": "X",
+    "input/a/click": "A",
     "input/select/value": "pinch",
     "input/aim_activate_ext/value": "pinch",
     "input/grasp_ext/value": "fist",
@@ -30,7 +32,7 @@ SHAPE = 'stroke="#444" stroke-width="2"'
 
 
 def read_profiles():
-    """(path, trigger, squeeze, stick, stick_click, stick_press, (menu left, menu right), haptic) of each row of kProfiles, or None."""
+    """(path, trigger, squeeze, stick, stick_click, stick_press, (menu left, menu right), (play left, play right), haptic) of each row of kProfiles, or None."""
     text = (ROOT / "xr" / "bindings.cpp").read_text()
     values = dict(re.findall(r'\*?(k\w+) = ("[^"]*")', text))
     values |= dict(re.findall(r"\b(k\w+)\{((?:\"[^\"]*\"|nullptr), (?:\"[^\"]*\"|nullptr))\}", text))
@@ -38,8 +40,10 @@ def read_profiles():
     profiles = []
     for row in re.findall(r"\{((?:[^{}]|\{[^{}]*\})*)\}", table[: table.index("};\n")]):
         words = re.findall(r'"[^"]*"|\w+', re.sub(r"\bk[A-Z]\w*", lambda match: values[match.group()], row))
-        path, _, trigger, squeeze, stick, click, press, left, right, haptic = (None if w == "nullptr" else w.strip('"') for w in words)
-        profiles.append((path, trigger, squeeze, stick, click, press, (left, right), haptic))
+        path, _, trigger, squeeze, stick, click, press, left, right, play_left, play_right, haptic = (
+            None if w == "nullptr" else w.strip('"') for w in words
+        )
+        profiles.append((path, trigger, squeeze, stick, click, press, (left, right), (play_left, play_right), haptic))
     return profiles
 
 
@@ -55,7 +59,7 @@ def label(side, y, part_x, part_y, text):
 
 def draw_side(profile, side):
     """Parts lie mirrored on the two sides; x grows towards the middle between them."""
-    _, trigger, squeeze, stick, click, press, menus, haptic = profile
+    _, trigger, squeeze, stick, click, press, menus, plays, haptic = profile
     inwards, x, is_hand = (-1, 1)[side == 0], HAND_X[side], haptic is None
     svg = ""
     if is_hand:
@@ -84,17 +88,20 @@ def draw_side(profile, side):
         y = 88 if is_above else 122
         svg += f'  <circle cx="{x - inwards * 12}" cy="{y}" r="7" fill="#d8c79f" {SHAPE}/>\n'
         svg += label(side, 98 if is_above else 134, -inwards * 12, y, WORDS[menus[side]] + ": the panel goes or comes")
+    if plays[side]:
+        svg += f'  <circle cx="{x - inwards * 2}" cy="138" r="7" fill="#c4b5d8" {SHAPE}/>\n'
+        svg += label(side, 154, -inwards * 2, 138, WORDS[plays[side]] + ": a moving scene rests or plays")
     if squeeze:
         if not is_hand:
             svg += f'  <rect x="{x - inwards * 32 - 9}" y="146" width="18" height="40" rx="6" fill="#a9d89f" {SHAPE}/>\n'
-        svg += label(side, 174, -inwards * (26 if is_hand else 32), 166, WORDS[squeeze] + ": hold the scene, or the panel")
+        svg += label(side, 178, -inwards * (26 if is_hand else 32), 166, WORDS[squeeze] + ": hold the scene, or the panel")
     return svg
 
 
 def draw_controls(out):
     families = {}
     for profile in read_profiles():
-        families.setdefault(profile[1:7], []).append(profile)
+        families.setdefault(profile[1:8], []).append(profile)
     out.mkdir(parents=True, exist_ok=True)
     for profiles in families.values():
         svg = (

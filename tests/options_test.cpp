@@ -136,7 +136,7 @@ TEST_CASE("defaultConfigIsWhatTheTableOfOptionsSays") {
         ++keys;
         CAPTURE(line);
         line = line.substr(is_comment ? 2 : 0);
-        if (line.starts_with("scene-") || line.starts_with("units-")) {
+        if (table == "[view]" && (line.starts_with("scene-") || line.starts_with("units-"))) {
             placement += line + "\n";
             continue;
         }

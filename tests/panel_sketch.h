@@ -106,6 +106,16 @@ inline glm::dvec2 placeOf(const std::string& name, bool with_all = false, PanelP
 // The same of the page of methods, which the panel opens with where the config says panel-page = "method".
 inline glm::dvec2 onMethod(const std::string& name, bool with_all = false) { return placeOf(name, with_all, PanelPage::kMethod); }
 
+// The same of the page of a scene that moves, whose panel has one tab more; `plays` as it does then.
+inline glm::dvec2 placeOfTime(const std::string& name, bool plays, PanelPage page = PanelPage::kTime) {
+    PanelSketch sketch;
+    sketch.settings.page = page;
+    sketch.status.time = ShownTime{.plays = plays};
+    const WidgetPlaces all = sketch.draw().places;
+    REQUIRE_MESSAGE(all.contains(name), name);
+    return all.at(name) / glm::dvec2(kPanelPx);
+}
+
 // The same of the page of scenes, with `folder` open.
 inline glm::dvec2 placeOfScene(const std::string& name, const std::string& folder) {
     PanelSketch sketch;

@@ -2,6 +2,7 @@
 #include "app/options/option_table.h"
 #include "app/view/panel/shown_text.h"
 #include "app/view/scenes/recent_scenes.h"
+#include "app/view/scenes/scene_clock.h"
 #include "app/view/settings/view_settings_table.h"
 #include "engine/error.h"
 #include "engine/platform.h"
@@ -38,7 +39,8 @@ TEST_CASE("every widget lies on the panel, none on another, on each page") {
         PanelSketch sketch;
         sketch.status.can_reload_shaders = sketch.status.can_pass_through = shaders;
         if (shaders) { sketch.status.refresh_rates = {72.0, 80.0, 90.0, 120.0, 144.0}; }
-        for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
+        if (shaders) { sketch.status.time = ShownTime{11, 60, 30.0, true, 3}; }
+        for (const Page page : {Page::kView, Page::kScenes, Page::kMethod, Page::kTime}) {
             sketch.settings.page = page;
             sketch.chooser.showFolder(kBuiltinFolder);
             const WidgetPlaces places = sketch.draw().places;
@@ -65,7 +67,8 @@ TEST_CASE("what one points at is 1.5 degrees high at least, and what is used mos
         sketch.draw(&place);
         return ImGui::GetCurrentContext()->HoveredId;
     };
-    for (const Page page : {Page::kView, Page::kScenes, Page::kMethod}) {
+    sketch.status.time = ShownTime{};
+    for (const Page page : {Page::kView, Page::kScenes, Page::kMethod, Page::kTime}) {
         sketch.settings.page = page;
         sketch.chooser.showFolder(kBuiltinFolder);
         const WidgetPlaces places = sketch.draw().places;
@@ -73,7 +76,9 @@ TEST_CASE("what one points at is 1.5 degrees high at least, and what is used mos
             const ImGuiID id = hoveredAt(place, 0.0);
             CAPTURE(name);
             CHECK((id != 0 || name == "Up"));  // there is none above
-            const bool is_large = std::ranges::count(std::array{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset"}, name) != 0;
+            const bool is_large =
+                std::ranges::count(std::array{"Sharp", "Balanced", "Fast", "Recentre", "Level", "Reset", "Step back", "Pause", "Step on"},
+                                   name) != 0;
             for (const double side : {-0.97, 0.97}) { CHECK(hoveredAt(place, side * half_px * (is_large ? 2.0 : 1.0)) == id); }
         }
     }
@@ -115,6 +120,59 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.click("Next viewpoint").viewpoint_step == 1);
     CHECK(sketch.click("Previous viewpoint").viewpoint_step == -1);
     CHECK(sketch.click("Keep this one").keep_viewpoint);
+}
+
+TEST_CASE("a scene that moves has a page of its own, with what lets it rest, step, and go to a frame") {
+    PanelSketch sketch;
+    CHECK_FALSE(sketch.draw().places.contains("Time"));
+    sketch.status.time = ShownTime{11, 60, 30.0, true, 0};
+    sketch.click("Time");
+    CHECK(sketch.settings.page == Page::kTime);
+    CHECK(sketch.click("Pause").play);
+    sketch.status.time->plays = false;
+    CHECK(sketch.click("Play").play);
+    CHECK(sketch.click("Step on").frame_step == 1);
+    CHECK(sketch.click("Step back").frame_step == -1);
+    // The handle's ends are those of the line.
+    glm::dvec2 place = sketch.draw().places.at("frame");
+    place.x = 0.5 * kPanelPx.x;
+    sketch.draw(&place);
+    const std::optional<std::size_t> middle = sketch.draw(&place, true).frame;
+    REQUIRE(middle.has_value());
+    CHECK(std::abs(static_cast<int>(*middle) - 29) <= 1);
+    place.x = kPanelPx.x - 1.0;
+    CHECK(sketch.draw(&place, true).frame == 59);
+    sketch.draw(&place);
+    // The next scene stays as it is.
+    sketch.status.time.reset();
+    sketch.draw();
+    CHECK(sketch.settings.page == Page::kView);
+}
+
+TEST_CASE("the time of a scene that moves goes on while it plays, rests, steps around, and goes to a frame") {
+    SceneClock clock(10.0, 5);
+    CHECK(clock.frame() == 0);
+    for (int i = 0; i < 7; ++i) { clock.pass(0.1); }
+    CHECK(clock.time_s() == doctest::Approx(0.7));
+    CHECK(clock.frame() == 2);
+    clock.togglePlaying();
+    clock.pass(10.0);
+    CHECK(clock.frame() == 2);
+    clock.step(1);
+    CHECK(clock.frame() == 3);
+    clock.step(2);
+    CHECK(clock.frame() == 0);
+    clock.step(-1);
+    CHECK(clock.frame() == 4);
+    CHECK_FALSE(clock.plays());
+    clock.togglePlaying();
+    clock.goTo(1);
+    clock.pass(0.1);
+    CHECK(clock.frame() == 2);
+    clock.goTo(99);
+    CHECK(clock.frame() == 4);
+    clock.step(1);
+    CHECK_FALSE(clock.plays());
 }
 
 TEST_CASE("a picture of a scene lies in the font's texture as it is, and letters stay there") {

@@ -18,6 +18,7 @@ struct ProfileBindings {
     const char* stick_click;          // for pads that thumbs rest on: the stick counts while this is pressed
     const char* stick_press;          // for sticks that can be pressed in
     std::array<const char*, 2> menu;  // left, right
+    std::array<const char*, 2> play;  // likewise
     const char* haptic;
 };
 

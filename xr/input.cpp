@@ -27,6 +27,7 @@ Input::Input(const Session& session)
       stick_click_(actions_.make("pad", "Press the pad to move and turn", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       stick_press_(actions_.make("viewpoint", "Next viewpoint, and back on the left", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       menu_(actions_.make("menu", "Show or hide the panel", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
+      play_(actions_.make("play", "Play a scene that moves, or have it rest", XR_ACTION_TYPE_BOOLEAN_INPUT, hands_)),
       haptic_(actions_.make("pulse", "Feel the panel", XR_ACTION_TYPE_VIBRATION_OUTPUT, hands_)),
       gaze_(session, actions_) {
     suggestBindings();
@@ -57,6 +58,7 @@ void Input::suggestBindings() const {
             bind(stick_click_, profile.stick_click);
             bind(stick_press_, profile.stick_press);
             bind(menu_, profile.menu[h]);
+            bind(play_, profile.play[h]);
             bind(haptic_, profile.haptic);
         }
         // A runtime need not know every controller.
@@ -72,7 +74,7 @@ std::array<Hand, 2> Input::read() {
     const bool was_at_rest = std::exchange(is_at_rest_, !is_focused);
     const bool is_new = std::exchange(times_focused_, session_.timesFocused()) != session_.timesFocused();
     if (!is_focused || is_new) {
-        for (auto* holds : {&clicks_, &grabs_, &menus_, &presses_}) {
+        for (auto* holds : {&clicks_, &grabs_, &menus_, &presses_, &plays_}) {
             for (Hold& hold : *holds) { hold.forget(); }
         }
     }
@@ -96,6 +98,7 @@ void Input::readHand(std::size_t h, Hand& hand) {
         return hold.update(pressed ? std::optional(*pressed ? 1.0 : 0.0) : std::nullopt);
     };
     hand.menu = isHeld(menu_, menus_[h]);
+    hand.play = isHeld(play_, plays_[h]);
     hand.stick_presses = isHeld(stick_press_, presses_[h]);
 }
 

@@ -18,6 +18,7 @@ struct Hand {
     bool clicks = false, grabs = false;  // trigger and squeeze, with hysteresis
     glm::dvec2 stick{0.0};               // right and up are positive; of a pad, only while it is pressed
     bool menu = false;
+    bool play = false;           // the lower button
     bool stick_presses = false;  // it is pressed in; never of a pad
 };
 
@@ -62,10 +63,10 @@ private:
     HandTracking tracking_;
     Actions actions_;
     std::array<XrPath, 2> hands_;
-    XrAction aim_, grip_, trigger_, squeeze_, stick_, stick_click_, stick_press_, menu_, haptic_;
+    XrAction aim_, grip_, trigger_, squeeze_, stick_, stick_click_, stick_press_, menu_, play_, haptic_;
     EyeGaze gaze_;
     std::array<OwnedSpace, 2> aim_spaces_, grip_spaces_;
-    std::array<Hold, 2> clicks_, grabs_, menus_, presses_;
+    std::array<Hold, 2> clicks_, grabs_, menus_, presses_, plays_;
     bool pulses_ = true;       // until one fails
     int times_focused_ = 0;    // of the session, as of the last read()
     bool is_at_rest_ = false;  // the same

@@ -59,7 +59,7 @@ std::vector<BenchResult> benchScene(const Context& context, const BenchPlan& pla
                 if (size_px.x > 0) { run.camera.size_px = size_px; }
                 if (!headset.empty()) { run.camera.headset = headset; }
                 const Cameras cameras = makeCameras(run, readCameraFiles(run.camera), scene);
-                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset, loaded.stream()};
+                const BenchPoint point{gpu_scene, scene, run, cameras, series.name, view.name, run.camera.headset, loaded.live()};
                 std::ranges::move(benchPoint(context, point, plan), std::back_inserter(results));
                 progress.next();
             }

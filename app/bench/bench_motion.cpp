@@ -17,10 +17,10 @@ namespace binosplat {
 
 namespace {
 
-void setStreaming(std::span<MotionFrame> frames, const SceneStream& stream) {
+void setStreaming(std::span<MotionFrame> frames, const LiveScene& live) {
     for (MotionFrame& frame : frames) {
-        frame.streaming = streamingOf(stream);
-        frame.splats_read = stream.counters().splats_read;
+        frame.streaming = streamingOf(live);
+        frame.splats_read = live.counters().splats_read;
     }
 }
 
@@ -36,10 +36,13 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
     const auto camerasAt = [&](double time_s) {
         const Cameras cameras = moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
-        if (loaded.stream() != nullptr) { settleQuietly(*loaded.stream(), cameras.eyes); }
+        if (loaded.live() != nullptr) {
+            loaded.live()->setTime(time_s - times_s.front());
+            settleQuietly(*loaded.live(), cameras.eyes);
+        }
         return cameras;
     };
-    if (loaded.stream() != nullptr) { settleQuietly(*loaded.stream(), start.eyes); }
+    if (loaded.live() != nullptr) { settleQuietly(*loaded.live(), start.eyes); }
     // A GPU shows how fast it is only while nobody keeps it waiting: its times are those of a run without pictures.
     std::vector<std::vector<FrameResult>> timed;
     if (!context.isSoftware()) {
@@ -57,7 +60,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
         }
         const std::size_t first = run.frames.size();
         point.play(camerasAt(times_s[i]), i, times_s[i], run.frames);
-        if (loaded.stream() != nullptr) { setStreaming(std::span(run.frames).subspan(first), *loaded.stream()); }
+        if (loaded.live() != nullptr) { setStreaming(std::span(run.frames).subspan(first), *loaded.live()); }
         for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }
         progress.show(static_cast<double>(i) / static_cast<double>(times_s.size()));
     }

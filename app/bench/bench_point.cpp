@@ -38,7 +38,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.scene = point.scene.name;
     result.view = point.view;
     result.headset = point.headset;
-    result.splats = point.stream != nullptr ? point.stream->counters().splats_read : point.scene.size();
+    result.splats = point.live != nullptr ? point.live->counters().splats_read : point.scene.size();
     result.backbone = point.scene.isGaussian3d() ? "3DGS" : "2DGS";
     result.size_px = point.cameras.middle.size_px;
     result.method = runner.method.name;
@@ -53,9 +53,9 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
     result.least_ms = std::ranges::min(runner.total_ms);
     result.most_ms = std::ranges::max(runner.total_ms);
     result.counters = runner.last.counters.named();
-    if (point.stream != nullptr && !runner.is_twin) {
+    if (point.live != nullptr && !runner.is_twin) {
         FrameCounters counters = runner.last.counters;
-        counters.streaming = streamingOf(*point.stream);
+        counters.streaming = streamingOf(*point.live);
         result.counters = counters.named();
     }
     result.counters.merge(runner.compared.counters.named());  // those that cost time
@@ -165,7 +165,7 @@ void warmUp(const Context& context, std::uint32_t rounds, const std::function<vo
 
 std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& point, const BenchPlan& plan) {
     const CameraOptions& camera = point.run.camera;
-    if (point.stream != nullptr) { settleQuietly(*point.stream, point.cameras.eyes); }
+    if (point.live != nullptr) { settleQuietly(*point.live, point.cameras.eyes); }
     MethodFrames frames(context, point.gpu_scene);
     std::map<std::optional<Order>, Image> full_by_order;
     for (const BenchMethod& method : plan.methods) {
@@ -186,7 +186,7 @@ std::vector<BenchResult> benchPoint(const Context& context, const BenchPoint& po
     for (std::uint32_t i = 0; i < plan.repeats; ++i) {
         for (Runner& runner : runners) { runner.count(frames.render(point.cameras, camera, runner.method.stereo).result); }
     }
-    if (plan.twin && point.stream == nullptr) {
+    if (plan.twin && point.live == nullptr) {
         for (std::uint32_t i = 0; i < plan.repeats; ++i) { twin.count(renderTwin(point)); }
         runners.push_back(twin);
     }

@@ -6,7 +6,7 @@
 #include "app/options/camera_options.h"
 #include "engine/frame/stereo_frame.h"
 #include "engine/scene/scene.h"
-#include "engine/stream/scene_stream.h"
+#include "engine/stream/live_scene.h"
 
 #include <functional>
 #include <memory>
@@ -53,7 +53,7 @@ struct BenchPoint {
     const RunOptions& run;
     const Cameras& cameras;
     std::string series, view, headset;
-    SceneStream* stream = nullptr;  // where the scene is streamed; `scene` is its coarsest level then
+    LiveScene* live = nullptr;  // where it is streamed or moves; `scene` is a sample of it then
 };
 
 // Renders `round` until the device is as fast as it gets: `rounds` times, and two seconds long on a GPU, whose clocks fall while it waits

@@ -1,4 +1,4 @@
-// A scene as `bench` measures it: whole on the device, or streamed where the options have it so.
+// A scene as `bench` measures it: whole on the device, streamed where the options have it so, or moving.
 #pragma once
 
 #include "app/load.h"
@@ -12,20 +12,20 @@ namespace binosplat {
 class BenchScene {
 public:
     BenchScene(const Context& context, const RunOptions& run, const std::string& source, std::uint64_t builtin_splats = 0)
-        : streamed_(mayStream(source, run.load) ? openStreamed(context, source, run, StreamFor::kPictures) : std::nullopt) {
-        if (streamed_) { return; }
+        : opened_(builtin_splats == 0 && mayLive(source, run.load) ? openLive(context, source, run, StreamFor::kPictures) : std::nullopt) {
+        if (opened_) { return; }
         scene_ = loadAs(run, source, builtin_splats);
         whole_.emplace(context, scene_);
     }
 
-    // All of it on the host, or its coarsest level.
-    [[nodiscard]] const Scene& scene() const { return streamed_ ? streamed_->coarsest : scene_; }
-    [[nodiscard]] const GpuScene& gpuScene() const { return whole_ ? *whole_ : streamed_->stream->scene(); }
+    // All of it on the host, its coarsest level, or its first frame.
+    [[nodiscard]] const Scene& scene() const { return opened_ ? opened_->sample : scene_; }
+    [[nodiscard]] const GpuScene& gpuScene() const { return whole_ ? *whole_ : opened_->live->scene(); }
     // Null where it is whole.
-    [[nodiscard]] SceneStream* stream() const { return streamed_ ? streamed_->stream.get() : nullptr; }
+    [[nodiscard]] LiveScene* live() const { return opened_ ? opened_->live.get() : nullptr; }
 
 private:
-    std::optional<StreamedScene> streamed_;
+    std::optional<OpenedScene> opened_;
     Scene scene_;
     std::optional<GpuScene> whole_;
 };

@@ -115,7 +115,7 @@ std::string motionCsv(const MotionRun& run) {
         "pixels_"
         "warped";
     const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
-    csv += is_streamed ? ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading\n" : "\n";
+    csv += is_streamed ? ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late\n" : "\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
@@ -127,8 +127,8 @@ std::string motionCsv(const MotionRun& run) {
                            frame.flicker[0], frame.flicker[1], frame.work_rendered, frame.pixels_warped);
         if (is_streamed) {
             const FrameCounters::Streaming streaming = frame.streaming.value_or(FrameCounters::Streaming());
-            csv += fmt::format(",{},{},{},{}", frame.splats_read, streaming.splats_resident, streaming.chunks_resident,
-                               streaming.frames_waited_for_loading);
+            csv += fmt::format(",{},{},{},{},{}", frame.splats_read, streaming.splats_resident, streaming.chunks_resident,
+                               streaming.frames_waited_for_loading, streaming.scene_frames_late);
         }
         csv += '\n';
     }

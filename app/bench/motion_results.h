@@ -31,7 +31,7 @@ struct MotionFrame {
     double full_change = 0.0;  // of the full renders, mean of both eyes
     // engine/picture/pair_metrics.h; the greater of both eyes' steps.
     double tile_steps = 0.0, sharpness_gap = 0.0;
-    // Of a streamed scene: what was there of it, and how many splats the frame went through.
+    // Of a scene that is streamed or moves: what was there of it, and how many splats the frame went through.
     std::optional<FrameCounters::Streaming> streaming;
     std::uint64_t splats_read = 0;
 

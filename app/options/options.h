@@ -69,6 +69,8 @@ struct LoadOptions {
     std::optional<std::uint32_t> sh_degree;  // of colours, at most; absent: the scene's
     bool flatten = false;                    // 3D Gaussians as discs, without their shortest axis
     std::uint64_t cache_limit_mib = 4096;    // of the disk, for scenes from the web
+    double scene_rate_hz = 30.0;             // frames of a moving scene a second
+    bool scene_blend = false;                // what lies between two of them, where their splats correspond
     bool antialiased = false;                // with opacities that the low-pass dims, also where the file does not say so
     bool operator==(const LoadOptions&) const = default;
 };

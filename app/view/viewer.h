@@ -49,8 +49,8 @@ private:
     bool prepareScene(const FrameViews& views);
     // Hands, rays and what else hangs in the room in this frame.
     void chooseThings(const WearerNow& wearer, const FrameViews& views);
-    // What is wrong with a streamed scene, and once that all is there.
-    void sayStreamed(SceneStream& stream);
+    // What is wrong with a scene that loads while it is shown, and once that all is there.
+    void sayLive(LoadedScene& scene);
     void showFrame(const FrameViews& views);
     // Without hands and rays, or without depth, where the runtime refuses these.
     void submitFrame(const FrameViews& views);
@@ -60,6 +60,8 @@ private:
     // The widgets; takes an image for the panel where that is `hung` and has changed.
     void layOutPanel(bool hung, double step_seconds);
     void takeWindowInput(double step_seconds);
+    // Plays a scene that moves or has it rest, and goes to another of its frames; nothing of one that stays as it is.
+    void moveTime(bool play, int step, std::optional<std::size_t> frame);
     void followPanel(const PanelRequests& requests);
     void openAndSave(const PanelRequests& requests);
     // Where the wearer stands, in numbers, and moved from there.

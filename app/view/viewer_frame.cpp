@@ -50,6 +50,7 @@ void Viewer::drawFrame() {
         gaze_ = {};
     }
     if (const int step = controls_.viewpointStep(); step != 0) { goToViewpoint(step); }
+    moveTime(controls_.playPressed(), 0, {});
     chooseThings(wearer, views);
     takeWindowInput(step_seconds);
     if (const std::string complaint = headset().session.askForRate(state_.settings().refresh_rate); !complaint.empty()) { say(complaint); }
@@ -62,7 +63,7 @@ void Viewer::drawFrame() {
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
         renderer_.render(headset(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         ++frames_of_scene_;
-        if (scene->stream) { sayStreamed(*scene->stream); }
+        if (scene->live) { sayLive(*scene); }
         if (picture_asked_) { takePicture(); }
     } else {
         renderWaiting();
@@ -75,11 +76,11 @@ void Viewer::drawFrame() {
     panel_.keepFrameTime();
 }
 
-void Viewer::sayStreamed(SceneStream& stream) {
-    for (const std::string& line : stream.tryTakeLines()) { say(line); }
-    if (said_there_ || !stream.isSettled()) { return; }
+void Viewer::sayLive(LoadedScene& scene) {
+    for (const std::string& line : scene.live->tryTakeLines()) { say(line); }
+    if (said_there_ || scene.stream == nullptr || !scene.stream->isSettled()) { return; }
     said_there_ = true;
-    const StreamCounters counters = stream.counters();
+    const StreamCounters counters = scene.stream->counters();
     log_.say(fmt::format("all that is seen is there: {} splats, {} levels of leaves; frames that waited for it: {}",
                          counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading));
 }

@@ -62,6 +62,7 @@ void Viewer::takeWindowInput(double step_seconds) {
     recentre_asked_ = recentre_asked_ || window_input_.recentre;
     if (!window_input_.dropped.empty()) { scenes_.begin(window_input_.dropped); }
     if (window_input_.reload_shaders) { reloadShaders(); }
+    moveTime(window_input_.play, window_input_.frame_step, {});
     if (window_input_.toggle_panel) {
         state_.togglePanel();
         panel_.inRoom().hangBefore(room_from_head_);
@@ -83,6 +84,11 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
         status.place = shownPlace();
         status.viewpoint_count = scenes_.get()->viewpoints.size();
         status.viewpoint = viewpoint_ ? scenes_.get()->viewpoints[*viewpoint_].name : "";
+        status.time.reset();
+        if (const LoadedScene& scene = *scenes_.get(); scene.moving != nullptr) {
+            status.time = {scene.clock.frame(), scene.clock.frameCount(), scene.moving->rateHz(), scene.clock.plays(),
+                           scene.moving->counters().scene_frames_late};
+        }
     }
     panel_.showTimes(renderer_.lastFrame(), renderer_.governorSentence(), step_seconds);
     panel_.askFor(files_, state_.settings());
@@ -91,6 +97,16 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     }
     followPanel(panel_.layOut(hung ? connection_.headset() : nullptr, window_input_.pointer, window_input_.uses_panel, state_.settings(),
                               step_seconds));
+}
+
+void Viewer::moveTime(bool play, int step, std::optional<std::size_t> frame) {
+    LoadedScene* const scene = scenes_.get();
+    if (scene == nullptr || scene->moving == nullptr || (!play && step == 0 && !frame)) { return; }
+    SceneClock& clock = scene->clock;
+    if (play) { clock.togglePlaying(); }
+    if (step != 0) { clock.step(step); }
+    if (frame) { clock.goTo(*frame); }
+    log_.say(fmt::format("{} frame {} of {}", clock.plays() ? "plays from" : "rests at", clock.frame() + 1, clock.frameCount()));
 }
 
 void Viewer::recordPanel(Commands& commands) {
@@ -103,6 +119,7 @@ void Viewer::followPanel(const PanelRequests& requests) {
     state_.set(requests.settings);
     if (requests.reload_shaders) { reloadShaders(); }
     if (scenes_.get() != nullptr) { movePlace(requests); }
+    moveTime(requests.play, requests.frame_step, requests.frame);
     recentre_asked_ = recentre_asked_ || requests.recentre;
     openAndSave(requests);
     if (requests.quit) { leave(); }

@@ -14,12 +14,14 @@ namespace binosplat {
 
 namespace {
 
-constexpr float kTabsShare = 0.64f;  // of the width; Quit stands at the right, away from what is pressed often
+constexpr float kTabsShare = 0.64f, kFourTabsShare = 0.78f;  // of the width; Quit stands at the right, away from what is pressed often
 
 // Which page is shown; each is drawn anew when it is asked for.
 void drawTabs(PanelWidgets& widgets, ViewSettings& settings, SceneChooser& chooser, const PanelStatus& status) {
-    static constexpr std::array kTabs{"View", "Scenes", "Method"};
-    const auto pressed = widgets.row(kTabs, static_cast<std::size_t>(settings.page), kTabPx, kTabsShare);
+    static constexpr std::array kTabs{"View", "Scenes", "Method", "Time"};
+    const std::span<const char* const> tabs(kTabs.data(), status.time ? 4u : 3u);
+    if (!status.time && settings.page == PanelPage::kTime) { settings.page = PanelPage::kView; }
+    const auto pressed = widgets.row(tabs, static_cast<std::size_t>(settings.page), kTabPx, status.time ? kFourTabsShare : kTabsShare);
     if (pressed) { settings.page = static_cast<PanelPage>(*pressed); }
     if (settings.page == PanelPage::kScenes && (pressed || chooser.isNew())) { chooser.refresh(status.scene); }
     ImGui::SameLine();
@@ -78,6 +80,8 @@ PanelRequests drawPanel(glm::uvec2 size_px, const ViewSettings& current, SceneCh
         drawViewPage(widgets, settings, status, requests);
     } else if (settings.page == PanelPage::kScenes) {
         drawScenesPage(widgets, chooser, status, requests);
+    } else if (settings.page == PanelPage::kTime) {
+        drawTimePage(widgets, status, requests);
     } else {
         drawMethodPage(widgets, settings, status, requests);
     }

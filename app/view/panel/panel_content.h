@@ -33,6 +33,14 @@ struct ShownRate {
     bool is_beaten = false;                 // the rate is to be held, and nothing that may be given up is enough
 };
 
+// Of a scene that moves.
+struct ShownTime {
+    std::size_t frame = 0, frames = 1;
+    double rate_hz = 1.0;
+    bool plays = true;
+    std::uint64_t late = 0;  // frames that were not there in time
+};
+
 // What the panel shows.
 struct PanelStatus {
     std::string scene;
@@ -51,6 +59,7 @@ struct PanelStatus {
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;
     ShownRate rate;
+    std::optional<ShownTime> time;            // of a scene that moves
     std::size_t viewpoint_count = 0;          // places in the scene to go to
     std::string viewpoint;                    // name of the one gone to last
     const PicturePlaces* pictures = nullptr;  // of scenes, in the font's texture; null: none
@@ -59,15 +68,17 @@ struct PanelStatus {
 // What was asked for.
 struct PanelRequests {
     bool save = false, load = false, reset_scene = false, quit = false, reload_shaders = false, recentre = false, level_scene = false,
-         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false;
-    double growth = 1.0;       // of the scene about the wearer's feet
-    double rise_m = 0.0;       // of the wearer
-    int scene_step = 0;        // to the scene before or after
-    int viewpoint_step = 0;    // to the viewpoint before or after
-    std::string chosen_scene;  // empty: none
-    std::string favourite;     // a scene that is to become a favourite, or to be none any more; empty: none
-    WidgetPlaces places;       // of what was drawn
-    ViewSettings settings;     // as they are to be from now on
+         take_picture = false, natural_size = false, keep_viewpoint = false, last_scene = false, play = false;
+    double growth = 1.0;               // of the scene about the wearer's feet
+    double rise_m = 0.0;               // of the wearer
+    int scene_step = 0;                // to the scene before or after
+    int viewpoint_step = 0;            // to the viewpoint before or after
+    int frame_step = 0;                // of a scene that moves
+    std::optional<std::size_t> frame;  // to go to
+    std::string chosen_scene;          // empty: none
+    std::string favourite;             // a scene that is to become a favourite, or to be none any more; empty: none
+    WidgetPlaces places;               // of what was drawn
+    ViewSettings settings;             // as they are to be from now on
 };
 
 // All that a canvas shows of names and messages, a line each; see Canvas::wantsLetters.

@@ -1,4 +1,4 @@
-// The panel's three pages, each below the row of tabs.
+// The panel's pages, each below the row of tabs.
 #pragma once
 
 #include "app/view/panel/panel_content.h"
@@ -11,6 +11,9 @@ void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStat
 void drawScenesPage(PanelWidgets& widgets, SceneChooser& chooser, const PanelStatus& status, PanelRequests& requests);
 // For whoever studies how the pictures are made, and what they take.
 void drawMethodPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests);
+
+// Of a scene that moves, while status.time has a value.
+void drawTimePage(PanelWidgets& widgets, const PanelStatus& status, PanelRequests& requests);
 
 // What came of what was done, and what goes on; it may take several lines, and moves nothing that is pointed at.
 void drawSaid(const PanelStatus& status);

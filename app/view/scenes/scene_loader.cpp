@@ -45,11 +45,14 @@ std::string placeOf(const std::string& scene) {
 std::pair<std::uint32_t, int> kindOf(const LoadedScene& scene) { return {scene.gpu_scene.splatKind(), scene.gpu_scene.shDegree()}; }
 
 void LoadedScene::follow(std::span<const Eye> eyes, double step_seconds) {
-    if (stream) { stream->update(eyes, step_seconds); }
+    if (!live) { return; }
+    clock.pass(step_seconds);
+    live->setTime(clock.time_s());
+    live->update(eyes, step_seconds);
 }
 
 void LoadedScene::count(FrameCounters& counters) const {
-    if (stream) { counters.streaming = streamingOf(*stream); }
+    if (live) { counters.streaming = streamingOf(*live); }
 }
 
 SceneLoader::SceneLoader(const Context& context, std::string scene, RunOptions options, std::optional<FramesAhead> ahead, bool settled)
@@ -81,11 +84,10 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
             if (cancelled_ && std::this_thread::get_id() == own) { throw Cancelled(); }
             progress_ = kReadingShare * share;
         };
-        std::optional<StreamedScene> streamed;
-        if (mayStream(scene_, options.load)) { streamed = openStreamed(context, scene_, options, StreamFor::kFrames, reading); }
-        if (streamed) { notes = std::move(streamed->notes); }
-        Scene scene =
-            streamed ? std::move(streamed->coarsest) : loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
+        std::optional<OpenedScene> opened;
+        if (mayLive(scene_, options.load)) { opened = openLive(context, scene_, options, StreamFor::kFrames, reading); }
+        if (opened) { notes = std::move(opened->notes); }
+        Scene scene = opened ? std::move(opened->sample) : loadAsAsked(scene_, options.load, options.memory_limit_mib, notes, reading);
         reading(1.0);
         const View start = startView(scene, options.camera, options.metres_per_unit);
         SceneFacts facts = factsOf(scene, notes, scene_);
@@ -95,12 +97,13 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
             if (cancelled_) { throw Cancelled(); }
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         };
-        if (streamed) {
-            loaded_ = std::make_unique<LoadedScene>(context, std::move(streamed->stream));
+        if (opened) {
+            loaded_ = std::make_unique<LoadedScene>(context, std::move(*opened));
             const Eye eye = startEye(start);
-            SceneStream& stream = *loaded_->stream;
-            settled ? stream.settle({&eye, 1}, bringing) : stream.settleCoarsest({&eye, 1}, bringing);
-            tellOfStream(facts, stream);
+            if (SceneStream* const stream = loaded_->stream) {
+                settled ? stream->settle({&eye, 1}, bringing) : stream->settleCoarsest({&eye, 1}, bringing);
+                tellOfStream(facts, *stream);
+            }
         } else {
             loaded_ = std::make_unique<LoadedScene>(context, scene, bringing);
         }

@@ -1,12 +1,13 @@
 // A scene on its way to the device while frames go on.
 #pragma once
 
+#include "app/load.h"
 #include "app/options/options.h"
 #include "app/view/scenes/kernels_ahead.h"
+#include "app/view/scenes/scene_clock.h"
 #include "app/view/scenes/scene_facts.h"
 #include "app/view/scenes/viewpoints.h"
 #include "engine/frame/stereo_frame.h"
-#include "engine/stream/scene_stream.h"
 
 #include <atomic>
 #include <exception>
@@ -18,21 +19,26 @@
 
 namespace binosplat {
 
-// A scene that can be shown, whole or streamed. Stays where it is: the frame refers to the scene.
+// A scene that can be shown, whole, streamed or moving. Stays where it is: the frame refers to the scene.
 struct LoadedScene {
     LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
         : whole(std::make_unique<GpuScene>(context, scene, progress)), gpu_scene(*whole), frame(context, gpu_scene) {}
-    LoadedScene(const Context& context, std::unique_ptr<SceneStream> streamed)
-        : stream(std::move(streamed)), gpu_scene(stream->scene()), frame(context, gpu_scene) {}
-    // Before a frame of such eyes: of a streamed scene what they ask for comes nearer. Never waits.
+    LoadedScene(const Context& context, OpenedScene opened)
+        : live(std::move(opened.live)), stream(opened.stream), moving(opened.moving), gpu_scene(live->scene()), frame(context, gpu_scene) {
+        if (moving != nullptr) { clock = {moving->rateHz(), moving->series().size()}; }
+    }
+    // Before a frame of such eyes: what they ask for comes nearer, and a scene that moves goes on. Never waits.
     void follow(std::span<const Eye> eyes, double step_seconds);
-    // What there is of a streamed scene, into a frame's counters.
+    // What there is of it, into a frame's counters.
     void count(FrameCounters& counters) const;
 
     std::string name;
-    std::unique_ptr<GpuScene> whole;      // or
-    std::unique_ptr<SceneStream> stream;  // that loads while it is shown
-    const GpuScene& gpu_scene;            // of either
+    std::unique_ptr<GpuScene> whole;  // or
+    std::unique_ptr<LiveScene> live;  // that loads while it is shown
+    SceneStream* stream = nullptr;    // the same, where it is streamed
+    MovingScene* moving = nullptr;    // likewise
+    const GpuScene& gpu_scene;        // of either
+    SceneClock clock;                 // of one that moves
     StereoFrame frame;
     std::unique_ptr<StereoFrame> insets;  // of a headset that takes some, once it was asked for them
     Similarity start;                     // see startPlacement

@@ -16,8 +16,8 @@ ShownScene::ShownScene(const Context& context, const ViewOptions& options, const
 
 std::optional<double> ShownScene::loading() const {
     if (loader_) { return loader_->progress(); }
-    if (!scene_ || !scene_->stream || scene_->stream->share() >= 1.0) { return std::nullopt; }
-    return scene_->stream->share();
+    if (!scene_ || !scene_->live || scene_->live->share() >= 1.0) { return std::nullopt; }
+    return scene_->live->share();
 }
 
 bool ShownScene::isLoading() const {

@@ -11,7 +11,7 @@
 
 namespace binosplat {
 
-enum class PanelPage { kView, kScenes, kMethod };
+enum class PanelPage { kView, kScenes, kMethod, kTime };
 // What is seen behind the scene, if not what --background says.
 enum class Backdrop { kAsSet, kBlack, kGrey, kWhite };
 

@@ -34,6 +34,9 @@ void WearerControls::update(const WearerNow& now, PanelInRoom& panel, ViewState&
         if (settings.panel) { panel.hangBefore(now.room_from_head); }
     }
     menu_ = menu;
+    const bool play = now.hands[kLeft].play || now.hands[kRight].play;
+    play_pressed_ = play && !std::exchange(play_, play);
+    play_ = play;
     viewpoint_step_ = 0;
     for (const int h : {kLeft, kRight}) {
         const bool pressed = now.hands[static_cast<std::size_t>(h)].stick_presses;

@@ -32,6 +32,8 @@ public:
 
     // To the next viewpoint where the right stick was pressed in just now, and back where the left one was.
     [[nodiscard]] int viewpointStep() const { return viewpoint_step_; }
+    // Whether a hand pressed just now what lets a scene play or rest.
+    [[nodiscard]] bool playPressed() const { return play_pressed_; }
 
     // Whether sticks moved the wearer in this frame.
     [[nodiscard]] bool isMoving() const { return moves_; }
@@ -45,7 +47,7 @@ private:
     void turn(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
     void hold(const WearerNow& now, const PanelInRoom& panel, ViewState& state);
 
-    bool turned_ = false, menu_ = false, moves_ = false;
+    bool turned_ = false, menu_ = false, moves_ = false, play_ = false, play_pressed_ = false;
     std::array<std::optional<glm::dvec3>, 2> held_;  // where the hands were that hold the scene
     std::optional<int> aiming_;
     TeleportAim teleport_;

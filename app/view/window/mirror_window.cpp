@@ -110,6 +110,8 @@ WindowInput MirrorWindow::poll() {
         input.toggle_panel ^= key == GLFW_KEY_TAB;
         input.reload_shaders |= key == GLFW_KEY_F5;
         input.recentre |= key == GLFW_KEY_R;
+        input.play ^= key == GLFW_KEY_SPACE;
+        input.frame_step += (key == GLFW_KEY_PERIOD ? 1 : 0) - (key == GLFW_KEY_COMMA ? 1 : 0);
         input.quit |= key == GLFW_KEY_ESCAPE;
     }
     input.dropped = std::exchange(dropped_, {});

@@ -20,6 +20,8 @@ struct WindowInput {
     bool toggle_panel = false;
     bool reload_shaders = false;
     bool recentre = false;
+    bool play = false;   // a scene that moves, or have it rest
+    int frame_step = 0;  // likewise, one frame on or back
     bool quit = false;
     std::string dropped;  // a file let fall on the window; empty: none
 };
