@@ -97,4 +97,10 @@ Scene makeBuiltin(const std::string& source, std::uint64_t splats, const Progres
     return scene;
 }
 
+std::shared_ptr<const void> keepBuiltin(const std::string& source, std::uint64_t splats) {
+    const Entry* entry = findEntry(source);
+    if (entry == nullptr || entry->frames == 1) { return nullptr; }
+    return builtin::keepClockwork(splats == 0 ? entry->default_splats : splats);
+}
+
 }  // namespace binosplat

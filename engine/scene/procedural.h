@@ -81,5 +81,7 @@ std::uint64_t builtinFrameCount(const std::string& source);
 // frames. The same on every run, whatever the number of threads. Throws Error for a name or a count it does not have, and for a frame other
 // than 0 of a scene that does not move.
 Scene makeBuiltin(const std::string& source, std::uint64_t splats = 0, const Progress& progress = {}, std::uint64_t frame = 0);
+// Whoever makes many frames of a scene that moves, and holds this, has what they share made once. Null of one that does not move.
+std::shared_ptr<const void> keepBuiltin(const std::string& source, std::uint64_t splats = 0);
 
 }  // namespace binosplat

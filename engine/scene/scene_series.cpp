@@ -51,6 +51,7 @@ SceneSeries::SceneSeries(const std::string& source) : name_(source) {
         findFiles();
         return;
     }
+    kept_ = keepBuiltin(source);
     for (std::uint64_t frame = 0; frame < builtinFrameCount(source); ++frame) {
         frames_.push_back(scenes_.size());
         scenes_.push_back(fmt::format("{}, frame {}", source, frame));

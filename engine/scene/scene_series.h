@@ -43,6 +43,7 @@ private:
     std::vector<std::size_t> frames_;
     double growth_ = 1.0;
     std::vector<std::string> lines_;
+    std::shared_ptr<const void> kept_;  // see keepBuiltin
 };
 
 }  // namespace binosplat

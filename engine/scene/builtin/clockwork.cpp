@@ -4,6 +4,8 @@
 #include "engine/scene/builtin/builtin.h"
 
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 namespace binosplat::builtin {
 
@@ -44,9 +46,19 @@ void append(Scene& scene, const Scene& part, const glm::dvec3& pivot, const cloc
     }
 }
 
-}  // namespace
+// What all frames have in common: their light takes far longer than where things are.
+struct Parts {
+    std::uint64_t splats = 0;
+    Scene still;  // as in the scene
+    struct Moving {
+        Scene scene;  // as it was drafted
+        glm::dvec3 pivot;
+        std::function<clockwork::Placement(double frame)> placeAt;
+    };
+    std::vector<Moving> moving;
+};
 
-Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_t frame) {
+std::shared_ptr<const Parts> makeParts(std::uint64_t splats, const Progress& progress) {
     Draft still;
     clockwork::addRoom(still);
     std::vector<clockwork::Thing> things;
@@ -64,8 +76,10 @@ Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_
     const Room room = makeRoom();
     const std::uint64_t still_splats = splats * 3 / 5, moving_splats = splats - still_splats;
     constexpr double kStillWork = 0.8;
-    Scene scene;
-    append(scene, still.make(still_splats, room, progress ? [&](double share) { progress(kStillWork * share); } : Progress{}), {}, nullptr);
+    auto parts = std::make_shared<Parts>();
+    parts->splats = splats;
+    append(parts->still, still.make(still_splats, room, progress ? [&](double share) { progress(kStillWork * share); } : Progress{}), {},
+           nullptr);
 
     double total = 0.0, running = 0.0;
     for (const clockwork::Thing& thing : things) { total += thing.draft.weight(room); }
@@ -76,14 +90,41 @@ Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_
         const std::uint64_t end = &thing == &things.back()
                                       ? moving_splats
                                       : static_cast<std::uint64_t>(std::llround(running / total * static_cast<double>(moving_splats)));
-        const clockwork::Placement placement = thing.placeAt(static_cast<double>(frame));
-        append(scene, thing.draft.make(end - done, room, {}), thing.pivot, &placement);
+        parts->moving.push_back({thing.draft.make(end - done, room, {}), thing.pivot, thing.placeAt});
         done = end;
         if (progress) { progress(kStillWork + (1.0 - kStillWork) * static_cast<double>(done) / static_cast<double>(moving_splats)); }
+    }
+    return parts;
+}
+
+// Made once, for as long as somebody holds them.
+std::shared_ptr<const Parts> partsOf(std::uint64_t splats, const Progress& progress) {
+    static std::mutex mutex;
+    static std::weak_ptr<const Parts> last;
+    const std::lock_guard lock(mutex);
+    std::shared_ptr<const Parts> parts = last.lock();
+    if (!parts || parts->splats != splats) {
+        parts = makeParts(splats, progress);
+        last = parts;
+    }
+    return parts;
+}
+
+}  // namespace
+
+std::shared_ptr<const void> keepClockwork(std::uint64_t splats) { return partsOf(splats, {}); }
+
+Scene makeClockwork(std::uint64_t splats, const Progress& progress, std::uint64_t frame) {
+    const std::shared_ptr<const Parts> parts = partsOf(splats, progress);
+    Scene scene = parts->still;
+    for (const Parts::Moving& part : parts->moving) {
+        const clockwork::Placement placement = part.placeAt(static_cast<double>(frame));
+        append(scene, part.scene, part.pivot, &placement);
     }
     return scene;
 }
 
-View clockworkView() { return {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, -1.0, 0.0}, 60.0}; }
+// A little from the side: seen straight on, the splats of a wall are all as far away, and their order is anybody's.
+View clockworkView() { return {{0.15, -0.1, -0.1}, {0.02, 0.0, 1.8}, {0.0, -1.0, 0.0}, 60.0}; }
 
 }  // namespace binosplat::builtin
