@@ -1,5 +1,7 @@
 // Pictures that must not change: the last pair of a walk whose frames are made from the ones before, the twin's.
+#include "engine/frame/changes.h"
 #include "engine/reference/past.h"
+#include "engine/stream/moving_scene.h"
 #include "tests/frame_runs.h"
 #include "tests/golden_files.h"
 
@@ -140,7 +142,84 @@ Image besideEachOther(const std::array<Image, 2>& pair) {
     return both;
 }
 
+// Of builtin:clockwork, from where what moves is a part of the picture; it goes on with every second frame.
+Scene clockworkAt(int frame) { return makeBuiltin("builtin:clockwork", 0, {}, static_cast<std::uint64_t>(frame / 2)); }
+constexpr double kClockworkRate = 45.0, kDisplayRate = 90.0;
+
+Eye clockworkEye() {
+    Eye eye = test::eyeOf(*builtinView("clockwork"), {112, 80});
+    eye.world_from_camera.position += eye.world_from_camera.orientation * glm::dvec3(-0.6, 0.0, -1.5);
+    return eye;
+}
+
+std::array<Image, 2> clockworkOfTwin() {
+    constexpr double kNear = 0.2;
+    const Eye start = clockworkEye();
+    Scene scene = clockworkAt(0);
+    const SceneTraits traits = traitsOf(scene);
+    SceneFrame packed = makeSceneFrame(scene, traits);
+    const auto first = eyesAt(start, 0);
+    std::array<reference::Past, 2> pasts{pastOf(scene, first[kLeft]), {}};
+    pasts[kRight] = reference::warpPast(pasts[kLeft], first[kRight]).picture;
+    mend(scene, std::span(pasts).last(1), budgetOf(0));
+    for (int frame = 1; frame <= kFrames; ++frame) {
+        const auto at = eyesAt(start, frame);
+        scene = clockworkAt(frame);
+        SceneFrame next = makeSceneFrame(scene, traits, packed);
+        const std::vector<SceneChange> changes = differenceOf(packed, next, traits).changes;
+        packed = std::move(next);
+        double share = 0.0;
+        for (std::size_t e = 0; e < 2; ++e) {
+            pasts[e] = reference::warpPast(pasts[e], at[e]).picture;
+            std::vector<reference::ChangedRect> rects;
+            for (const gpu::ChangedRect& rect : rectsOf(changes, at[e], kNear)) {
+                rects.push_back({rect.begin_px, rect.end_px, static_cast<double>(rect.error)});
+            }
+            reference::markChanged(pasts[e].tiles, at[e].size_px, rects);
+            share += 0.5 * changedShare(changes, at[e], kNear);
+        }
+        CHECK(share < 0.5);
+        CHECK((share > 0.1) == (frame % 2 == 0));
+        // See StereoFrame::prepare.
+        mend(scene, pasts, std::max(budgetOf(frame), 1.2 * share + 0.5 * budgetOf(frame)));
+    }
+    return {test::toImage(start.size_px, pasts[kLeft].rgba), test::toImage(start.size_px, pasts[kRight].rgba)};
+}
+
+std::array<Image, 2> clockworkOfDevice(const Context& context) {
+    MovingScene moving(context, SceneSeries("builtin:clockwork"), {.rate_hz = kClockworkRate, .memory_bytes = 1});
+    StereoFrame frame(context, moving.scene());
+    const test::KeptKernels kept(context, frame);
+    FrameSettings settings;
+    settings.mode = Mode::kTemporal;
+    settings.keep_past = true;
+    for (int i = 0; i <= kFrames; ++i) {
+        moving.setTime(i / kDisplayRate);
+        moving.settle({});
+        settings.stereo.budget = budgetOf(i);
+        frame.render(eyesAt(clockworkEye(), i), settings);
+    }
+    return {frame.readPicture(kLeft), frame.readPicture(kRight)};
+}
+
 }  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "the last pair of a walk past a scene that moves is what twin and device come to") {
+    const Image twin = besideEachOther(clockworkOfTwin()), device = besideEachOther(clockworkOfDevice(context()));
+    const Image expected = test::readGolden("walk-clockwork", twin);
+    MESSAGE(compare(expected, twin).psnrDb() << " and " << compare(expected, device).psnrDb() << " dB");
+    test::checkGolden("walk-clockwork", expected, twin, "twin", kLeastDb);
+    test::checkGolden("walk-clockwork", expected, device, "device", kLeastDb);
+    // What moved is where it is now, not where it was.
+    const auto eyes = eyesAt(clockworkEye(), kFrames);
+    const auto fullOf = [&](const Scene& scene) {
+        return besideEachOther(
+            {test::toImage(renderFull(scene, eyes[kLeft]).picture), test::toImage(renderFull(scene, eyes[kRight]).picture)});
+    };
+    const double now_db = compare(fullOf(clockworkAt(kFrames)), device).psnrDb();
+    CHECK(now_db > 35.0);
+    CHECK(compare(fullOf(clockworkAt(kFrames - 2)), device).psnrDb() < now_db - 5.0);
+}
 
 TEST_CASE_FIXTURE(Gpu, "the last pair of a walk is what twin and device come to") {
     const ViewedScene view = viewWalk();

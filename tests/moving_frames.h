@@ -8,13 +8,17 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace binosplat::test {
 
 // The atelier, of which what stands before the walls slides to the right and turns as it goes.
 inline Scene slidingAtelier(double frame, std::uint64_t splats = 8'000) {
-    Scene scene = makeBuiltin("builtin:atelier", splats);
+    static std::map<std::uint64_t, Scene> made;  // its light takes longer than many a test
+    auto found = made.find(splats);
+    if (found == made.end()) { found = made.emplace(splats, makeBuiltin("builtin:atelier", splats)).first; }
+    Scene scene = found->second;
     const auto angle = static_cast<float>(0.02 * frame);
     const glm::quat turn(std::cos(angle), 0.0f, std::sin(angle), 0.0f);
     for (std::size_t i = 0; i < scene.size(); ++i) {

@@ -144,6 +144,17 @@ TEST_CASE("between two frames each value lies on a straight line, and rotations 
             worst = std::max(worst, std::abs(1.0 - static_cast<double>(glm::length(got.rotations[i]))));
         }
         CHECK(worst < 2e-4);
+        // What stays is equal to the bit, beside what moves.
+        const Scene first = unpacked(a, traits);
+        std::size_t others = 0;
+        for (std::size_t i = 0; i < got.size(); ++i) {
+            const bool stays = from.positions[i] == to.positions[i] && i % 3 != 0 && i != 7;
+            others += stays && (got.positions[i] != from.positions[i] || got.scales[i] != from.scales[i] ||
+                                got.opacities[i] != from.opacities[i] || got.rotations[i] != first.rotations[i])
+                          ? 1u
+                          : 0u;
+        }
+        CHECK(others == 0);
         // What the device culls by holds all of it.
         for (std::size_t p = 0; p < mixed.size(); ++p) {
             if (mixed[p] == a[p]) { continue; }

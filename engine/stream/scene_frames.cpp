@@ -67,23 +67,25 @@ T at(const std::vector<std::uint8_t>& bytes, std::uint64_t offset) {
 SplatPage pageBetween(const SplatPage& from, const SplatPage& to, float share, const ChunkLayout& layout, const SceneTraits& traits) {
     SplatPage page{from.splats, {}, from.bytes};
     const auto put = [&]<typename T>(std::uint64_t offset, const T& value) { std::memcpy(page.bytes.data() + offset, &value, sizeof(T)); };
+    // What is equal stays as it is, to the bit.
     const auto mixFloats = [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t offset = begin; offset < end; offset += sizeof(float)) {
-            put(offset, glm::mix(at<float>(from.bytes, offset), at<float>(to.bytes, offset), share));
+            const auto a = at<float>(from.bytes, offset), b = at<float>(to.bytes, offset);
+            if (a != b) { put(offset, glm::mix(a, b, share)); }
         }
     };
     mixFloats(layout.positions, layout.rotations);
     mixFloats(layout.scales, layout.base_colours);
     for (std::uint64_t offset = layout.rotations; offset < layout.scales; offset += sizeof(glm::vec4)) {
         const auto a = at<glm::vec4>(from.bytes, offset), b = at<glm::vec4>(to.bytes, offset);
+        if (a == b) { continue; }
         const glm::vec4 mixed = glm::mix(a, glm::dot(a, b) < 0.0f ? -b : b, share);
         const float length = glm::length(mixed);
         put(offset, length > 0.0f ? mixed / length : a);
     }
     for (std::uint64_t offset = layout.base_colours; offset < layout.bytes; offset += sizeof(std::uint32_t)) {
-        const glm::vec2 a = glm::unpackHalf2x16(at<std::uint32_t>(from.bytes, offset));
-        const glm::vec2 b = glm::unpackHalf2x16(at<std::uint32_t>(to.bytes, offset));
-        put(offset, glm::packHalf2x16(glm::mix(a, b, share)));
+        const auto a = at<std::uint32_t>(from.bytes, offset), b = at<std::uint32_t>(to.bytes, offset);
+        if (a != b) { put(offset, glm::packHalf2x16(glm::mix(glm::unpackHalf2x16(a), glm::unpackHalf2x16(b), share))); }
     }
     PageBounds bounds;
     const PageReader reader(page, layout, traits);

@@ -40,7 +40,7 @@ struct FrameDifference {
     // Where splats of these pages that are others were and are: boxes that share no splat, kMostBoxes at most.
     std::vector<SceneChange> changes;
 };
-inline constexpr int kBoxesAside = 6;
+inline constexpr int kBoxesAside = 12;
 inline constexpr std::size_t kMostBoxes = std::size_t{kBoxesAside} * kBoxesAside * kBoxesAside;
 FrameDifference differenceOf(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
 
