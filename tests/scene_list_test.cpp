@@ -232,4 +232,13 @@ TEST_CASE("a scene is described in words: how much, of what kind, how large") {
     CHECK(factsOf(scene, notes, "x").kind == "2D Gaussians (discs)");
 }
 
+TEST_CASE("a folder of many numbered scenes is one that moves; of a few it is one to look into") {
+    const Workplace work;
+    for (int number = 1; number <= 23; ++number) { write(work.path / fmt::format("frame_{}.ply", number)); }
+    for (int number = 1; number <= 60; ++number) { write(work.path / fmt::format("note_{}.txt", number)); }
+    CHECK_FALSE(looksLikeScene(work.path));
+    for (int number = 24; number <= 45; ++number) { write(work.path / fmt::format("frame_{}.ply", number)); }
+    CHECK(looksLikeScene(work.path));
+}
+
 }  // namespace scene_list_test

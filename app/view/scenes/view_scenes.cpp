@@ -17,13 +17,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A folder with fewer numbered scenes is one to look into.
+constexpr std::size_t kLeastFrames = 24;
+
+bool looksMoving(const fs::path& folder) {
+    return std::ranges::any_of(findNumberedFiles(folder), [](const std::vector<NumberedFile>& group) {
+        return group.size() >= kLeastFrames && looksLikeScene(group.front().path);
+    });
+}
+
 }  // namespace
 
 bool looksLikeScene(const fs::path& path) {
     static constexpr std::array<std::string_view, 7> kExtensions{".ply", ".splat", ".ksplat", ".spz", ".sog", ".gltf", ".glb"};
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
-        return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path);
+        return fs::exists(path / "meta.json", ignored) || fs::exists(path / "lod-meta.json", ignored) || findTrainingOutput(path) ||
+               looksMoving(path);
     }
     std::string extension = path.extension().string();
     for (char& letter : extension) {
