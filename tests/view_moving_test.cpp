@@ -82,6 +82,8 @@ TEST_CASE("the panel has it rest, steps, and goes to a frame") {
     CHECK(count(output, "rests at frame 1 of 12") >= 1);  // the one after the last
     CHECK(count(output, "plays from frame 1 of 12") == 1);
     CHECK(count(output, "rests at frame ") >= 6);
+    CHECK(count(output, "scene frames that came late: ") == 1);
+    CHECK(count(output, "frames that waited for them: 0\n") == 1);
 }
 
 }  // namespace view_moving_test

@@ -62,6 +62,11 @@ void Viewer::run() {
     sayPicture(pictures_.finish());
     keepPictureOfScene();
     files_.finish();
+    if (const LoadedScene* const scene = scenes_.get(); scene != nullptr && scene->moving != nullptr) {
+        const StreamCounters counters = scene->moving->counters();
+        log_.print(fmt::format("scene frames that came late: {}; frames that waited for them: {}", counters.scene_frames_late,
+                               counters.frames_waited_for_loading));
+    }
     const std::string why = connection_.headset() != nullptr ? headset().session.whyEnded() : "stopped while there was no headset";
     log_.print(fmt::format("{} frames; {}", log_.frame, why.empty() ? "the session was lost as it ended" : why));
 }
