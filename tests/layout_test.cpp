@@ -116,7 +116,7 @@ std::vector<Layout> hostLayouts() {
                FIELD(source_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
         LAYOUT(ResamplePass, FIELD(warp), FIELD(source), FIELD(half_source), FIELD(moving), FIELD(target), FIELD(half_target),
                FIELD(depths), FIELD(tile_kinds), FIELD(tile_errors), FIELD(pixel_classes), FIELD(component_pixels), FIELD(counters),
-               FIELD(shown_mask), FIELD(background), FIELD(first_row)),
+               FIELD(shown_mask), FIELD(words), FIELD(background), FIELD(first_row)),
         LAYOUT(ComponentsPass, FIELD(warp), FIELD(pixels), FIELD(pixel_classes), FIELD(boxes), FIELD(tile_kinds), FIELD(counters),
                FIELD(box_capacity)),
         LAYOUT(MarkChangedPass, FIELD(tiles), FIELD(rects), FIELD(size_tiles), FIELD(count)),

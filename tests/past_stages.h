@@ -63,6 +63,7 @@ struct WalkSettings {
     std::array<std::vector<std::uint8_t>, 2> hidden = {};  // tiles of each eye, as of FrameSettings
     glm::dvec3 background{0.1, 0.2, 0.3};
     bool half_floats = false;
+    double cant = 0.0;  // of the right eye, about its upward axis
 };
 
 // Frames of a head that walks and turns a little, as `temporal` makes them.
@@ -82,14 +83,16 @@ public:
         eye.world_from_camera.orientation =
             eye.world_from_camera.orientation * glm::angleAxis(0.002 * step, glm::normalize(glm::dvec3(0.2, 1, 0)));
         eyes_ = stereoPair(eye, 0.063);
-        FrameSettings settings;
-        settings.mode = Mode::kTemporal;
-        settings.keep_past = true;
-        settings.stereo.budget = budget;
-        settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
-        settings.background = settings_.background;
-        settings.half_floats = settings_.half_floats;
-        frame_.render(eyes_, settings);
+        glm::dquat& right = eyes_[kRight].world_from_camera.orientation;
+        right = right * glm::angleAxis(settings_.cant, glm::dvec3(0, 1, 0));
+        frame_.render(eyes_, settingsOf(Mode::kTemporal, budget));
+    }
+    // What `predicted` makes of the last frame's eyes.
+    std::array<Image, 2> predicted(double budget) {
+        StereoFrame frame(gpu_.context(), scene_);
+        const KeptKernels kept(gpu_.context(), frame);
+        frame.render(eyes_, settingsOf(Mode::kPredicted, budget));
+        return {frame.readPicture(kLeft), frame.readPicture(kRight)};
     }
     EyeOnDevice read(int eye) { return readEye(gpu_, frame_, eye, eyes_[static_cast<std::size_t>(eye)]); }
     // Of the left eye.
@@ -97,6 +100,17 @@ public:
     [[nodiscard]] const std::array<Eye, 2>& eyes() const { return eyes_; }
 
 private:
+    [[nodiscard]] FrameSettings settingsOf(Mode mode, double budget) const {
+        FrameSettings settings;
+        settings.mode = mode;
+        settings.keep_past = mode == Mode::kTemporal;
+        settings.stereo.budget = budget;
+        settings.hidden_tiles = {settings_.hidden[0], settings_.hidden[1]};
+        settings.background = settings_.background;
+        settings.half_floats = settings_.half_floats;
+        return settings;
+    }
+
     Gpu& gpu_;
     const ViewedScene& view_;
     WalkSettings settings_;

@@ -168,6 +168,7 @@ public:
                                    .component_pixels = affiliated_.address<gpu::ComponentPixel>(),
                                    .counters = counters(),
                                    .shown_mask = parts.hidden_tiles ? words(shown_mask_) : gpu::DeviceAddress<gpu::uint>{},
+                                   .words = {},
                                    .background = parts.background,
                                    .first_row = parts.odd ? 1u : 0u},
                  {(view_.size_px.y + view_.rows_apart - 1) / view_.rows_apart, 1});

@@ -17,8 +17,8 @@ void keepForWarp(Kept& source, const Warp& warp) {
     source.moving = true;
     source.spread = predicts;
     source.depth_choice = warp.settings.depth_choice;
-    // Odd rows will be moved like even ones, unless somebody asks for their moments.
-    source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
+    // Odd rows will be moved like even ones, unless somebody asks for their moments, or for them later.
+    source.even_rows = predicts && warp.relation.rectified && !source.moments && !source.past && source.depth_choice == gpu::kDepthInverse;
 }
 
 }  // namespace
@@ -272,7 +272,8 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
                                          .moments = is_first && settings.keep_moments,
                                          .half_floats = settings.half_floats,
                                          .past = keeps_past},
-                                .picture = e});
+                                .picture = e,
+                                .from_past_later = keeps_past && mode == Mode::kTemporal});
     }
     plan.keeps_past = keeps_past;
     if (keeps_past && !has_past) { plan.spare_picture = static_cast<int>(eyes.size()); }
@@ -317,12 +318,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
 
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }
-    if (mode == Mode::kTemporal) {  // nothing is there from before, but the other eye is
-        makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
-        plan.budget = settings.stereo.budget;
-        plan.steps.push_back({Step::Kind::kPast, second});
-        plan.steps.push_back({Step::Kind::kChoose, 0});
-    } else if (reprojects(mode)) {
+    if (reprojects(mode) || mode == Mode::kTemporal) {  // for which nothing is there from before, but the other eye is
         target.warp = Warp{.source = first,
                            .relation = relation,
                            .settings = stereoSettingsOf(settings),

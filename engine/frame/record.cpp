@@ -41,7 +41,8 @@ void FrameRecorder::begin(Commands& commands, const FramePlan& plan) const {
         }
         if (!target.warp) { continue; }
         const StereoSettings& settings = target.warp->settings;
-        state.targets[t].warp = warpViewOf(target.warp->relation, target.eye.size_px, room.warp(static_cast<int>(t)).rowWords(), settings);
+        state.targets[t].warp =
+            warpViewOf(target.warp->relation, target.eye.size_px, wordsOf(plan, static_cast<int>(t)).row_words, settings);
         state.targets[t].warp_counters = firstCountersOf(settings, target.eye.size_px);
     }
     commands.begin();
@@ -113,9 +114,23 @@ void FrameRecorder::recordWarp(Commands& commands, const FramePlan& plan, int in
                                   .target = room.picture(target.picture),
                                   .source_shown = room.shown(warp.source),
                                   .target_shown = room.shown(index),
+                                  .words = wordsOf(plan, index),
+                                  .leaves_past = target.kept.past,
                                   .background = glm::vec3(plan.background),
                                   .target_lens = target.eye.intrinsics,
                                   .target_gaze = warp.gaze});
+}
+
+MovingWords FrameRecorder::wordsOf(const FramePlan& plan, int warped) const {
+    const TargetPlan& target = plan.targets[static_cast<std::size_t>(warped)];
+    const TargetPlan& source = plan.targets[static_cast<std::size_t>(target.warp->source)];
+    if (source.kept.past) {  // they stay, and nothing is in the spare picture yet
+        return {room.picture(source.picture).words.address<gpu::uint>(), room.picture(*plan.spare_picture).words.address<gpu::uint>(),
+                source.eye.size_px.x};
+    }
+    const WarpBuffers& warp = room.warp(warped);
+    const Picture& picture = room.picture(target.picture);
+    return {warp.moving(picture), warp.arrivals(picture), warp.rowWords()};
 }
 
 PastInputs FrameRecorder::pastOf(const FramePlan& plan, int index) const {
@@ -257,11 +272,11 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     if (!planned.feeds) { return target; }
     const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);
     if (planned.kept.moving) {
-        const WarpBuffers& warp = room.warp(*planned.feeds);
-        target.moving = warp.moving(fed);
+        const MovingWords words = wordsOf(plan, *planned.feeds);
+        target.moving = words.moving;
         const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*planned.feeds)].warp->relation;
-        if (!movesRows(relation.rectified, warp)) { target.arrivals = warp.arrivals(fed); }
-        target.row_words = warp.rowWords();
+        if (!movesRows(relation.rectified, room.warp(*planned.feeds))) { target.arrivals = words.arrivals; }
+        target.row_words = words.row_words;
     }
     // Until this one is blended nothing is in the other one's picture.
     if (pairs.lentCapacity() > pairs.capacity()) { target.pairs = pairs.arraysWith(fed.colours, tileBits(target.size_tiles)); }

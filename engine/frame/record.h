@@ -44,6 +44,7 @@ private:
     void recordPast(Commands& commands, const FramePlan& plan, int index) const;
     void recordChoice(Commands& commands, const FramePlan& plan) const;
     void recordChanged(Commands& commands, const FramePlan& plan, std::span<const PastInputs> pictures) const;
+    [[nodiscard]] MovingWords wordsOf(const FramePlan& plan, int warped) const;
     [[nodiscard]] PastInputs pastOf(const FramePlan& plan, int index) const;
     [[nodiscard]] PeripheryInputs peripheryOf(const FramePlan& plan, int index) const;
     [[nodiscard]] EyesOfList eyesOf(const FramePlan& plan, const ListPlan& list) const;

@@ -19,13 +19,18 @@ constexpr double kRoomMade = 1.5;
 
 void resize(const Context& context, Buffer& buffer, const char* name, std::uint64_t bytes) {
     if (buffer.bytes() == bytes) { return; }
+    if (buffer.bytes() > 0) { context.waitForQueue(); }  // a frame under way may still use it
     buffer = {};
     buffer = Buffer(context, name, bytes);
 }
 
 WarpBufferNeeds needsOf(const TargetPlan& target) {
-    if (target.past) {
-        return {.size_px = target.eye.size_px, .classes = false, .half_floats = target.kept.half_floats, .past = true, .boxes = 0};
+    if (target.past || target.from_past_later) {
+        return {.size_px = target.eye.size_px,
+                .classes = target.warp && target.keeps_classes,
+                .half_floats = target.kept.half_floats,
+                .past = true,
+                .boxes = 0};
     }
     if (!target.warp) { return {}; }
     const bool components = target.warp->settings.choice == TileChoice::kPaper && target.warp->settings.center_rois;
@@ -73,7 +78,9 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
         }
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
-        if (warps_[t].needs() != needs[t]) { warps_[t] = {}; }
+        if (warps_[t].needs() == needs[t]) { continue; }
+        if (warps_[t].bytes() > 0) { context_.waitForQueue(); }
+        warps_[t] = {};
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
         if (warps_[t].needs() != needs[t]) { warps_[t] = WarpBuffers(context_, needs[t]); }

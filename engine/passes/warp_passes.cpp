@@ -117,8 +117,8 @@ private:
     }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
-    [[nodiscard]] auto moving() const { return in_.warp.moving(in_.target); }
-    [[nodiscard]] auto arrivals() const { return in_.warp.arrivals(in_.target); }
+    [[nodiscard]] auto moving() const { return in_.words.moving; }
+    [[nodiscard]] auto arrivals() const { return in_.words.arrivals; }
     [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
     // Whether resample moves the source's pixels itself.
@@ -217,6 +217,7 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
                                  .component_pixels = in_.target.colours.address<gpu::ComponentPixel>(),
                                  .counters = counters(),
                                  .shown_mask = in_.source_shown.mask(),
+                                 .words = in_.leaves_past ? in_.target.words.address<gpu::uint>() : gpu::DeviceAddress<gpu::uint>{},
                                  .background = in_.background,
                                  .first_row = first_row};
     const ResampleKernel resample_kernel{.rectified = in_.rectified,
@@ -266,19 +267,20 @@ void WarpRecorder::groupHoles() {
 
 void WarpRecorder::price() {
     begin<PriceKernel>();
-    const gpu::PricePass pass{.warp = view(),
-                              .tile_kinds = in_.warp.tileKinds(),
-                              .tile_costs = in_.warp.tileCosts(),
-                              .tile_errors = in_.warp.tileErrors(),
-                              .tile_prices = in_.warp.tilePrices(),
-                              .price_bins = in_.warp.bins(),
-                              .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
-                              .counters = counters(),
-                              .budget = counters(),
-                              .past_tiles = {},
-                              .is_last = 1,
-                              .area = 1.0f,
-                              .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
+    const gpu::PricePass pass{
+        .warp = view(),
+        .tile_kinds = in_.warp.tileKinds(),
+        .tile_costs = in_.warp.tileCosts(),
+        .tile_errors = in_.warp.tileErrors(),
+        .tile_prices = in_.warp.tilePrices(),
+        .price_bins = in_.warp.bins(),
+        .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
+        .counters = counters(),
+        .budget = counters(),
+        .past_tiles = in_.leaves_past ? in_.target.tiles.address<gpu::PastTile>() : gpu::DeviceAddress<gpu::PastTile>{},
+        .is_last = 1,
+        .area = 1.0f,
+        .gaze = in_.target_gaze ? eyeGazeOf(*in_.target_gaze, in_.target_lens) : gpu::EyeGaze{}};
     dispatch(PriceKernel{.foveated = in_.target_gaze.has_value()}, pass, tileGroups());
 }
 

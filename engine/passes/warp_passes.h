@@ -51,6 +51,12 @@ gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::u
 // What the counters start a frame with: modes that do not weigh move everything.
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 
+// Where the source leaves its pixels to be moved, and where they arrive: a word each, and the words from a row to the next.
+struct MovingWords {
+    gpu::DeviceAddress<gpu::uint> moving, arrivals;
+    gpu::uint row_words;
+};
+
 // What the passes of one frame work on.
 struct WarpInputs {
     const GpuScene& scene;
@@ -66,6 +72,8 @@ struct WarpInputs {
     const Picture& target;
     const ShownTiles& source_shown;
     const ShownTiles& target_shown;
+    MovingWords words;
+    bool leaves_past;  // later pictures are made from the target
     glm::vec3 background;
     const Intrinsics& target_lens;
     std::optional<Gaze> target_gaze;  // empty: all tiles are seen alike

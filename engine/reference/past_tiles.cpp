@@ -66,8 +66,9 @@ void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_
     }
     for (std::size_t t = 0; t < kinds.size(); ++t) {
         if (kinds[t] == TileKind::kNone || kinds[t] == TileKind::kHidden) { continue; }
-        const double amplitude = costs[t] > 0 ? std::sqrt(squares[t] / (kChannels * kTilePixels)) : 0.0;
-        warped.tiles[t] = {costs[t], 0, amplitude / std::max(warped.tiles[t].age, 1u), {}, {}};
+        const std::uint32_t age = warped.tiles[t].age;
+        const double amplitude = costs[t] > 0 && age > 0 ? std::sqrt(squares[t] / (kChannels * kTilePixels)) / age : 0.0;
+        warped.tiles[t] = {costs[t], 0, amplitude, {}, {}};
     }
 }
 
@@ -75,6 +76,25 @@ Past pastOf(const Eye& eye, const Picture& full, std::span<const std::uint64_t> 
     Past past{eye, full.rgba, {}, {}};
     for (std::size_t i = 0; i < full.rgba.size(); ++i) { past.pixels.push_back(pixelOf(full, i)); }
     for (const std::uint64_t cost : costs) { past.tiles.push_back({cost, 0, 0.0, {}, {}}); }
+    return past;
+}
+
+Past pastOf(const Eye& eye, const StereoPictures& moved) {
+    Past past{eye, moved.affiliated, {}, {}};
+    const std::size_t width = eye.size_px.x, columns = tileGrid(eye.size_px).x;
+    for (std::size_t t = 0; t < moved.tile_kinds.size(); ++t) {
+        if (moved.tile_kinds[t] == TileKind::kHidden) {
+            past.tiles.emplace_back();
+            continue;
+        }
+        const double amplitude = std::sqrt(std::max(moved.tile_errors[t] / kTilePixels, kLeastGrowth / kChannels));
+        past.tiles.push_back({moved.tile_costs[t] - kPairsOfTile, 0, 0.0, {amplitude, amplitude, amplitude, amplitude}, {}});
+    }
+    for (std::size_t i = 0; i < moved.resolved.size(); ++i) {
+        const bool hidden = moved.tile_kinds[i / width / kTileSize * columns + i % width / kTileSize] == TileKind::kHidden;
+        const Resolved& found = moved.resolved[i];
+        past.pixels.push_back(hidden ? std::nullopt : std::optional(MovingPixel{found.inverse_depth, found.spread}));
+    }
     return past;
 }
 

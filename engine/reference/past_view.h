@@ -14,6 +14,7 @@ inline constexpr int kCell = kTileSize / 2;
 inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
+inline constexpr double kLeastGrowth = 1.9e-7;  // likewise, of a pixel that is made from another
 inline constexpr double kAgreesPx = 0.51;       // so near to where it is wanted a pixel of the past is what is seen there
 
 inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }

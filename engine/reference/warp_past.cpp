@@ -8,7 +8,6 @@ constexpr int kBorder = 2;
 constexpr double kSmoothPx = 1.0 / 16.0, kSameDepthPx = 0.25;
 constexpr double kSearchStepPx = 8.0;
 constexpr int kMostSearched = 48;
-constexpr double kLeastGrowth = 1.9e-7;  // of a pixel that moved, squared
 
 struct BlockFromPast {
     bool whole;                                      // it comes from a block of the past

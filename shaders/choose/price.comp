@@ -36,6 +36,16 @@ PastTile withGrowth(PastTile tile) {
     return tile;
 }
 
+// What later pictures must know of a tile that was made from the other eye; rasterize says it of those that are rendered.
+void leaveTile(uint tile) {
+    PastTile its = PastTile(0, 0, 0, vec4(0), uvec4(0));
+    if (pass.tile_kinds.at[tile] != kTileHidden) {
+        its.cost = pass.tile_costs.at[tile] - kTilePairs;
+        its.errors = vec4(sqrt(max(float(pass.tile_errors.at[tile]) / (kErrorSteps * kTileSize * kTileSize), kLeastGrowth / 3)));
+    }
+    pass.past_tiles.at[tile] = its;
+}
+
 // What a tile's error is worth, and its cost; its cost to the list.
 uint priceOf(uint tile, uvec2 size_tiles) {
     if (kPast) {
@@ -46,6 +56,8 @@ uint priceOf(uint tile, uvec2 size_tiles) {
         const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
         pass.tile_costs.at[tile] = cost;
         atomicAdd(pass.budget.at[0].picture_cost, cost);
+    } else if (any(notEqual(uvec2(pass.past_tiles), uvec2(0)))) {
+        leaveTile(tile);
     }
     // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);

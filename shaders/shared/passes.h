@@ -189,6 +189,7 @@ struct ResamplePass {
     ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `target`
     WarpCounterss counters;
     Uints shown_mask;  // where the source has hidden tiles: the others; null where it has none
+    Uints words;       // out where later pictures are made from the target, otherwise null; arrivals may lie in the same row
     vec3 background;   // of tiles that are hidden
     uint first_row;    // 1: the odd rows, where rows are two apart
 };
@@ -260,7 +261,9 @@ struct PricePass {
     ListStates masked_tiles;   // counts workgroups
     WarpCounterss counters;
     WarpCounterss budget;  // whose budget it is: its own, or one for both eyes
-    PastTiles past_tiles;  // where there is a past, in place of tile_errors and tile_costs, which is then written
+    // Where there is a past, in place of tile_errors and tile_costs, which is then written; where there will be one, out: what it is told by
+    // these. Otherwise null.
+    PastTiles past_tiles;
     uint is_last;          // 1: no other picture shares the budget after this one
     float area;            // of a pixel, in those of the eye's own picture: what an error in it is worth
     EyeGaze gaze;          // where it is known where the target looks

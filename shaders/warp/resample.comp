@@ -61,6 +61,9 @@ vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
 #include "lib/moved_error.glsl"
 #include "lib/copy_arrived.glsl"
 
+// Whether later pictures are made from this one.
+bool keepsWords() { return !kForward && any(notEqual(uvec2(pass.words), uvec2(0))); }
+
 void putPixel(WarpView warp, uvec2 at, uint pixel_class, vec4 colour, float inverse_depth) {
     const uint i = at.y * warp.size_px.x + at.x;
     if (kComponents && pixel_class == kHole) {
@@ -102,6 +105,9 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
     const Sample found = kRectified ? sampleInRow(source_px.x, at.y * warp.size_px.x, size.x)
                                     : sampleAround(source_px, size, disparity_px > 0 ? disparity / disparity_px : vec2(0));
     putPixel(warp, at, resolved.pixel_class, found.colour, resolved.inverse_depth);
+    if (keepsWords()) {
+        pass.words.at[at.y * warp.size_px.x + at.x] = movingPixel(resolved.inverse_depth, kLanded, spreadCode(resolved.variance_share));
+    }
     if (!kPredictErrors || (at.y & 1) != 0) { return 0; }
     if (open && resolved.pixel_class == kHole) { return 2 * holeError(warp, source_px, int(resolved.column) - int(at.x)); }
     const float variance_px2 = min(uncertaintyOf(row, at.x, warp.size_px.x, resolved) * disparity_px * disparity_px, kMaxSpread * kMaxSpread);
@@ -153,6 +159,7 @@ void hideTiles(uint y, uint first_tile, uint width) {
         const uint i = y * width + x;
         putColour(pass.target, pass.half_target, i, vec4(pass.background, 0));
         if (kDepth) { pass.depths.at[i] = 0; }
+        if (keepsWords()) { pass.words.at[i] = 0; }
     }
 }
 
