@@ -11,9 +11,8 @@ namespace binosplat {
 namespace {
 
 // Where the scene changed, tiles are rendered beside the budget, of which this share is left to the others: so many in these parts of the
-// picture as in the rest, and a little more. Of a picture that changed by more than the second figure a past has nothing to give: the other
-// eye costs less.
-constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.55;
+// picture as in the rest, and a little more. Where more than the last figure changed, a past would cost more than the other eye does.
+constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
 
 // What a past must have in common with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
