@@ -7,6 +7,9 @@
 #include "tests/gpu_fixture.h"
 #include "tests/split_scene.h"
 #include "tests/streamed_scenes.h"
+#ifdef BINOSPLAT_WEB_TESTS
+#include "tests/web_runs.h"
+#endif
 
 #include <set>
 #include <thread>
@@ -167,5 +170,121 @@ TEST_CASE_FIXTURE(Gpu, "where a chunk is missing the coarser level stays, and on
     showUntilSettled(*stream, frame, eyes, [](int, const FrameResult&) {});
     CHECK(stream->counters().splats_resident == 8 + 8 + 8);
 }
+
+#ifdef BINOSPLAT_WEB_TESTS
+namespace {
+
+std::map<std::string, std::string> filesAt(const std::string& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::ifstream file(entry.path(), std::ios::binary);
+        files["/" + entry.path().filename().string()] = {std::istreambuf_iterator<char>(file), {}};
+    }
+    return files;
+}
+
+std::unique_ptr<SceneStream> streamOf(const Context& context, const std::string& address, const WebSettings& web) {
+    StreamSettings settings;
+    settings.loader.first_pause = settings.loader.most_pause = std::chrono::milliseconds(1);
+    return std::make_unique<SceneStream>(context, std::make_unique<ChunkSource>(address, web), settings);
+}
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Gpu, "a scene at an address shows what its folder shows, and again when its server is gone") {
+    const Folder folder;
+    const std::string source = writeAtelier(folder);
+    const std::array<Eye, 2> eyes = atelierEyes();
+    const auto local = streamOf(context(), source);
+    local->settle(eyes);
+    const Image expected = pictureOf(context(), local->scene(), eyes);
+    WebServer server(filesAt(source));
+    const WebSettings web = webSettings(folder);
+    for (const bool is_gone : {false, true}) {
+        CAPTURE(is_gone);
+        const std::size_t asked = server.asked().size();
+        if (is_gone) { server.stop(); }
+        const auto stream = streamOf(context(), server.at("/lod-meta.json"), web);
+        stream->settle(eyes);
+        CHECK(stream->counters().splats_resident == local->counters().splats_resident);
+        CHECK(pictureOf(context(), stream->scene(), eyes).values == expected.values);
+        CHECK(stream->counters().frames_waited_for_loading == 0);
+        CHECK((server.asked().size() == asked) == is_gone);
+    }
+}
+
+TEST_CASE_FIXTURE(Gpu, "whatever a server does to a chunk, the coarser level stays until it comes, and one line says what is wrong") {
+    const Folder folder;
+    const std::string source = writeAtelier(folder);
+    const std::map<std::string, std::string> files = filesAt(source);
+    const std::array<Eye, 2> eyes = atelierEyes();
+    const auto local = streamOf(context(), source);
+    local->settle(eyes);
+    const std::uint64_t all = local->counters().splats_resident;
+    const Image expected = pictureOf(context(), local->scene(), eyes);
+
+    struct Fault {
+        const char* name;
+        bool comes;  // in the end
+        std::function<WebAnswer(const std::string& body)> answer;
+        bool once = true;
+        const char* line = "";
+    };
+    using Then = WebAnswer::Then;
+    const auto half = [](const std::string& body) { return body.substr(0, body.size() / 2); };
+    const std::vector<Fault> faults{
+        {"busy", true, [](const std::string&) { return answer("429 Too Many Requests", "Retry-After: 0\r\n"); }},
+        {"broken", true, [](const std::string&) { return answer("500 Internal Server Error"); }},
+        {"cuts off", true,
+         [&](const std::string& body) {
+             return WebAnswer{fmt::format("HTTP/1.1 200 OK\r\nContent-Length: {}\r\n\r\n{}", body.size(), half(body)), Then::kClose};
+         }},
+        {"falls silent", true,
+         [&](const std::string& body) {
+             return WebAnswer{fmt::format("HTTP/1.1 200 OK\r\nContent-Length: {}\r\n\r\n{}", body.size(), half(body)), Then::kHang};
+         }},
+        {"says more than there is", true,
+         [](const std::string& body) {
+             return WebAnswer{fmt::format("HTTP/1.1 200 OK\r\nContent-Length: {}\r\n\r\n{}", body.size() + 10, body), Then::kClose};
+         }},
+        {"not there", false, [](const std::string&) { return answer("404 Not Found"); }, false, "404"},
+        {"says less than there is", false, [&](const std::string& body) { return answer("200 OK", "", half(body)); }, false, ".sog"},
+        {"another file", false, [](const std::string&) { return answer("200 OK", "", "<html>hello</html>"); }, false, ".sog"},
+        {"broken for good", false, [](const std::string&) { return answer("500 Internal Server Error"); }, false, "500"},
+    };
+    for (const Fault& fault : faults) {
+        CAPTURE(std::string(fault.name));
+        std::atomic<int> hits = 0;
+        const WebServer server([&](const WebRequest& request) {
+            const auto found = files.find(request.path);
+            if (found == files.end()) { return answer("404 Not Found"); }
+            if (request.path == "/0_1.sog" && (hits++ == 0 || !fault.once)) { return fault.answer(found->second); }
+            return answer("200 OK", "", found->second);
+        });
+        const Folder own;  // with a cache of its own
+        WebSettings web = webSettings(own);
+        web.fetch.attempts = fault.once ? 4 : 1;
+        web.fetch.patience = std::chrono::milliseconds(500);
+        const auto stream = streamOf(context(), server.at("/lod-meta.json"), web);
+        stream->settle(eyes);
+        CHECK(hits > 0);
+        const std::vector<std::string> lines = stream->takeLines();
+        const Image shown = pictureOf(context(), stream->scene(), eyes);
+        if (fault.comes) {
+            CHECK(lines.empty());
+            CHECK(stream->counters().splats_resident == all);
+            CHECK(shown.values == expected.values);
+            continue;
+        }
+        CAPTURE(fmt::format("{}", fmt::join(lines, "\n")));
+        REQUIRE(lines.size() == 1);
+        CHECK(contains(lines[0], fault.line));
+        // Of those leaves the next coarser level, so that there is no hole.
+        CHECK(stream->counters().splats_resident < all);
+        CHECK(stream->counters().splats_resident > all / 2);
+        CHECK(compare(shown, expected).psnrDb() > 25.0);
+    }
+}
+#endif
 
 }  // namespace scene_stream_test

@@ -167,7 +167,7 @@ void ChunkLoader::forgetTroubles() {
     const Clock::time_point now = Clock::now();
     for (Trouble& trouble : troubles_) {
         if (!trouble.again || *trouble.again > now) { continue; }
-        trouble = {};
+        trouble = {.is_said = trouble.is_said, .again = {}};
         ++news_count_;
     }
 }
@@ -212,15 +212,17 @@ void ChunkLoader::run() {
 }
 
 void ChunkLoader::meetTrouble(std::size_t file, const std::string& why, bool may_pass) {
-    const bool is_said = may_pass && std::exchange(said_gone_, true);
+    const bool is_gone_said = may_pass && std::exchange(said_gone_, true);
     const std::lock_guard lock(mutex_);
     Trouble& trouble = troubles_[file];
+    const bool says = !trouble.is_said && !is_gone_said;
+    trouble.is_said = trouble.is_said || says;
     trouble.broken = true;
     if (may_pass) {
         trouble.again = Clock::now() + pause_;
         pause_ = std::min<Clock::duration>(2 * pause_, settings_.most_pause);
     }
-    if (!is_said) { lines_.push_back(why + "; what is there stays"); }
+    if (says) { lines_.push_back(why + "; what is there stays"); }
     ++news_count_;
     news_.notify_all();
 }
@@ -240,6 +242,8 @@ const ChunkLoader::Decoded& ChunkLoader::decode(std::size_t file) {
     decoded_.push_front({file, std::move(splats), std::move(pictures)});
     pause_ = settings_.first_pause;
     said_gone_ = false;
+    const std::lock_guard lock(mutex_);
+    troubles_[file].is_said = false;
     return decoded_.front();
 }
 

@@ -76,6 +76,7 @@ private:
     };
     struct Trouble {
         bool broken = false;
+        bool is_said = false;                    // until the file comes
         std::optional<Clock::time_point> again;  // of the web: when it is tried again
     };
 
