@@ -230,4 +230,28 @@ TEST_CASE_FIXTURE(Sliding, "pictures that are made from their pasts show what mo
     CHECK(still->scene().changesRecorded() == before);
 }
 
+TEST_CASE_FIXTURE(Gpu, "where nearly half of the picture changes, both eyes are predicted's, and the frames after it have pasts again") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    StereoFrame temporal(context(), moving.scene()), other(context(), moving.scene());
+    const KeptKernels kept(context(), temporal);
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    for (const double at : {0.0, 0.2, 1.0, 1.2, 1.4}) {
+        CAPTURE(at);
+        moving.setTime(timeOf(at));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.01 * at;
+        FrameSettings settings;
+        settings.mode = Mode::kTemporal;
+        settings.keep_past = true;
+        const FrameResult result = temporal.render(stereoPair(eye, 0.063), settings);
+        settings.mode = Mode::kPredicted;
+        const FrameResult predicted = other.render(stereoPair(eye, 0.063), settings);
+        const bool has_past = at != 0.0 && at != 1.0;
+        for (const int e : {kLeft, kRight}) { CHECK((temporal.readPicture(e).values == other.readPicture(e).values) == !has_past); }
+        // Of both eyes, or of the one that is not rendered in full.
+        CHECK((result.counters.targets[kLeft].tile_pairs == predicted.counters.targets[kLeft].tile_pairs) == !has_past);
+    }
+}
+
 }  // namespace moving_scene_test

@@ -34,8 +34,11 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
     const Cameras start = makeCameras(view_run, readCameraFiles(view_run.camera), loaded.scene());
     std::string name = nameIn(plan, source) + (view.name.empty() ? "" : ", " + view.name);
     const std::vector<double> times_s = frameTimes(motion, options.segment, options.motion_file);
+    const auto poseAt = [&](double time_s) {
+        return moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+    };
     const auto camerasAt = [&](double time_s) {
-        const Cameras cameras = moveCameras(start, motion.cameraAt(time_s, start.middle.world_from_camera, 1.0 / view_run.metres_per_unit));
+        const Cameras cameras = poseAt(time_s);
         if (loaded.live() != nullptr) {
             loaded.live()->setTime(time_s - times_s.front());
             settleQuietly(*loaded.live(), cameras.eyes);
@@ -59,6 +62,7 @@ void playView(const Context& context, const BenchOptions& options, const BenchPl
             continue;
         }
         const std::size_t first = run.frames.size();
+        if (loaded.moves() && i > 0) { point.rememberStill(poseAt(times_s[i])); }
         point.play(camerasAt(times_s[i]), i, times_s[i], run.frames);
         if (loaded.live() != nullptr) { setStreaming(std::span(run.frames).subspan(first), *loaded.live()); }
         for (std::size_t m = 0; !timed.empty() && m < timed[i].size(); ++m) { setTimes(run.frames[first + m], timed[i][m]); }

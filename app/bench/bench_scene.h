@@ -21,6 +21,7 @@ public:
     // All of it on the host, its coarsest level, or its first frame.
     [[nodiscard]] const Scene& scene() const { return opened_ ? opened_->sample : scene_; }
     [[nodiscard]] const GpuScene& gpuScene() const { return whole_ ? *whole_ : opened_->live->scene(); }
+    [[nodiscard]] bool moves() const { return opened_ && opened_->moving != nullptr; }
     // Null where it is whole.
     [[nodiscard]] LiveScene* live() const { return opened_ ? opened_->live.get() : nullptr; }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace binosplat {
@@ -53,6 +54,29 @@ double meanChange(const Image& a, const Image& b) {
     return sum / static_cast<double>(difference.values.size());
 }
 
+// Of the pixels of both eyes that `now` shows otherwise than `still`.
+struct Moved {
+    double share = 0.0;
+    std::optional<double> mean_square;
+};
+Moved compareMoved(const std::array<Image, 2>& pictures, const std::array<Image, 2>& now, const std::array<Image, 2>& still) {
+    double squares = 0.0;
+    std::size_t moved = 0, pixels = 0;
+    for (std::size_t e = 0; e < now.size(); ++e) {
+        const Image change = subtract(now[e], still[e]), error = subtract(pictures[e], now[e]);
+        for (std::size_t pixel = 0; pixel < now[e].pixelCount(); ++pixel, ++pixels) {
+            const auto channels = [&](const Image& of) { return std::span(of.values).subspan(3 * pixel, 3); };
+            if (std::ranges::none_of(channels(change), [](float c) { return std::abs(static_cast<double>(c)) >= kLeastMoved; })) {
+                continue;
+            }
+            ++moved;
+            for (const float c : channels(error)) { squares += static_cast<double>(c) * static_cast<double>(c); }
+        }
+    }
+    if (moved == 0) { return {}; }
+    return {static_cast<double>(moved) / static_cast<double>(pixels), squares / (3.0 * static_cast<double>(moved))};
+}
+
 }  // namespace
 
 void setTimes(MotionFrame& frame, const FrameResult& result) {
@@ -80,6 +104,11 @@ void MotionPoint::pass(const Cameras& cameras) {
     for (const MethodHistory& sequence : sequences_) {
         if (hasPast(sequence.method.stereo.mode)) { frames_.render(cameras, camera_, sequence.method.stereo, false, true); }
     }
+}
+
+void MotionPoint::rememberStill(const Cameras& cameras) {
+    const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
+    still_ = {frame->readPicture(kLeft), frame->readPicture(kRight)};
 }
 
 void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
@@ -117,10 +146,16 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         if (!rendersBothInFull(mode)) {
             row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant);
             row.sharpness_gap = sharpnessGap(pictures, full.eyes);
+            if (still_) {
+                const Moved moved = compareMoved(pictures, full.eyes, *still_);
+                row.moved_share = moved.share;
+                row.moved_square = moved.mean_square;
+            }
         }
         result.push_back(std::move(row));
     }
     full_before_ = std::move(full_by_order);
+    still_.reset();
 }
 
 }  // namespace binosplat

@@ -20,6 +20,8 @@ public:
     std::vector<FrameResult> time(const Cameras& cameras);
     // A pose that is not scored, and still is the past of one that is.
     void pass(const Cameras& cameras);
+    // Of a scene that moves, before it is shown as at the next pose: what that would show otherwise.
+    void rememberStill(const Cameras& cameras);
     // Adds a frame of each method to `result`.
     void play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result);
 
@@ -42,6 +44,7 @@ private:
     std::string name_;
     std::vector<MethodHistory> sequences_;
     std::map<std::optional<Order>, FullRender> full_before_;
+    std::optional<std::array<Image, 2>> still_;
 };
 
 // The frame took what another run of it took.

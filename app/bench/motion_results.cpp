@@ -99,6 +99,24 @@ Json passesJson(const Sequence& sequence) {
     return passes;
 }
 
+// Mean squared errors where the scene had moved, of the frames in which it had.
+std::vector<double> movedSquares(const Sequence& sequence) {
+    std::vector<double> squares;
+    for (const MotionFrame* frame : steadyFrames(sequence)) {
+        if (frame->moved_square) { squares.push_back(*frame->moved_square); }
+    }
+    return squares;
+}
+// As runSquare(): of all these pixels.
+double movedRunSquare(const Sequence& sequence) {
+    double sum = 0.0, share = 0.0;
+    for (const MotionFrame* frame : steadyFrames(sequence)) {
+        sum += frame->moved_share * frame->moved_square.value_or(0.0);
+        share += frame->moved_share;
+    }
+    return share > 0.0 ? sum / share : 0.0;
+}
+
 // Null where the pictures are equal: JSON has no infinity.
 Json psnrJson(double mean_square) { return mean_square > 0.0 ? Json(psnrOf(mean_square)) : Json(); }
 
@@ -115,7 +133,9 @@ std::string motionCsv(const MotionRun& run) {
         "pixels_"
         "warped";
     const bool is_streamed = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.streaming.has_value(); });
-    csv += is_streamed ? ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late\n" : "\n";
+    if (is_streamed) { csv += ",splats_read,splats_resident,chunks_resident,frames_waited_for_loading,scene_frames_late"; }
+    const bool moves = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.moved_square.has_value(); });
+    csv += moves ? ",moved_share,psnr_moved_db\n" : "\n";
     for (const MotionFrame& frame : run.frames) {
         csv += fmt::format("{},{},{},{},{},{:.6f},{:.6g}", csvCell(run.device), csvCell(run.motion), csvCell(frame.point),
                            csvCell(frame.method), nameOf(frame.mode), frame.time_s, frame.total_ms);
@@ -129,6 +149,10 @@ std::string motionCsv(const MotionRun& run) {
             const FrameCounters::Streaming streaming = frame.streaming.value_or(FrameCounters::Streaming());
             csv += fmt::format(",{},{},{},{},{}", frame.splats_read, streaming.splats_resident, streaming.chunks_resident,
                                streaming.frames_waited_for_loading, streaming.scene_frames_late);
+        }
+        if (moves) {
+            csv += fmt::format(",{:.6g},{}", frame.moved_share,
+                               frame.moved_square ? fmt::format("{:.6g}", psnrOf(*frame.moved_square)) : std::string());
         }
         csv += '\n';
     }
@@ -155,6 +179,10 @@ std::string motionJson(const MotionRun& run) {
             json["psnr_db"] = {{"median", psnrJson(median(errors))},        {"p95", psnrJson(percentile(errors, 0.95))},
                                {"p99", psnrJson(percentile(errors, 0.99))}, {"worst", psnrJson(std::ranges::max(errors))},
                                {"run", psnrJson(runSquare(sequence))},      {"first", psnrJson(sequence.frames.front()->worseSquare())}};
+            if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
+                json["psnr_moved_db"] = {{"run", psnrJson(movedRunSquare(sequence))}, {"worst", psnrJson(std::ranges::max(moved))}};
+                json["moved_share"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.moved_share; }));
+            }
             json["flicker"] = statisticsJson(flickerOf(sequence));
             json["tile_steps"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.tile_steps; }));
             json["sharpness_gap"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.sharpness_gap; }));
@@ -169,13 +197,15 @@ std::string motionJson(const MotionRun& run) {
 
 std::string motionTable(const MotionRun& run) {
     std::string table = fmt::format("device: {}, motion: {}\n", run.device, run.motion), point;
+    const bool moves = std::ranges::any_of(run.frames, [](const MotionFrame& frame) { return frame.moved_square.has_value(); });
     for (const Sequence& sequence : sequencesOf(run)) {
         if (sequence.point != point) {
             point = sequence.point;
             table += fmt::format("\n{}, {} poses; PSNR of the run, and what 95 % of the frames and all reach in both eyes\n", point,
                                  sequence.frames.size());
-            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}\n", "method", "ms median", "ms p95",
-                                 "ms worst", "dB run", "dB 95", "dB worst", "flicker", "p95", "p99");
+            table += fmt::format("  {:<28} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}{}\n", "method", "ms median",
+                                 "ms p95", "ms worst", "dB run", "dB 95", "dB worst", "flicker", "p95", "p99",
+                                 moves ? fmt::format(" {:>9} {:>8}", "dB moved", "worst") : "");
         }
         const std::vector<double> times = valuesOf(sequence, totalMs), errors = steadySquares(sequence), flicker = flickerOf(sequence);
         table += fmt::format("  {:<28} {:>10.3f} {:>10.3f} {:>10.3f}", sequence.method, median(times), percentile(times, 0.95),
@@ -184,6 +214,9 @@ std::string motionTable(const MotionRun& run) {
             table += fmt::format(" {:>8} {:>8} {:>8} {:>10.6f} {:>10.6f} {:>10.6f}", psnrText(runSquare(sequence)),
                                  psnrText(percentile(errors, 0.95)), psnrText(std::ranges::max(errors)), median(flicker),
                                  percentile(flicker, 0.95), percentile(flicker, 0.99));
+            if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
+                table += fmt::format(" {:>9} {:>8}", psnrText(movedRunSquare(sequence)), psnrText(std::ranges::max(moved)));
+            }
         }
         table += "\n";
     }

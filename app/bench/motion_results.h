@@ -31,6 +31,10 @@ struct MotionFrame {
     double full_change = 0.0;  // of the full renders, mean of both eyes
     // engine/picture/pair_metrics.h; the greater of both eyes' steps.
     double tile_steps = 0.0, sharpness_gap = 0.0;
+    // Where the scene shows something else than in the frame before, seen from here (kLeastMoved): the share of both pictures' pixels, and
+    // the mean squared error of these. Nothing where none does.
+    double moved_share = 0.0;
+    std::optional<double> moved_square;
     // Of a scene that is streamed or moves: what was there of it, and how many splats the frame went through.
     std::optional<FrameCounters::Streaming> streaming;
     std::uint64_t splats_read = 0;
@@ -38,6 +42,9 @@ struct MotionFrame {
     [[nodiscard]] double worseSquare() const { return std::max(mean_square[0], mean_square[1]); }
     [[nodiscard]] double worseFlicker() const { return std::max(flicker[0], flicker[1]); }
 };
+
+// The change of a channel, of 0 to 1, from which on a pixel has moved.
+inline constexpr double kLeastMoved = 2.0 / 255.0;
 
 struct MotionRun {
     std::string device, config, motion;
