@@ -110,7 +110,7 @@ std::vector<Layout> hostLayouts() {
         LAYOUT(EdgeRoisPass, FIELD(warp), FIELD(bins), FIELD(tile_kinds), FIELD(shown_mask), FIELD(counters)),
         LAYOUT(ReprojectPass, FIELD(warp), FIELD(moving), FIELD(arrivals), FIELD(shown_mask)),
         LAYOUT(WarpPastPass, FIELD(view), FIELD(source), FIELD(source_words), FIELD(source_tiles), FIELD(target), FIELD(target_words),
-               FIELD(depths), FIELD(tiles), FIELD(tile_kinds), FIELD(tile_mask), FIELD(price_bins), FIELD(shown_mask), FIELD(tile_list),
+               FIELD(tiles), FIELD(tile_kinds), FIELD(tile_mask), FIELD(price_bins), FIELD(shown_mask), FIELD(tile_list),
                FIELD(listed_tiles), FIELD(blocks), FIELD(block_list)),
         LAYOUT(NewcomersPass, FIELD(chunks), FIELD(eyes), FIELD(warp), FIELD(tile_depths), FIELD(order), FIELD(visible),
                FIELD(source_counts), FIELD(tile_kinds), FIELD(tile_errors), FIELD(counters), FIELD(chunk_bits), FIELD(eye)),
@@ -133,8 +133,8 @@ std::vector<Layout> hostLayouts() {
                FIELD(digits)),
         LAYOUT(SortScatterPass, FIELD(keys_in), FIELD(values_in), FIELD(keys_out), FIELD(values_out), FIELD(histograms), FIELD(run_sums),
                FIELD(digit_begins), FIELD(list), FIELD(shift), FIELD(digits)),
-        LAYOUT(PresentPass, FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(tile_kinds), FIELD(pixel_classes), FIELD(pixels),
-               FIELD(device_depths), FIELD(size_px), FIELD(near)),
+        LAYOUT(PresentPass, FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(words), FIELD(tile_kinds), FIELD(pixel_classes),
+               FIELD(pixels), FIELD(device_depths), FIELD(size_px), FIELD(near)),
     };
 }
 

@@ -2,6 +2,7 @@
 #include "engine/passes/present.h"
 #include "engine/reference/present.h"
 #include "tests/gpu_fixture.h"
+#include "tests/stereo_cases.h"
 
 #include <doctest/doctest.h>
 
@@ -23,26 +24,28 @@ struct Presented {
     std::vector<float> depths;
 };
 
-// What the pass makes of `colours` (and of `depth_sums`, if there are any).
+// What the pass makes of `colours` (and of `depth_sums`, if there are any, or of the words of a picture that later ones are made from).
 Presented runPresent(Gpu& gpu, glm::uvec2 size_px, const std::vector<glm::vec4>& colours, const std::vector<float>& depth_sums,
-                     const reference::Presentation& how, bool halves = false) {
+                     const reference::Presentation& how, bool halves = false, const std::vector<gpu::uint>& words = {}) {
     std::vector<glm::uvec2> packed;
     for (const glm::vec4& c : colours) { packed.emplace_back(glm::packHalf2x16({c.x, c.y}), glm::packHalf2x16({c.z, c.w})); }
     const Buffer in = halves ? gpu.upload("colours", packed) : gpu.upload("colours", colours), sums = gpu.upload("depth sums", depth_sums);
     const Buffer pixels = gpu.allocate<std::uint32_t>("pixels", colours.size()), depths = gpu.allocate<float>("depths", colours.size());
-    const bool with_depth = !depth_sums.empty();
+    const Buffer packed_depths = gpu.upload("words", words);
+    const std::uint32_t depth_from = !words.empty() ? 2 : !depth_sums.empty() ? 1 : 0;
     gpu::PresentPass pass{};
     pass.colours = in.address<gpu::vec4>();
     pass.half_colours = in.address<gpu::uvec2>();
     pass.depths = sums.address<float>();
+    pass.words = packed_depths.address<gpu::uint>();
     pass.pixels = pixels.address<gpu::uint>();
     pass.device_depths = depths.address<float>();
     pass.size_px = size_px;
     pass.near = static_cast<float>(how.near);
     const Kernel& kernel = gpu.kernel(PresentKernel{
-        .blue_first = how.blue_first, .linear = how.linear, .depth = with_depth, .half_colours = halves, .see_through = how.see_through});
+        .blue_first = how.blue_first, .linear = how.linear, .depth = depth_from, .half_colours = halves, .see_through = how.see_through});
     gpu.run([&](Commands& commands) { commands.dispatch(kernel, pass, (size_px.x + 15) / 16, (size_px.y + 7) / 8); });
-    return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, with_depth ? colours.size() : 0)};
+    return {gpu.readBack<std::uint32_t>(pixels, colours.size()), gpu.readBack<float>(depths, depth_from != 0 ? colours.size() : 0)};
 }
 
 // Every pixel another colour, from well below 0 to well above 1.
@@ -165,6 +168,24 @@ TEST_CASE_FIXTURE(Gpu, "depth is near over depth, and nothing is infinitely far"
     const Presented presented = runPresent(*this, {6, 1}, colours, sums, how);
     const std::vector<double> expected = reference::presentDepths(asDoubles(colours), std::vector<double>(sums.begin(), sums.end()), how);
     CHECK(expected == std::vector<double>{0.0625, 1.0, 1.0, 0.0, 0.0, 0.0});
+    for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
+}
+
+TEST_CASE_FIXTURE(Gpu, "a picture that later ones are made from has its depth in its words") {
+    // Depths 4 and, to 19 bits, 3; before the near plane; infinitely far; of a pixel that goes nowhere; of hardly anything.
+    const std::vector<glm::vec4> colours{{0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}, {0, 0, 0, 0.001f}};
+    const std::vector<gpu::uint> words{
+        packMoving(0.25, true, 3), packMoving(1.0 / 3.0, true, 31), packMoving(9.0, true, 0), packMoving(0.0, true, 0), 0,
+        packMoving(0.25, true, 0)};
+    const reference::Presentation how{false, false, 0.25};
+    const Presented presented = runPresent(*this, {6, 1}, colours, {}, how, false, words);
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        sums.push_back(static_cast<double>(colours[i].a) / unpackArrival(words[i]).inverse_depth);
+    }
+    const std::vector<double> expected = reference::presentDepths(asDoubles(colours), sums, how);
+    CHECK(expected[0] == 0.0625);
+    CHECK(expected[2] == 1.0);
     for (std::size_t i = 0; i < sums.size(); ++i) { CHECK(presented.depths[i] == doctest::Approx(expected[i]).epsilon(1e-6)); }
 }
 

@@ -4,9 +4,19 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 
 namespace binosplat {
+namespace {
+
+// D of a pixel whose word this is.
+float depthOf(gpu::uint word, float alpha) {
+    const float inverse_depth = word == 0 ? 0.0f : std::bit_cast<float>(((word >> 6) - 1) << 5);  // lib/moving_pixel.glsl
+    return inverse_depth > 0.0f ? alpha / inverse_depth : 0.0f;
+}
+
+}  // namespace
 
 template <typename T>
 std::vector<T> StereoFrame::readBuffer(const Buffer& buffer, std::uint64_t most_bytes, std::uint64_t from_byte) {
@@ -35,18 +45,30 @@ Image StereoFrame::readPicture(int eye) {
     }
     return result;
 }
-Image StereoFrame::readDepth(int eye) { return {picture(eye).size_px, 1, readBuffer<float>(picture(eye).depths)}; }
+Image StereoFrame::readDepth(int eye) {
+    const Picture& source = picture(eye);
+    if (source.words.bytes() == 0) { return {source.size_px, 1, readBuffer<float>(source.depths)}; }
+    const Image colours = readPicture(eye);
+    Image depth{source.size_px, 1, {}};
+    for (const gpu::uint word : readBuffer<gpu::uint>(source.words)) {
+        depth.values.push_back(depthOf(word, colours.values[4 * depth.values.size() + 3]));
+    }
+    return depth;
+}
 
 std::optional<double> StereoFrame::depthAt(int eye, glm::uvec2 pixel) {
     const Picture& source = picture(eye);
     const std::uint64_t at = std::uint64_t{pixel.y} * source.size_px.x + pixel.x;
-    const std::vector<float> depth = readBuffer<float>(source.depths, sizeof(float), at * sizeof(float));
-    if (depth.empty()) { return std::nullopt; }
+    const bool has_words = source.words.bytes() > 0;
+    if (!has_words && source.depths.bytes() == 0) { return std::nullopt; }
     const float alpha =
         source.half_floats
             ? glm::unpackHalf2x16(readBuffer<gpu::uint>(source.colours, sizeof(gpu::uint), (2 * at + 1) * sizeof(gpu::uint)).at(0)).y
             : readBuffer<float>(source.colours, sizeof(float), (4 * at + 3) * sizeof(float)).at(0);
-    return alpha < 0.5f ? std::nullopt : std::optional(static_cast<double>(depth[0]) / static_cast<double>(alpha));
+    if (alpha < 0.5f) { return std::nullopt; }
+    const float depth = has_words ? depthOf(readBuffer<gpu::uint>(source.words, sizeof(gpu::uint), at * sizeof(gpu::uint)).at(0), alpha)
+                                  : readBuffer<float>(source.depths, sizeof(float), at * sizeof(float)).at(0);
+    return static_cast<double>(depth) / static_cast<double>(alpha);
 }
 
 Image StereoFrame::readInverseDepthMoments() { return {picture(plan_.firstTarget()).size_px, 2, readBuffer<float>(room_.moments())}; }

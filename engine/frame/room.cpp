@@ -93,7 +93,7 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
     resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
-    resize(context_, picture.depths, "depths", kept.depth ? pixels * sizeof(float) : 0);
+    resize(context_, picture.depths, "depths", kept.depth && !kept.past ? pixels * sizeof(float) : 0);
     resize(context_, picture.words, "depths of a past", kept.past ? pixels * sizeof(gpu::uint) : 0);
     resize(context_, picture.tiles, "tiles of a past", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
 }
@@ -122,14 +122,11 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
-    // A past of both eyes has room for what either keeps, since they change places.
+    // A past of both eyes has room for what either leaves, since they change places.
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         Kept kept = target.kept;
-        if (plan.keeps_past) {
-            kept.past = true;
-            for (const TargetPlan& other : plan.targets) { kept.depth = kept.depth || other.kept.depth; }
-        }
+        kept.past = kept.past || plan.keeps_past;
         if (plan.spare_picture) {
             const std::size_t spare = static_cast<std::size_t>(*plan.spare_picture) + (t < plan.eyes ? 0 : kFirstHalfPicture);
             fitPicture(pictures_[spare], target.eye.size_px, kept);

@@ -53,7 +53,7 @@ struct FrameCapacity {
 struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
-    Buffer depths = {};        // D, a float a pixel, where it is wanted
+    Buffer depths = {};        // D, a float a pixel, where it is wanted and no words tell it
     // Where later pictures are made from this one:
     Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
     Buffer tiles = {};  // gpu::PastTile

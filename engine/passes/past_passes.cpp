@@ -51,7 +51,6 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .source_tiles = in.source.tiles.address<gpu::PastTile>(),
         .target = in.target.colours.address<gpu::vec4>(),
         .target_words = in.target.words.address<gpu::uint>(),
-        .depths = in.target.depths.address<float>(),
         .tiles = in.target.tiles.address<gpu::PastTile>(),
         .tile_kinds = in.warp.tileKinds(),
         .tile_mask = in.warp.tileMask(),
@@ -63,7 +62,6 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
         .block_list = in.buffers.state.address<gpu::PastBlockList>(blocks)};
     const glm::uvec2 size_px = in.target.size_px;
     const WarpPastKernel kernel{.half_colours = in.target.half_floats,
-                                .depth = in.target.depths.bytes() > 0,
                                 .hidden_tiles = in.shown.value != 0,
                                 .some_tiles = in.some_tiles.value != 0,
                                 .whole_blocks = size_px.x % gpu::kPastColumns == 0};
@@ -76,7 +74,7 @@ void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     }
     commands.beginPass({in.role, WarpPixelsKernel::kStage, WarpPixelsKernel::kShader});
     const WarpPixelsKernel pixels{
-        .half_colours = kernel.half_colours, .depth = kernel.depth, .hidden_tiles = kernel.hidden_tiles, .some_tiles = kernel.some_tiles};
+        .half_colours = kernel.half_colours, .hidden_tiles = kernel.hidden_tiles, .some_tiles = kernel.some_tiles};
     commands.dispatchIndirect(kernels_.get(pixels), pass, in.buffers.state, blocks + offsetof(gpu::PastBlockList, per_group));
 }
 

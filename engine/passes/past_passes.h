@@ -43,7 +43,7 @@ public:
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     void takeKernels(PastPasses& from) { kernels_.take(from.kernels_); }
 
-    // The target's colours, words, tiles and depths.
+    // The target's colours, words and tiles.
     void recordWarp(Commands& commands, const PastInputs& in);
     // Between the two: where the scene changed since the past was made.
     void recordChanged(Commands& commands, const PastInputs& in, gpu::DeviceAddress<gpu::ChangedRect> rects, gpu::uint count);

@@ -38,7 +38,7 @@ public:
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 
 private:
-    const Kernel& kernel(bool tinted, bool with_depth, bool half_floats, bool see_through);
+    const Kernel& kernel(bool tinted, std::uint32_t depth_from, bool half_floats, bool see_through);
 
     const Context& context_;
     KernelCache kernels_;

@@ -1,4 +1,4 @@
-// What making a picture from a past one takes, block by block or pixel by pixel. For shaders that say what kind of pictures: kHalfColours, kDepth,
+// What making a picture from a past one takes, block by block or pixel by pixel. For shaders that say what kind of pictures: kHalfColours,
 // kHiddenTiles, kSomeTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
@@ -66,7 +66,7 @@ vec4 sourceAt(uint i) {
     return uintBitsToFloat(uvec4(uvec2(pixels.at[i].low), uvec2(pixels.at[i].high)));
 }
 
-// Of pixels inside the picture. A pixel's colour comes once its word is there.
+// Of pixels inside the picture.
 void putWord(PastView view, uvec2 pixel, uint word) {
     pass.target_words.at[pixel.y * view.size_px.x + pixel.x] = isHidden(view, pixel) ? 0 : word;
 }
@@ -77,10 +77,5 @@ void putPixel(PastView view, uvec2 pixel, vec4 colour) {
         Eights(uvec2(pass.target)).at[at] = HalfColours(packHalves(shown));
     } else {
         putSixteen(Sixteens(uvec2(pass.target)), at, floatBitsToUint(shown));
-    }
-    if (kDepth) {
-        const uint word = pass.target_words.at[at];
-        const float inverse_depth = word == 0 ? 0 : inverseDepthOf(word);
-        pass.depths.at[at] = inverse_depth > 0 ? shown.a / inverse_depth : 0;
     }
 }

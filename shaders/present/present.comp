@@ -7,12 +7,14 @@
 layout(constant_id = 0) const bool kBlueFirst = false;  // BGRA in place of RGBA
 layout(constant_id = 1) const bool kLinear = false;     // the image is no sRGB one: its bytes count as light
 layout(constant_id = 2) const bool kTint = false;       // by what made each pixel
-layout(constant_id = 3) const bool kDepth = false;
+layout(constant_id = 3) const uint kDepth = 0;  // where its depth comes from
+const uint kFromDepths = 1, kFromWords = 2;
 layout(constant_id = 4) const bool kHalfColours = false;
 layout(constant_id = 5) const bool kSeeThrough = false;  // its alpha goes along, for what the headset shows behind it
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
+#include "lib/moving_pixel.glsl"
 #include "lib/srgb.glsl"
 
 layout(push_constant, scalar) uniform Push { PresentPass pass; };
@@ -59,9 +61,10 @@ void main() {
     if (kSeeThrough && !kLinear) { colour = encode(colour); }
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
     pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
-    if (kDepth) {
+    if (kDepth != 0) {
         // D/A, as near / depth: 1 at the near plane, 0 where nothing is.
-        const float share = pass.near * pixel.a / pass.depths.at[i];
+        const uint word = kDepth == kFromWords ? pass.words.at[i] : 0;
+        const float share = kDepth == kFromDepths ? pass.near * pixel.a / pass.depths.at[i] : word == 0 ? 0 : pass.near * inverseDepthOf(word);
         pass.device_depths.at[i] = share > 0 && pixel.a >= kMinAlpha ? min(share, 1) : 0;
     }
 }

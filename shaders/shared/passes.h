@@ -203,7 +203,6 @@ struct WarpPastPass {
     PastTiles source_tiles;
     FloatColours target;  // out
     Uints target_words;   // out
-    Floats depths;        // out where asked for: D
     PastTiles tiles;      // out
     Uints tile_kinds;     // out: 0, or kTileHidden
     Uints tile_mask;      // out: zeros
@@ -344,7 +343,8 @@ struct SortScatterPass {
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
-    Floats depths;         // D, where its depth is wanted
+    Floats depths;         // D, where its depth is wanted; of a picture that later ones are made from
+    Uints words;           // its words instead: lib/moving_pixel.glsl
     Uints tile_kinds;      // where it shows what made it
     Uints pixel_classes;   // likewise
     Uints pixels;          // out: 8 bits a channel

@@ -253,7 +253,6 @@ void main() {
         begin += kBatchSize;
     } while (begin < range.y);
 
-    const bool keeps_depth = any(notEqual(uvec2(pass.depths), uvec2(0)));
     const bool clears_arrivals = any(notEqual(uvec2(pass.arrivals), uvec2(0)));
     float error = 0;
     [[unroll]] for (uint p = 0; p < kPixels; ++p) {
@@ -271,9 +270,7 @@ void main() {
             if (kDepth) { pass.depths.at[at] = depth[p]; }
             if (kMoments) { pass.moments.at[at] = moments[p]; }
             if (kMoving && (!kEvenRows || (pixel.y & 1) == 0)) {
-                const uint word = toMove(1 - left, depth[p], moments[p]);
-                pass.moving.at[pixel.y * pass.row_words + pixel.x] = word;
-                if (kPast && keeps_depth) { pass.depths.at[at] = word == 0 || inverseDepthOf(word) == 0 ? 0 : (1 - left) / inverseDepthOf(word); }
+                pass.moving.at[pixel.y * pass.row_words + pixel.x] = toMove(1 - left, depth[p], moments[p]);
                 if (clears_arrivals) { pass.arrivals.at[pixel.y * pass.row_words + pixel.x] = 0; }
             }
         }

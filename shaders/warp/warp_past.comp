@@ -8,10 +8,9 @@
 #include "passes.h"
 
 layout(constant_id = 0) const bool kHalfColours = false;
-layout(constant_id = 1) const bool kDepth = false;
-layout(constant_id = 2) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 3) const bool kSomeTiles = false;    // those of a list alone
-layout(constant_id = 4) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
+layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
+layout(constant_id = 2) const bool kSomeTiles = false;    // those of a list alone
+layout(constant_id = 3) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -52,7 +51,7 @@ void putWords(PastView view, uvec2 first, uvec4 words) {
 
 void putPixels(PastView view, uvec2 first, vec4 colours[kPastColumns]) {
     if (first.y >= view.size_px.y) { return; }
-    if (kWholeBlocks && kHalfColours && !kDepth) {
+    if (kWholeBlocks && kHalfColours) {
         const bool hidden = isHidden(view, first);
         const uint at = (first.y * view.size_px.x + first.x) / 2;
         [[unroll]] for (uint c = 0; c < kPastColumns; c += 2) {

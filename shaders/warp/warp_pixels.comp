@@ -9,9 +9,8 @@
 #include "passes.h"
 
 layout(constant_id = 0) const bool kHalfColours = false;
-layout(constant_id = 1) const bool kDepth = false;
-layout(constant_id = 2) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 3) const bool kSomeTiles = false;
+layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
+layout(constant_id = 2) const bool kSomeTiles = false;
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
