@@ -99,7 +99,7 @@ std::vector<Layout> hostLayouts() {
                FIELD(low_pass)),
         LAYOUT(TileRangesPass, FIELD(tiles), FIELD(pairs), FIELD(ranges), FIELD(tile_list), FIELD(masked_tiles), FIELD(full_tiles),
                FIELD(counters), FIELD(colours), FIELD(half_colours), FIELD(depths), FIELD(moving), FIELD(past_tiles), FIELD(visible),
-               FIELD(background), FIELD(size_px)),
+               FIELD(background), FIELD(size_px), FIELD(is_made)),
         LAYOUT(RasterizePass, FIELD(eyes), FIELD(splats), FIELD(ranks), FIELD(ranges), FIELD(colours), FIELD(half_colours), FIELD(depths),
                FIELD(moments), FIELD(moving), FIELD(arrivals), FIELD(full_tiles), FIELD(counters), FIELD(background), FIELD(eye),
                FIELD(row_words), FIELD(is_light), FIELD(past_tiles)),

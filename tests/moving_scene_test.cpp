@@ -254,4 +254,29 @@ TEST_CASE_FIXTURE(Gpu, "where nearly half of the picture changes, both eyes are 
     }
 }
 
+TEST_CASE_FIXTURE(Gpu, "frames under way have room for what changes, whether it is less or more than a past is kept for") {
+    MovingScene moving(context(), SceneSeries("builtin:clockwork"), {.rate_hz = kRate, .memory_bytes = 1});
+    StereoFrame ahead(context(), moving.scene()), waited(context(), moving.scene());
+    const KeptKernels kept(context(), ahead);
+    const Eye middle = eyeOf(*builtinView("clockwork"), {192, 144});
+    FrameSettings settings;
+    settings.mode = Mode::kTemporal;
+    settings.keep_past = true;
+    for (int step = 0; step < 16; ++step) {
+        // Another frame of the scene in every second, and in three one after the other.
+        const int at = step < 8 ? step / 2 : step - 4;
+        moving.setTime(timeOf(std::min(at, 8)));
+        moving.settle({});
+        Eye eye = middle;
+        eye.world_from_camera.position.x += 0.004 * step;
+        (void)ahead.renderAhead(stereoPair(eye, 0.063), settings);
+        (void)waited.render(stereoPair(eye, 0.063), settings);
+    }
+    const std::optional<FrameResult> last = ahead.finish();
+    REQUIRE(last.has_value());
+    REQUIRE(last->counters.ahead.has_value());
+    CHECK(last->counters.ahead->frames_cut_short == 0);
+    for (const int e : {kLeft, kRight}) { CHECK(ahead.readPicture(e).values == waited.readPicture(e).values); }
+}
+
 }  // namespace moving_scene_test

@@ -107,8 +107,12 @@ void MotionPoint::pass(const Cameras& cameras) {
 }
 
 void MotionPoint::rememberStill(const Cameras& cameras) {
-    const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
-    still_ = {frame->readPicture(kLeft), frame->readPicture(kRight)};
+    for (const MethodHistory& sequence : sequences_) {
+        shared_.stereo.order = sequence.method.stereo.order;
+        if (still_.contains(shared_.stereo.order)) { continue; }
+        const auto [rendered, frame] = frames_.render(cameras, camera_, shared_.stereo);
+        still_[shared_.stereo.order] = {frame->readPicture(kLeft), frame->readPicture(kRight)};
+    }
 }
 
 void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s, std::vector<MotionFrame>& result) {
@@ -146,8 +150,8 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         if (!rendersBothInFull(mode)) {
             row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant);
             row.sharpness_gap = sharpnessGap(pictures, full.eyes);
-            if (still_) {
-                const Moved moved = compareMoved(pictures, full.eyes, *still_);
+            if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
+                const Moved moved = compareMoved(pictures, full.eyes, still->second);
                 row.moved_share = moved.share;
                 row.moved_square = moved.mean_square;
             }
@@ -155,7 +159,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
         result.push_back(std::move(row));
     }
     full_before_ = std::move(full_by_order);
-    still_.reset();
+    still_.clear();
 }
 
 }  // namespace binosplat

@@ -44,7 +44,7 @@ private:
     std::string name_;
     std::vector<MethodHistory> sequences_;
     std::map<std::optional<Order>, FullRender> full_before_;
-    std::optional<std::array<Image, 2>> still_;
+    std::map<std::optional<Order>, std::array<Image, 2>> still_;
 };
 
 // The frame took what another run of it took.

@@ -181,7 +181,9 @@ std::string motionJson(const MotionRun& run) {
                                {"run", psnrJson(runSquare(sequence))},      {"first", psnrJson(sequence.frames.front()->worseSquare())}};
             if (const std::vector<double> moved = movedSquares(sequence); !moved.empty()) {
                 json["psnr_moved_db"] = {{"run", psnrJson(movedRunSquare(sequence))}, {"worst", psnrJson(std::ranges::max(moved))}};
-                json["moved_share"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.moved_share; }));
+                std::vector<double> shares;
+                for (const MotionFrame* frame : steadyFrames(sequence)) { shares.push_back(frame->moved_share); }
+                json["moved_share"] = statisticsJson(shares);
             }
             json["flicker"] = statisticsJson(flickerOf(sequence));
             json["tile_steps"] = statisticsJson(valuesOf(sequence, [](const MotionFrame& frame) { return frame.tile_steps; }));

@@ -12,13 +12,13 @@ namespace {
 
 // What `source` keeps for the target that is made from it.
 void keepForWarp(Kept& source, const Warp& warp) {
-    if (!warp.may_move) { return; }
+    if (!warp.may_move || source.past) { return; }  // a past moves as it is
     const bool predicts = warp.settings.choice == TileChoice::kPredicted;
     source.moving = true;
     source.spread = predicts;
     source.depth_choice = warp.settings.depth_choice;
-    // Odd rows will be moved like even ones, unless somebody asks for their moments, or for them later.
-    source.even_rows = predicts && warp.relation.rectified && !source.moments && !source.past && source.depth_choice == gpu::kDepthInverse;
+    // Odd rows will be moved like even ones, unless somebody asks for their moments.
+    source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
 }
 
 }  // namespace
@@ -318,15 +318,22 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
 
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }
-    if (reprojects(mode) || mode == Mode::kTemporal) {  // for which nothing is there from before, but the other eye is
+    const bool is_new = mode == Mode::kTemporal;  // nothing is there from before, but the other eye is
+    if (is_new && source.eye.size_px != target.eye.size_px) {
+        makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
+        plan.budget = settings.stereo.budget;
+        plan.steps.push_back({Step::Kind::kPast, second});
+        plan.steps.push_back({Step::Kind::kChoose, 0});
+    } else if (is_new || reprojects(mode)) {
         target.warp = Warp{.source = first,
                            .relation = relation,
                            .settings = stereoSettingsOf(settings),
                            .may_move = may_move,
                            .gaze = settings.gazes[static_cast<std::size_t>(second)]};
         target.choice = may_move ? target.warp->settings.choice : TileChoice::kAll;
-        target.keeps_classes = settings.keep_classes;
-        source.feeds = second;
+        target.keeps_classes = settings.keep_classes && !is_new;
+        // The frames after a past have no picture to lend.
+        if (!is_new) { source.feeds = second; }
         keepForWarp(source.kept, *target.warp);
         plan.steps.push_back({Step::Kind::kWarp, second});
     }

@@ -259,6 +259,7 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
                   .picture = &room.picture(planned.picture),
                   .background = glm::vec3(plan.background),
                   .kept = planned.kept,
+                  .is_made = planned.past.has_value(),
                   .square_boxes = plan.square_boxes,
                   .moments = planned.kept.moments ? room.moments().address<gpu::vec2>() : gpu::DeviceAddress<gpu::vec2>{},
                   .shown = room.shown(index).mask()};
@@ -269,13 +270,14 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
     target.lists_chosen =
         std::ranges::any_of(plan.lists, [&](const ListPlan& list) { return list.of_chosen && list.eyes.list == planned.list; });
     target.low_pass = viewOf(planned.eye, plan.near).low_pass;
-    if (!planned.feeds) { return target; }
-    const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*planned.feeds)].picture);
-    if (planned.kept.moving) {
-        const MovingWords words = wordsOf(plan, *planned.feeds);
+    const std::optional<int> warped = plan.warpedTarget();
+    if (!warped || plan.targets[static_cast<std::size_t>(*warped)].warp->source != index) { return target; }
+    const Picture& fed = room.picture(plan.targets[static_cast<std::size_t>(*warped)].picture);
+    if (planned.kept.moving || planned.kept.past) {
+        const MovingWords words = wordsOf(plan, *warped);
         target.moving = words.moving;
-        const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*planned.feeds)].warp->relation;
-        if (!movesRows(relation.rectified, room.warp(*planned.feeds))) { target.arrivals = words.arrivals; }
+        const EyeRelation& relation = plan.targets[static_cast<std::size_t>(*warped)].warp->relation;
+        if (!movesRows(relation.rectified, room.warp(*warped))) { target.arrivals = words.arrivals; }
         target.row_words = words.row_words;
     }
     // Until this one is blended nothing is in the other one's picture.

@@ -17,13 +17,6 @@ constexpr std::uint32_t kHoleBoxes = 4096;
 // Room that is made ahead of what was needed.
 constexpr double kRoomMade = 1.5;
 
-void resize(const Context& context, Buffer& buffer, const char* name, std::uint64_t bytes) {
-    if (buffer.bytes() == bytes) { return; }
-    if (buffer.bytes() > 0) { context.waitForQueue(); }  // a frame under way may still use it
-    buffer = {};
-    buffer = Buffer(context, name, bytes);
-}
-
 WarpBufferNeeds needsOf(const TargetPlan& target) {
     if (target.past || target.from_past_later) {
         return {.size_px = target.eye.size_px,
@@ -43,7 +36,8 @@ WarpBufferNeeds needsOf(const TargetPlan& target) {
 
 }  // namespace
 
-FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity) : context_(context), first_capacity_(first_capacity) {
+FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames)
+    : context_(context), first_capacity_(first_capacity), wait_for_frames_(std::move(wait_for_frames)) {
     shown_.reserve(kMostTargets);
     while (shown_.size() < kMostTargets) { shown_.emplace_back(context); }
 }
@@ -55,8 +49,20 @@ void FrameRoom::show(const GpuScene& scene) {
     lists_ = makeFrameBuffers(context_, scene.splatCount(), scene.isInPages());
 }
 
+void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes) {
+    if (buffer.bytes() == bytes) { return; }
+    if (buffer.bytes() > 0) { wait_for_frames_(); }
+    buffer = {};
+    buffer = Buffer(context_, name, bytes);
+}
+
+void FrameRoom::growLists(const FrameCapacity& capacity) {
+    if (capacity != lists_.capacity()) { wait_for_frames_(); }
+    growFrameBuffers(context_, lists_, capacity);
+}
+
 const Buffer& FrameRoom::changedRects() {
-    resize(context_, changed_rects_, "changed parts", kMostTargets * kMostChanges * sizeof(gpu::ChangedRect));
+    resize(changed_rects_, "changed parts", kMostTargets * kMostChanges * sizeof(gpu::ChangedRect));
     return changed_rects_;
 }
 
@@ -79,7 +85,7 @@ void FrameRoom::fitWarps(const FramePlan& plan) {
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
         if (warps_[t].needs() == needs[t]) { continue; }
-        if (warps_[t].bytes() > 0) { context_.waitForQueue(); }
+        if (warps_[t].bytes() > 0) { wait_for_frames_(); }
         warps_[t] = {};
     }
     for (std::size_t t = 0; t < needs.size(); ++t) {
@@ -92,10 +98,10 @@ void FrameRoom::fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kep
     const std::uint64_t pixels = std::uint64_t{size_px.x} * size_px.y;
     picture.size_px = size_px;
     picture.half_floats = kept.half_floats;
-    resize(context_, picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
-    resize(context_, picture.depths, "depths", kept.depth && !kept.past ? pixels * sizeof(float) : 0);
-    resize(context_, picture.words, "depths of a past", kept.past ? pixels * sizeof(gpu::uint) : 0);
-    resize(context_, picture.tiles, "tiles of a past", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
+    resize(picture.colours, "colours", pixels * (kept.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4)));
+    resize(picture.depths, "depths", kept.depth && !kept.past ? pixels * sizeof(float) : 0);
+    resize(picture.words, "depths of a past", kept.past ? pixels * sizeof(gpu::uint) : 0);
+    resize(picture.tiles, "tiles of a past", kept.past ? std::uint64_t{tiles.x} * tiles.y * sizeof(gpu::PastTile) : 0);
 }
 
 void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles) {
@@ -133,13 +139,14 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
         }
         fitPicture(pictures_[static_cast<std::size_t>(target.picture)], target.eye.size_px, kept);
     }
-    resize(context_, moments_, "inverse depth moments", moments_bytes);
-    resize(context_, lists_.tile_ranges, "tile ranges",
+    resize(moments_, "inverse depth moments", moments_bytes);
+    resize(lists_.tile_ranges, "tile ranges",
            static_cast<std::uint64_t>(std::max(plan.shares(), plan.shares_ahead)) * most_tiles * sizeof(gpu::uvec2));
     fitWarps(plan);
     for (std::size_t e = 0; e < peripheries_.size(); ++e) {
         const glm::uvec2 size_px = e < plan.eyes && plan.targets[e].half ? plan.targets[e].eye.size_px : glm::uvec2(0);
         if (peripheries_[e].sizePx() == size_px) { continue; }
+        if (peripheries_[e].sizePx().x > 0) { wait_for_frames_(); }
         peripheries_[e] = {};
         peripheries_[e] = PeripheryBuffers(context_, size_px);
     }
@@ -162,13 +169,13 @@ void FrameRoom::fitLists(const FramePlan& plan) {
     FrameCapacity capacity = lists_.capacity();
     if (capacity == FrameCapacity{}) {
         capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0, 0};
-        if (plan.warpedTarget()) {
+        if (plan.targets[static_cast<std::size_t>(plan.firstTarget())].feeds) {
             // What is rendered again has far fewer pairs.
             capacity.lent_pairs = capacity.pairs;
             capacity.pairs = (capacity.pairs + 3) / 4;
         }
     }
-    growFrameBuffers(context_, lists_, lendWhatFits(plan, capacity));
+    growLists(lendWhatFits(plan, capacity));
 }
 
 bool FrameRoom::isCutShort(const FrameState& state) {
@@ -231,17 +238,17 @@ bool FrameRoom::growIfNeeded(const FramePlan& plan, const FrameState& state) {
         first_frame_ = false;
         return true;
     }
-    growFrameBuffers(context_, lists_, wanted);
+    growLists(wanted);
     return false;
 }
 
 bool FrameRoom::tryToGrow(const FrameCapacity& wanted) {
     const FrameCapacity before = lists_.capacity();
     try {
-        growFrameBuffers(context_, lists_, wanted);
+        growLists(wanted);
         return true;
     } catch (const Error&) {
-        growFrameBuffers(context_, lists_, before);
+        growLists(before);
         return false;
     }
 }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,8 @@ public:
     // Lists of frames that are not waited for have so many times the room that the last known frame needed.
     static constexpr double kRoomAhead = 1.15;
 
-    FrameRoom(const Context& context, const FrameCapacity& first_capacity);
+    // `wait_for_frames`: returns once no frame is under way that uses this room; called before any of it goes.
+    FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames);
 
     // Lists are of `scene` from now on.
     void show(const GpuScene& scene);
@@ -67,6 +69,8 @@ public:
     void forgetUploads();
 
 private:
+    void resize(Buffer& buffer, const char* name, std::uint64_t bytes);
+    void growLists(const FrameCapacity& capacity);
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
     // Pairs that the source's sort finds room for in the picture that is made from it, while nothing is in it.
@@ -81,6 +85,7 @@ private:
     const Context& context_;
     const GpuScene* scene_ = nullptr;
     FrameCapacity first_capacity_;
+    std::function<void()> wait_for_frames_;
     FrameBuffers lists_;
     std::array<Picture, kFramePictures> pictures_;
     Buffer moments_;

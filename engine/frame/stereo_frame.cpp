@@ -22,7 +22,10 @@ FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({
 StereoFrame::StereoFrame(const Context& context, const GpuScene& scene, const FrameOptions& options)
     : context_(context),
       kernels_(std::make_shared<FrameKernels>(context, options.threads_per_cell)),
-      room_(context, options.first_capacity),
+      room_(context, options.first_capacity,
+            [this] {
+                for (const Flight& flight : flights_) { flight.commands.waitForDevice(); }
+            }),
       flights_{Flight(context), Flight(context)} {
     show(scene);
 }

@@ -231,12 +231,18 @@ void Commands::submit(vk::Semaphore signals) {
     under_way_ = true;
 }
 
-void Commands::wait() {
-    if (!std::exchange(under_way_, false)) { return; }
+void Commands::waitForDevice() const {
+    if (!under_way_) { return; }
     try {
         const auto result = context_.device().waitForFences(*fence_, VK_TRUE, UINT64_MAX);
         check(result == vk::Result::eSuccess, "{}: the frame did not finish: {}", context_.deviceName(), vk::to_string(result));
     } catch (const vk::SystemError& error) { throw deviceError(context_.deviceName(), error); }
+}
+
+void Commands::wait() {
+    if (!under_way_) { return; }
+    waitForDevice();
+    under_way_ = false;
     context_.device().resetFences(*fence_);
 
     times_.clear();

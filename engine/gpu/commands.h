@@ -99,6 +99,8 @@ public:
     void submit(vk::Semaphore signals = {});
     // Until the device is done, if anything is under way.
     void wait();
+    // The same for who only wants memory back: what was measured is there after wait().
+    void waitForDevice() const;
     void submitAndWait() {
         submit();
         wait();

@@ -273,11 +273,6 @@ std::vector<std::string> Context::validationMessages() const {
     return messages_.lines;
 }
 
-void Context::waitForQueue() const {
-    const std::lock_guard lock(queue_mutex_);
-    queue_.waitIdle();
-}
-
 std::uint64_t Context::deviceMemoryBytes() const {
     const vk::PhysicalDeviceMemoryProperties memory = physical_device_.getMemoryProperties();
     std::uint64_t most = 0;

@@ -61,8 +61,6 @@ public:
     [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
     // Whoever uses the queue, itself or through OpenXR, holds this: a scene may be on its way up from a second thread.
     [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
-    // Until nothing is under way: memory that frames use may go then.
-    void waitForQueue() const;
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
     // A processor's program, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }

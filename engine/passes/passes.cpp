@@ -328,7 +328,8 @@ void Passes::recordTileRanges(const EyePart& part, const KeyValues& sorted) {
                                      .past_tiles = target.picture->tiles.address<gpu::PastTile>(),
                                      .visible = part.visible(),
                                      .background = target.background,
-                                     .size_px = target.size_px};
+                                     .size_px = target.size_px,
+                                     .is_made = target.is_made ? 1u : 0u};
     if (part.lists_tiles) {
         part.commands.dispatchIndirect(
             kernels_.get(TileRangesKernel{.masked = true, .half_colours = target.kept.half_floats, .past = target.kept.past}), ranges,

@@ -46,6 +46,7 @@ struct Target {
     const Picture* picture = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
+    bool is_made = false;                                      // by a past: tiles of which lists have no room stay
     bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, where all tiles are shown
     gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
     gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise

@@ -212,11 +212,11 @@ void ChunkLoader::run() {
 }
 
 void ChunkLoader::meetTrouble(std::size_t file, const std::string& why, bool may_pass) {
-    const bool is_gone_said = may_pass && std::exchange(said_gone_, true);
     const std::lock_guard lock(mutex_);
     Trouble& trouble = troubles_[file];
-    const bool says = !trouble.is_said && !is_gone_said;
+    const bool says = !trouble.is_said && !(may_pass && said_gone_);
     trouble.is_said = trouble.is_said || says;
+    said_gone_ = said_gone_ || (may_pass && says);
     trouble.broken = true;
     if (may_pass) {
         trouble.again = Clock::now() + pause_;

@@ -36,6 +36,9 @@ PastTile withGrowth(PastTile tile) {
     return tile;
 }
 
+// Whether later pictures are made from this one, which is none: of such a picture no row is the mean of others, since nothing would say so.
+bool leavesTiles() { return !kPast && any(notEqual(uvec2(pass.past_tiles), uvec2(0))); }
+
 // What later pictures must know of a tile that was made from the other eye; rasterize says it of those that are rendered.
 void leaveTile(uint tile) {
     PastTile its = PastTile(0, 0, 0, vec4(0), uvec4(0));
@@ -56,14 +59,14 @@ uint priceOf(uint tile, uvec2 size_tiles) {
         const uint cost = hidden ? 0 : min(its.cost, kMaxTileCost - kTilePairs) + kTilePairs;
         pass.tile_costs.at[tile] = cost;
         atomicAdd(pass.budget.at[0].picture_cost, cost);
-    } else if (any(notEqual(uvec2(pass.past_tiles), uvec2(0)))) {
+    } else if (leavesTiles()) {
         leaveTile(tile);
     }
     // Sums stop growing there (newcomers); resample adds far less than that.
     const uint error = min(pass.tile_errors.at[tile], 0x7fffffffu);
     const float worth = pass.area * float(error);
     const float share = kFoveated ? seenShare(pass.gaze, uvec2(tile % size_tiles.x, tile / size_tiles.x)) : 1;
-    if (kFoveated && share <= kCoarseShare) { pass.tile_errors.at[tile] = kSeenCoarsely; }
+    if (kFoveated && share <= kCoarseShare && !leavesTiles()) { pass.tile_errors.at[tile] = kSeenCoarsely; }
     if (pass.tile_kinds.at[tile] != 0 || error == 0) { return 0; }
     const uint cost = pass.tile_costs.at[tile];
     const float seen = share * float(error);

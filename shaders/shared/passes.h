@@ -108,6 +108,7 @@ struct TileRangesPass {
     ListStates visible;    // likewise: of whose splats they are
     vec3 background;
     uvec2 size_px;
+    uint is_made;  // 1: every tile shows what a past made of it, which stays where lists had no room
 };
 
 // rasterize: blending, a workgroup a tile.

@@ -13,7 +13,7 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
 layout(constant_id = 0) const bool kMasked = false;  // the tiles of pass.tile_list alone
 layout(constant_id = 1) const bool kHalfColours = false;
-layout(constant_id = 2) const bool kPast = false;  // the picture is going to be a past, and holds what one made already
+layout(constant_id = 2) const bool kPast = false;  // the picture is going to be a past
 
 #include "lib/picture.glsl"
 #include "lib/moving_pixel.glsl"
@@ -73,7 +73,7 @@ void main() {
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
     // Pairs that had no room: what the past made stays.
-    const bool is_void = kPast && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
+    const bool is_void = kPast && pass.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool listed = item < pass.masked_tiles.at[0].count && !is_void;
     const uint tile = listed ? pass.tile_list.at[item] : 0;
     bool full = false;
