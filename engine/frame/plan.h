@@ -57,7 +57,7 @@ struct TargetPlan {
     int picture = 0;                // of the room's, that it becomes
     std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
     bool keeps_classes = false;
-    bool from_past_later = false;   // frames after this one make it from a past: what that takes stays
+    bool from_past_later = false;  // frames after this one make it from a past: what that takes stays
     std::optional<int> half = {};  // kSharp: the target of half the size that the other tiles are filled from
 };
 

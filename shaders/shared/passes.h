@@ -261,12 +261,12 @@ struct PricePass {
     ListStates masked_tiles;   // counts workgroups
     WarpCounterss counters;
     WarpCounterss budget;  // whose budget it is: its own, or one for both eyes
-    // Where there is a past, in place of tile_errors and tile_costs, which is then written; where there will be one, out: what it is told by
-    // these. Otherwise null.
+    // Where there is a past, in place of tile_errors and tile_costs, which is then written; where there will be one, out: what it is told
+    // by these. Otherwise null.
     PastTiles past_tiles;
-    uint is_last;          // 1: no other picture shares the budget after this one
-    float area;            // of a pixel, in those of the eye's own picture: what an error in it is worth
-    EyeGaze gaze;          // where it is known where the target looks
+    uint is_last;  // 1: no other picture shares the budget after this one
+    float area;    // of a pixel, in those of the eye's own picture: what an error in it is worth
+    EyeGaze gaze;  // where it is known where the target looks
 };
 
 // select: the tiles that are rendered, as a list and as a mask.
