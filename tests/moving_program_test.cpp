@@ -90,7 +90,7 @@ TEST_CASE("bench measures a moving scene along a motion, and other commands take
     std::ofstream(work.path / "methods.toml") << "[bench]\nmodes = [\"two-pass\", \"predicted\", \"temporal\"]\nrepeats = 2\n";
     work.go("bench slide" + kCamera + "--config methods.toml --motion still.csv --rate 10 --scene-rate 10 --seconds 0.4 --out moved");
     const std::string csv = work.bytesOf("moved/motion.csv");
-    CHECK(csv.find(",scene_frames_late\n") != std::string::npos);
+    CHECK(csv.find(",scene_frames_late,moved_share,psnr_moved_db\n") != std::string::npos);
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 4 * 4);
     work.go("bench slide" + kCamera + "--config methods.toml --out still");
     work.go("convert slide first.ply");

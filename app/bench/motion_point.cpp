@@ -19,17 +19,12 @@ double pairsOf(const FrameResult& frame) {
     return pairs;
 }
 
-// In tiles that are shown and were not rendered: of the affiliated eye, or of both where these are made from their pasts.
-std::uint64_t pixelsWarped(const FrameResult& frame, Mode mode, int affiliated) {
-    std::uint64_t pixels = 0, tiles = 0, rendered = frame.counters.warped ? frame.counters.warped->tiles_patched : 0;
-    for (std::size_t t = 0; t < frame.counters.targets.size(); ++t) {
-        const TargetCounters& target = frame.counters.targets[t];
-        if (mode != Mode::kTemporal && t != static_cast<std::size_t>(affiliated)) { continue; }
-        pixels += target.pixels;
-        tiles += target.tiles;
-        rendered += target.tiles_hidden;
-    }
-    return std::min(pixels, 256 * (tiles - std::min(tiles, rendered)));
+// In tiles that are shown and were not rendered, of the pictures that are made from others.
+std::uint64_t pixelsWarped(const FrameResult& frame) {
+    if (!frame.counters.warped) { return 0; }
+    const WarpedCounters& warped = *frame.counters.warped;
+    const std::uint64_t tiles = warped.tiles_shown - std::min(warped.tiles_shown, warped.tiles_patched);
+    return std::min(frame.counters.targets.size() * frame.counters.targets[0].pixels, 256 * tiles);
 }
 
 // R, G and B of a less those of b.
@@ -148,7 +143,7 @@ void MotionPoint::play(const Cameras& cameras, std::size_t number, double time_s
             sequence.error[e] = std::move(error);
         }
         if (!rendersBothInFull(mode)) {
-            row.pixels_warped = pixelsWarped(rendered, mode, 1 - sequence.method.stereo.dominant);
+            row.pixels_warped = pixelsWarped(rendered);
             row.sharpness_gap = sharpnessGap(pictures, full.eyes);
             if (const auto still = still_.find(shared_.stereo.order); still != still_.end()) {
                 const Moved moved = compareMoved(pictures, full.eyes, still->second);

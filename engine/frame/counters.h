@@ -29,6 +29,7 @@ struct WarpedCounters {
         std::uint64_t tiles_cheap = 0, tiles_weighed_as_moved = 0, full = 0, patched = 0, saved_by_moving = 0;
     };
     std::optional<Classes> pixels;
+    std::uint64_t tiles_shown = 0;  // of the pictures that are made from others
     std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
     std::optional<Work> work;
     std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;

@@ -47,6 +47,7 @@ void countWarp(const FrameFacts& frame, std::size_t index, FrameResult& result) 
                                                  .counters = warp,
                                                  .visible = frame.state.visible[0].count});
     const std::uint32_t shown = buffers.tileCount() - frame.room.shown(static_cast<int>(index)).hiddenCount();
+    counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(state.chosen_tiles.count) / shown : 0.0;
     if (warp.picture_cost > 0) { result.work_rendered = static_cast<double>(warp.chosen_cost) / warp.picture_cost; }
 }
@@ -68,6 +69,7 @@ void countPast(const FrameFacts& frame, FrameResult& result) {
         const bool in_two = frame.plan.targets.size() > frame.plan.eyes;
         shown += in_two ? state.wanted_tiles.count : buffers.tileCount() - frame.room.shown(static_cast<int>(t)).hiddenCount();
     }
+    counters.tiles_shown = shown;
     result.tiles_rendered = shown > 0 ? static_cast<double>(counters.tiles_patched) / static_cast<double>(shown) : 0.0;
     if (work.full > 0) {
         result.work_rendered = static_cast<double>(work.patched) / static_cast<double>(work.full);
