@@ -215,7 +215,8 @@ TEST_CASE_FIXTURE(Gpu, "a scene at an address shows what its folder shows, and a
 
 TEST_CASE_FIXTURE(Gpu, "whatever a server does to a chunk, the coarser level stays until it comes, and one line says what is wrong") {
     const Folder folder;
-    const std::string source = writeAtelier(folder);
+    splitScene(makeBuiltin("builtin:atelier", 8'000), folder.file("split"), {.leaf_splats = 500, .levels = 3, .chunk_splats = 2000});
+    const std::string source = folder.file("split");
     const std::map<std::string, std::string> files = filesAt(source);
     const std::array<Eye, 2> eyes = atelierEyes();
     const auto local = streamOf(context(), source);
