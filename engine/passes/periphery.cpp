@@ -62,7 +62,7 @@ TileMask PeripheryBuffers::tilesAt(std::uint64_t first_word, glm::uvec2 size_px)
 
 KernelTable peripheryKernels() {
     KernelTable table = everyVariant<PeripheryKernel>([](const PeripheryKernel& k) { return k.of_half == 0 || k.half_colours == 0; });
-    append(table, everyVariant<FillPeripheryKernel>([](const FillPeripheryKernel& k) { return k.depth == 0 || k.past == 0; }));
+    append(table, everyVariant<FillPeripheryKernel>());
     return table;
 }
 

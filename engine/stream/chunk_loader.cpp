@@ -19,6 +19,8 @@ struct Cancelled {};
 
 // So many files are asked for before their turn.
 constexpr std::size_t kFilesAhead = 8;
+// After so long a server that does not answer again is news.
+constexpr std::chrono::seconds kForgotten(10);
 // Parts that are read together, before it is looked which of the others are still wished for.
 constexpr std::size_t kPartsAtOnce = 8;
 
@@ -217,6 +219,10 @@ void ChunkLoader::meetTrouble(std::size_t file, const std::string& why, bool may
     const bool says = !trouble.is_said && !(may_pass && said_gone_);
     trouble.is_said = trouble.is_said || says;
     said_gone_ = said_gone_ || (may_pass && says);
+    if (may_pass) {
+        came_since_ = 0;
+        failed_at_ = Clock::now();
+    }
     trouble.broken = true;
     if (may_pass) {
         trouble.again = Clock::now() + pause_;
@@ -241,7 +247,8 @@ const ChunkLoader::Decoded& ChunkLoader::decode(std::size_t file) {
     SogPictures pictures = splats.decode(settings_.threads);
     decoded_.push_front({file, std::move(splats), std::move(pictures)});
     pause_ = settings_.first_pause;
-    said_gone_ = false;
+    // Files that were asked for ahead may still fail as those before did.
+    if (++came_since_ > kFilesAhead || Clock::now() - failed_at_ > kForgotten) { said_gone_ = false; }
     const std::lock_guard lock(mutex_);
     troubles_[file].is_said = false;
     return decoded_.front();

@@ -104,6 +104,8 @@ private:
     LoaderSettings settings_;
     std::deque<Decoded> decoded_;  // of the loader's thread; the one used last at the front
     Clock::duration pause_;        // likewise
+    std::size_t came_since_ = 0;   // likewise: files since one did not come
+    Clock::time_point failed_at_;  // likewise: when that was
     bool said_gone_ = false;       // likewise: the server does not answer, and that was said
 
     mutable std::mutex mutex_;  // of what follows
