@@ -1,4 +1,7 @@
 // Servers that are busy, cut off, lie, lead elsewhere or vanish: the scene all the same, or one plain line and nothing left behind.
+#include "engine/scene/ply.h"
+#include "engine/scene/procedural.h"
+#include "tests/spz_files.h"
 #include "tests/web_runs.h"
 
 TEST_SUITE_BEGIN("web_fetch");
@@ -58,6 +61,78 @@ TEST_CASE("a server that is busy or cuts off is asked again") {
         CHECK(server.asked().size() == 3);
         std::filesystem::remove_all(folder.file("cache"));
     }
+}
+
+TEST_CASE("a file that broke off goes on where it ended, if it is still the same") {
+    const Folder folder;
+    const Scene scene = loadScene(folder.write("a.ply", kPly));
+    const std::size_t half = kPly.size() / 2;
+    const auto rest = [&](std::size_t from, const std::string& etag, std::size_t until = kPly.size()) {
+        return answer("206 Partial Content",
+                      fmt::format("ETag: {}\r\nContent-Range: bytes {}-{}/{}\r\n", etag, from, kPly.size() - 1, kPly.size()),
+                      kPly.substr(from, until - from));
+    };
+    // After the first half came with the ETag `etag`: what was asked for then, with the answers `second` and, from then on, the whole file.
+    const auto rangesAfter = [&](const std::string& etag, const WebAnswer& second) {
+        std::vector<std::string> asked;
+        WebAnswer first = cutAfter(half);
+        first.bytes.insert(first.bytes.find("\r\n") + 2, fmt::format("ETag: {}\r\n", etag));
+        {
+            const WebServer server([&](const WebRequest& request) {
+                const auto header = [&](const char* name) {
+                    const auto found = request.headers.find(name);
+                    return found != request.headers.end() ? found->second : "";
+                };
+                asked.push_back(header("range") + " " + header("if-range"));
+                return request.number == 0 ? first : request.number == 1 ? second : answer("200 OK", "ETag: \"3\"\r\n", kPly);
+            });
+            checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        }
+        CHECK(filesIn(folder.file("cache")).size() == 2);
+        std::filesystem::remove_all(folder.file("cache"));
+        return asked;
+    };
+    using Asked = std::vector<std::string>;
+    const std::string asks = fmt::format("bytes={}- \"1\"", half);
+    CHECK(rangesAfter("\"1\"", rest(half, "\"1\"")) == Asked{" ", asks});
+    // A server that sends the whole, of this version or another.
+    CHECK(rangesAfter("\"1\"", answer("200 OK", "ETag: \"1\"\r\n", kPly)) == Asked{" ", asks});
+    CHECK(rangesAfter("\"1\"", answer("200 OK", "ETag: \"2\"\r\n", kPly)) == Asked{" ", asks});
+    // A rest that is none, or of another version: the whole is asked for.
+    for (const WebAnswer& second :
+         {rest(half, "\"2\""), rest(half + 1, "\"1\""), rest(0, "\"1\""),
+          answer("206 Partial Content", "ETag: \"1\"\r\n", kPly.substr(half)),
+          answer("206 Partial Content", "ETag: \"1\"\r\nContent-Range: bytes */9\r\n", "x"), answer("416 Range Not Satisfiable")}) {
+        CAPTURE(second.bytes.substr(0, 120));
+        CHECK(rangesAfter("\"1\"", second) == Asked{" ", asks, " "});
+    }
+    // A rest that is too short is one more break; nothing goes on from a busy server's answer.
+    CHECK(rangesAfter("\"1\"", rest(half, "\"1\"", kPly.size() - 1)) == Asked{" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)});
+    CHECK(rangesAfter("\"1\"", answer("503 Service Unavailable", "", "busy")) == Asked{" ", asks, asks});
+    // Without a version that says that every byte is the same, nothing is put together.
+    CHECK(rangesAfter("W/\"1\"", answer("200 OK", "", kPly)) == Asked{" ", " "});
+}
+
+TEST_CASE("a large file may break off more often than attempts are made") {
+    constexpr std::size_t kPiece = 1 << 20;
+    const Folder folder;
+    writePly(makeBuiltin("builtin:atelier", 100000), folder.file("a.ply"));
+    const Scene scene = loadScene(folder.file("a.ply"));
+    const std::string large = textOf(folder.file("a.ply"));
+    REQUIRE(large.size() > 6 * kPiece);
+    const WebServer server([&](const WebRequest& request) {
+        const auto range = request.headers.find("range");
+        const std::size_t from = range != request.headers.end() ? std::stoul(range->second.substr(6)) : 0;
+        WebAnswer given{fmt::format("HTTP/1.1 {}\r\nContent-Length: {}\r\nETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n\r\n{}",
+                                    from > 0 ? "206 Partial Content" : "200 OK", large.size() - from, from, large.size() - 1, large.size(),
+                                    large.substr(from, kPiece)),
+                        WebAnswer::Then::kClose};
+        return given;
+    });
+    WebSettings settings = webSettings(folder);
+    settings.fetch.attempts = 2;
+    checkSameScene(scene, loadFromWeb(server.at("/a.ply"), settings));
+    CHECK(server.asked().size() == (large.size() + kPiece - 1) / kPiece);
 }
 
 TEST_CASE("a few attempts are enough") {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <new>
 #include <utility>
 
@@ -21,6 +22,9 @@ constexpr std::uint64_t kLongestErrorPage = 1 << 16;
 // Less than this while a server's patience lasts is nothing.
 constexpr std::uint64_t kLeastBytes = 1024;
 constexpr std::size_t kLongestVersion = 256;
+// An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
+constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
+constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
 
 bool isPlain(const std::string& text) {
     return text.size() <= kLongestVersion && std::ranges::all_of(text, [](unsigned char letter) { return std::isprint(letter) != 0; });
@@ -57,15 +61,6 @@ std::string explainStatus(long status) {
 Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTally& tally, FetchRequest request)
     : cache_(cache), settings_(settings), tally_(tally), request_(std::move(request)), easy_(curl_easy_init()) {
     if (easy_ == nullptr) { throw std::bad_alloc(); }
-    const auto addHeader = [&](const char* name, const std::string& value) {
-        if (value.empty() || !isPlain(value)) { return; }
-        curl_slist* longer = curl_slist_append(headers_.get(), fmt::format("{}: {}", name, value).c_str());
-        if (longer == nullptr) { throw std::bad_alloc(); }
-        (void)headers_.release();
-        headers_.reset(longer);
-    };
-    addHeader("If-None-Match", request_.version.etag);
-    addHeader("If-Modified-Since", request_.version.last_modified);
     const auto set = [&](CURLoption option, auto value) { curl_easy_setopt(easy_.get(), option, value); };
     // A file of this machine is never followed to, nor is a secure address to an insecure one.
     const bool is_secure = request_.address.substr(0, 5).find_first_of("sS") != std::string::npos;
@@ -80,7 +75,6 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     set(CURLOPT_NOSIGNAL, 1l);
     set(CURLOPT_BUFFERSIZE, kBufferBytes);
     set(CURLOPT_USERAGENT, "binosplat");
-    set(CURLOPT_HTTPHEADER, headers_.get());
     if (const std::string trusted = environment("SSL_CERT_FILE"); !trusted.empty()) { set(CURLOPT_CAINFO, trusted.c_str()); }
     set(CURLOPT_ERRORBUFFER, error_.data());
     set(CURLOPT_WRITEFUNCTION, &Transfer::writeBody);
@@ -92,8 +86,30 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
 void Transfer::start() {
     ++attempts_;
     error_[0] = '\0';
+    got_bytes_ = kept_bytes_ = file_ != nullptr ? file_->sizeBytes() : 0;
+    setHeaders();
     watched_since_ = Clock::now();
     watched_bytes_ = got_bytes_;
+}
+
+void Transfer::setHeaders() {
+    std::unique_ptr<curl_slist, ListCloser> headers;
+    const auto add = [&](const char* name, const std::string& value) {
+        if (value.empty() || !isPlain(value)) { return; }
+        curl_slist* longer = curl_slist_append(headers.get(), fmt::format("{}: {}", name, value).c_str());
+        if (longer == nullptr) { throw std::bad_alloc(); }
+        (void)headers.release();
+        headers.reset(longer);
+    };
+    if (kept_bytes_ == 0) {
+        add("If-None-Match", request_.version.etag);
+        add("If-Modified-Since", request_.version.last_modified);
+    } else {
+        add("If-Range", version_.etag);
+    }
+    curl_easy_setopt(easy_.get(), CURLOPT_RANGE, kept_bytes_ == 0 ? nullptr : fmt::format("{}-", kept_bytes_).c_str());
+    curl_easy_setopt(easy_.get(), CURLOPT_HTTPHEADER, headers.get());
+    headers_ = std::move(headers);
 }
 
 bool Transfer::isStalled() {
@@ -112,14 +128,21 @@ std::size_t Transfer::writeBody(char* data, std::size_t size, std::size_t count,
 // Other than `bytes` stops the transfer. Nothing is thrown through curl.
 std::size_t Transfer::take(const char* data, std::size_t bytes) {
     got_bytes_ += bytes;
-    if (status() != 200) { return got_bytes_ <= kLongestErrorPage ? bytes : 0; }
+    const long answer = status();
+    if (answer == kPartial && kept_bytes_ > 0) {
+        if (!isTheRest()) { return 0; }
+    } else if (answer != kOk) {
+        return got_bytes_ - kept_bytes_ <= kLongestErrorPage ? bytes : 0;
+    } else if (kept_bytes_ > 0) {  // another version, or a server that sends whole files only
+        startOver();
+        got_bytes_ = bytes;
+    }
     try {
         if (file_ == nullptr && !beginBody()) { return 0; }
     } catch (const std::exception& error) {
         refused_ = fmt::format("cannot be kept ({})", error.what());
         return 0;
     }
-    tally_.got_bytes += bytes;
     if (file_->sizeBytes() + bytes > request_.most_bytes) {
         refused_ = fmt::format("is longer than {} bytes, which is the most that is taken", request_.most_bytes);
         return 0;
@@ -128,7 +151,25 @@ std::size_t Transfer::take(const char* data, std::size_t bytes) {
         refused_ = "cannot be kept: there is no room on the disk of the cache; make some";
         return 0;
     }
+    tally_.got_bytes += bytes;
     return bytes;
+}
+
+bool Transfer::isNoRest() const {
+    const long answer = status();
+    return kept_bytes_ > 0 && (answer == kNoSuchRange || (answer == kPartial && !isTheRest()));
+}
+
+bool Transfer::isTheRest() const {
+    std::uint64_t first = 0;
+    const std::string range = header("Content-Range"), unit = "bytes ";
+    if (!range.starts_with(unit)) { return false; }
+    const char *const from = range.data() + unit.size(), *const end = range.data() + range.size();
+    const auto [after, error] = std::from_chars(from, end, first);
+    if (error != std::errc{} || first != kept_bytes_ || after == end || *after != '-') { return false; }
+    const std::size_t slash = range.find('/');
+    const std::string total = slash == std::string::npos ? "" : range.substr(slash + 1);
+    return (!is_sized_ || total == "*" || total == std::to_string(expected_bytes_)) && header("ETag") == version_.etag;
 }
 
 bool Transfer::beginBody() {
@@ -139,6 +180,7 @@ bool Transfer::beginBody() {
         refused_ = "cannot be kept: no file can be made in the folder of the cache";
         return false;
     }
+    version_ = versionSent();
     if (said < 0) { return true; }
     const auto expected = static_cast<std::uint64_t>(said);
     if (expected > request_.most_bytes) {
@@ -154,14 +196,20 @@ bool Transfer::beginBody() {
     return true;
 }
 
-void Transfer::forgetBody() {
-    if (file_ != nullptr) { tally_.got_bytes -= got_bytes_; }
+void Transfer::startOver() {
+    if (file_ != nullptr) { tally_.got_bytes -= file_->sizeBytes(); }
     if (std::exchange(is_sized_, false)) {
         tally_.expected_bytes -= expected_bytes_;
         --tally_.sized;
     }
     file_.reset();
-    got_bytes_ = expected_bytes_ = 0;
+    version_ = {};
+    got_bytes_ = kept_bytes_ = expected_bytes_ = 0;
+}
+
+bool Transfer::canGoOn() const {
+    const bool is_strong = version_.etag.starts_with('"');
+    return file_ != nullptr && file_->sizeBytes() > 0 && is_strong && !isNoRest();
 }
 
 long Transfer::status() const {
@@ -195,7 +243,7 @@ FileVersion Transfer::versionSent() const {
 bool Transfer::finish(CURLcode code, bool is_stalled) {
     std::optional<Fetched> verdict = judge(code, is_stalled);
     if (!verdict) {
-        forgetBody();
+        if (!canGoOn()) { startOver(); }
         return false;
     }
     if (!is_sized_) { ++tally_.sized; }
@@ -208,17 +256,29 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
     using Kind = Fetched::Kind;
     const long answer = status();
     // What curl takes for a whole answer ended before it began.
-    if (code == CURLE_OK && answer == 200 && file_ == nullptr && !saysLength()) { code = CURLE_GOT_NOTHING; }
+    if (code == CURLE_OK && answer == kOk && file_ == nullptr && !saysLength()) { code = CURLE_GOT_NOTHING; }
     if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
-    if (!is_stalled && code == CURLE_OK && answer == 200) {
-        if (file_ == nullptr && !beginBody()) { return Fetched{Kind::kRefused, refused_}; }  // of an empty file
-        return Fetched{Kind::kNew, "", std::move(file_), versionSent()};
+    const bool is_rest = answer == kPartial && kept_bytes_ > 0 && isTheRest();
+    // A rest is as long as the server said of the whole, whatever it says of the rest.
+    if (code == CURLE_OK && is_rest && is_sized_ && file_->sizeBytes() != expected_bytes_) { code = CURLE_PARTIAL_FILE; }
+    if (!is_stalled && code == CURLE_OK && (answer == kOk || is_rest)) {
+        if (answer == kOk && (file_ == nullptr || kept_bytes_ > 0)) {  // of an empty file
+            startOver();
+            if (!beginBody()) { return Fetched{Kind::kRefused, refused_}; }
+        }
+        return Fetched{Kind::kNew, "", std::move(file_), version_};
     }
-    if (!is_stalled && code == CURLE_OK && answer == 304 && headers_ != nullptr) { return Fetched{Kind::kUnchanged, ""}; }
+    if (!is_stalled && code == CURLE_OK && answer == 304 && kept_bytes_ == 0 && headers_ != nullptr) {
+        return Fetched{Kind::kUnchanged, ""};
+    }
 
     const bool is_answer = !is_stalled && (code == CURLE_OK || code == CURLE_WRITE_ERROR);
     const std::string reason = describe(code, is_stalled);
-    if (is_answer ? isBusy(answer) : is_stalled || isCut(code)) {
+    if (is_answer ? isBusy(answer) || isNoRest() : is_stalled || isCut(code)) {
+        if (canGoOn() && file_->sizeBytes() >= worthwhile_bytes_) {
+            worthwhile_bytes_ = file_->sizeBytes() + kWorthwhileBytes;
+            attempts_ = 1;
+        }
         curl_off_t asked_s = 0;
         if (is_answer) { curl_easy_getinfo(easy_.get(), CURLINFO_RETRY_AFTER, &asked_s); }
         const bool is_too_long = asked_s > std::chrono::duration_cast<std::chrono::seconds>(settings_.most_pause).count();

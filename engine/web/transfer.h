@@ -1,4 +1,5 @@
-// One request to a server, as often as it takes.
+// One request to a server, as often as it takes. A file that broke off goes on where it ended, if the server says which version of it that
+// was (a strong ETag, RFC 9110, section 8.8.3) and sends the rest of the same; else it starts over.
 #pragma once
 
 #include "engine/web/fetcher.h"
@@ -54,6 +55,12 @@ private:
     std::size_t take(const char* data, std::size_t bytes);
     // False, with the reason, if the body is not to be had.
     [[nodiscard]] bool beginBody();
+    // Whether the answer (206) is the rest of what is there.
+    [[nodiscard]] bool isTheRest() const;
+    // The rest was asked for, and the answer says that it is not to be had so.
+    [[nodiscard]] bool isNoRest() const;
+    [[nodiscard]] bool canGoOn() const;
+    void setHeaders();
     [[nodiscard]] long status() const;
     [[nodiscard]] std::string header(const char* name) const;
     // How long the body is, or where it ends.
@@ -62,7 +69,7 @@ private:
     // None: another attempt may do.
     [[nodiscard]] std::optional<Fetched> judge(CURLcode code, bool is_stalled);
     [[nodiscard]] std::string describe(CURLcode code, bool is_stalled) const;
-    void forgetBody();
+    void startOver();
 
     const WebCache& cache_;
     const FetchSettings& settings_;
@@ -73,13 +80,16 @@ private:
     std::unique_ptr<curl_slist, ListCloser> headers_;
     std::array<char, CURL_ERROR_SIZE> error_{};
 
-    int attempts_ = 0;
+    int attempts_ = 0;                          // since one that was worthwhile
+    std::uint64_t worthwhile_bytes_ = 1 << 20;  // so much of the file makes the next one that
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
     bool is_sized_ = false;  // the server has said how long it is
     std::unique_ptr<IncomingFile> file_;
-    std::string refused_;  // why the body was not taken
-    std::string last_;     // what was wrong the last time
+    FileVersion version_;           // of the bytes in file_
+    std::uint64_t kept_bytes_ = 0;  // of them, those from earlier attempts; more than 0: the rest was asked for
+    std::string refused_;           // why the body was not taken
+    std::string last_;              // what was wrong the last time
 };
 
 }  // namespace binosplat
