@@ -4,10 +4,15 @@
 #include "tests/installed.h"
 #include "tests/run_program.h"
 #include "tests/spz_files.h"
+#ifdef BINOSPLAT_SOG
+#include "tests/streamed_scenes.h"
+#endif
 #include "tests/web_runs.h"
 
 #include <array>
+#include <csignal>
 #include <cstdio>
+#include <optional>
 
 TEST_SUITE_BEGIN("web_program");
 
@@ -35,6 +40,48 @@ std::string servedWall(const Workplace& work) {
     const std::string file = (work.path / "wall.ply").string();
     writePly(makeBuiltin("builtin:slanted-wall", 0), file);
     return textOf(file);
+}
+
+// key.pem and own.pem, a certificate of the loopback address that nobody vouches for.
+void makeCertificate(const Workplace& work) {
+    const std::string make =
+        "openssl req -x509 -newkey rsa:2048 -nodes -keyout key.pem -out own.pem -subj /CN=localhost "
+        "-addext subjectAltName=DNS:localhost,IP:127.0.0.1";
+    REQUIRE(work.runCommand(make).exit_code == 0);
+}
+
+// A program that runs beside the test, for at most a minute.
+class Beside {
+public:
+    Beside(const Workplace& work, const std::string& command)
+        : told_(::popen(fmt::format("cd '{}' && echo $$ && exec timeout --foreground 60 {}", work.path.string(), command).c_str(), "r")) {
+        REQUIRE(told_ != nullptr);
+        pid_ = std::stoi(lineWith("").value());
+    }
+    Beside(const Beside&) = delete;
+    Beside& operator=(const Beside&) = delete;
+    ~Beside() { ::pclose(told_); }
+
+    // The next line of what it prints that has `part` in it; none at its end.
+    std::optional<std::string> lineWith(const std::string& part) {
+        std::array<char, 1024> line{};
+        while (std::fgets(line.data(), static_cast<int>(line.size()), told_) != nullptr) {
+            if (contains(line.data(), part)) { return line.data(); }
+        }
+        return std::nullopt;
+    }
+    void end() const { ::kill(pid_, SIGTERM); }
+
+private:
+    std::FILE* told_;
+    pid_t pid_ = 0;
+};
+
+// What a program of its own may listen on: free a moment ago.
+int freePort() {
+    const WebServer server(std::map<std::string, std::string>{});
+    const std::string address = server.at("");
+    return std::stoi(address.substr(address.rfind(':') + 1));
 }
 
 }  // namespace
@@ -106,22 +153,11 @@ TEST_CASE("a server whose certificate is not valid is refused") {
     if (!isInstalled("openssl", "openssl")) { return; }
     const Workplace work;
     (void)servedWall(work);
-    const std::string make =
-        "openssl req -x509 -newkey rsa:2048 -nodes -keyout key.pem -out own.pem -subj /CN=localhost "
-        "-addext subjectAltName=DNS:localhost,IP:127.0.0.1";
-    REQUIRE(work.runCommand(make).exit_code == 0);
+    makeCertificate(work);
     // It ends after the second connection.
-    const std::string serve = fmt::format(
-        "cd '{}' && exec timeout 60 openssl s_server -accept 127.0.0.1:0 -key key.pem -cert own.pem -WWW -naccept 2 2> /dev/null",
-        work.path.string());
-    std::FILE* const told = ::popen(serve.c_str(), "r");
-    REQUIRE(told != nullptr);
-    std::array<char, 256> line{};
-    std::string port;
-    while (port.empty() && std::fgets(line.data(), static_cast<int>(line.size()), told) != nullptr) {
-        const std::string text = line.data();
-        if (text.starts_with("ACCEPT ")) { port = text.substr(text.rfind(':') + 1, text.find('\n') - text.rfind(':') - 1); }
-    }
+    Beside server(work, "openssl s_server -accept 127.0.0.1:0 -key key.pem -cert own.pem -WWW -naccept 2 2> /dev/null");
+    const std::string listens = server.lineWith("ACCEPT ").value();
+    const std::string port = listens.substr(listens.rfind(':') + 1, listens.find('\n') - listens.rfind(':') - 1);
     const std::string address = fmt::format("https://127.0.0.1:{}/wall.ply", port);
     const Outcome refused = runWith(work, "info " + address);
     CHECK(refused.exit_code == 1);
@@ -131,7 +167,33 @@ TEST_CASE("a server whose certificate is not valid is refused") {
         "info " + address, fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{}' SSL_CERT_FILE=own.pem", (work.base / "caches").string()));
     INFO(trusted.errors);
     CHECK(trusted.exit_code == 0);
-    ::pclose(told);
 }
+
+#ifdef BINOSPLAT_SOG
+TEST_CASE("a server with HTTP/2 sends all files of a scene over one connection") {
+    if (!isInstalled("openssl", "openssl") || !isInstalled("nghttpd", "nghttp2-server")) { return; }
+    const Workplace work;
+    const Folder folder;
+    const std::filesystem::path scene = writeSogFolder(folder, "sog", makeSog());
+    makeCertificate(work);
+    const int port = freePort();
+    Beside server(work, fmt::format("nghttpd -v -a 127.0.0.1 -d '{}' {} key.pem own.pem 2> /dev/null", folder.file("sog"), port));
+    REQUIRE(server.lineWith("listen 127.0.0.1"));
+    const std::string address = fmt::format("https://127.0.0.1:{}/meta.json", port);
+    const Outcome far = work.run(
+        "info " + address, fmt::format("no_proxy=127.0.0.1 XDG_CACHE_HOME='{}' SSL_CERT_FILE=own.pem", (work.base / "caches").string()));
+    INFO(far.errors);
+    CHECK(far.exit_code == 0);
+    const std::string near = work.run("info '" + scene.string() + "'").output;
+    CHECK(far.output.substr(far.output.find('\n')) == near.substr(near.find('\n')));
+    server.end();
+    std::size_t asked = 0;
+    while (const auto line = server.lineWith(":path: ")) {
+        ++asked;
+        CHECK_MESSAGE(line->starts_with("[id=1]"), *line);  // the first connection
+    }
+    CHECK(asked == makeSog().size());
+}
+#endif
 
 }  // namespace web_program_test

@@ -11,7 +11,7 @@ packages=(
     libtinygltf-dev libopenimageio-dev libwebp-dev libzip-dev libpng-dev zlib1g-dev libzstd-dev libcurl4-openssl-dev ca-certificates
     libopenxr-dev libopenxr-utils openxr-layer-corevalidation libimgui-dev libfribidi-dev libfontconfig-dev libharfbuzz-dev libfreetype-dev libglfw3-dev
     fonts-dejavu-core fonts-droid-fallback fonts-lohit-deva
-    doctest-dev python3 xvfb xdotool openssl
+    doctest-dev python3 xvfb xdotool openssl nghttp2-server
     dpkg-dev file
 )
 # For continuous integration besides: the check of the format.
