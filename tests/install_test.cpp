@@ -1,5 +1,6 @@
 // Facts about an installed program: it needs nothing of the folder it was built in.
 #include "tests/run_program.h"
+#include "tests/web_server.h"
 
 #include <doctest/doctest.h>
 
@@ -102,6 +103,24 @@ TEST_CASE("a program of somebody else finds the installed engine by CMake and re
     REQUIRE(work.run("render room.ply " + view + "--out same").exit_code == 0);
     CHECK(work.run("compare left.png same/left.png").output.starts_with("psnr inf\n"));
     CHECK(work.run("compare right.png same/right.png").output.starts_with("psnr inf\n"));
+
+    // Also from a server, in a build that has the web.
+    {
+        std::ifstream file(work.path / "room.ply", std::ios::binary);
+        const std::string bytes(std::istreambuf_iterator<char>(file), {});
+        const binosplat::test::WebServer server({{"/room.ply", bytes}});
+        const Outcome fetched = work.runCommand(
+            fmt::format("mkdir far && cd far && no_proxy=127.0.0.1 XDG_CACHE_HOME='{}' ../build/stereo {} 0 -1.5 0.5 0 -1.2 3",
+                        (work.base / "caches").string(), server.at("/room.ply")));
+        INFO(fetched.errors);
+#ifdef BINOSPLAT_WEB_TESTS
+        REQUIRE(fetched.exit_code == 0);
+        CHECK(work.runCommand("cmp left.png far/left.png && cmp right.png far/right.png").exit_code == 0);
+#else
+        CHECK(fetched.exit_code == 1);
+        CHECK(fetched.errors.find("network") != std::string::npos);
+#endif
+    }
 
     const Outcome refused = work.runCommand("build/stereo nothing.ply");
     CHECK(refused.exit_code == 1);

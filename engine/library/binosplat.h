@@ -68,8 +68,8 @@ public:
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
 
-    // Loads a scene in place of the one before: a file of any format that the README lists, a folder, or builtin:NAME. Where it fails, the
-    // scene before stays.
+    // Loads a scene in place of the one before: a file of any format that the README lists, a folder, builtin:NAME, or an address on the
+    // web of such a file (docs/web.md: what is sent and what is kept; needs libcurl). Where it fails, the scene before stays.
     void load(const std::string& scene);
 
     [[nodiscard]] std::string deviceName() const;

@@ -6,8 +6,8 @@
 #include "engine/library/binosplat.h"
 #include "engine/picture/image_io.h"
 #include "engine/scene/procedural.h"
-#include "engine/scene/scene.h"
 #include "engine/scene/standpoint.h"
+#include "engine/web/web_files.h"
 
 #include <cmath>
 #include <numbers>
@@ -20,6 +20,7 @@ namespace {
 
 constexpr unsigned kLargestSize = 16384;
 constexpr gpu::uint kMoveCost = 32;  // tiles of no more pairs are rendered: docs/tried.md, *One eye from the other*
+constexpr std::uint64_t kCacheBytes = std::uint64_t{4} << 30;  // of scenes from the web, as --cache-limit
 
 glm::dvec3 vectorOf(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -113,7 +114,8 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::load(const std::string& scene) {
-    const Scene loaded = loadScene(scene);
+    LoadNotes notes;
+    const Scene loaded = loadSceneFromAnywhere(scene, 0, notes, {}, {}, {webCacheFolder(), kCacheBytes, {}});
     const std::optional<binosplat::View> own = isBuiltin(scene) ? builtinView(scene) : std::nullopt;
     const binosplat::View start = own ? *own : judgeStandpoint(loaded).view;
     GpuScene uploaded(state_->context, loaded);
