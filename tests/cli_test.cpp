@@ -9,7 +9,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <set>
 #include <utility>
 
 TEST_SUITE_BEGIN("cli");
@@ -56,31 +55,6 @@ TEST_CASE("usageErrorsExitWithTwo") {
     checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --lpips w.bin"), 2, "--motion and --lpips");
     checkRefused(work.run("bench builtin:one-splat --out out --motion m.csv --cameras c.json --photos p"), 2, "--motion and --photos");
     CHECK(work.isEmpty());
-}
-
-TEST_CASE("kernelsAreAllBuiltAndListed") {
-    const Workplace work;
-    const Outcome outcome = work.run("kernels --out k");
-    INFO("stderr: " << outcome.errors);
-    REQUIRE(outcome.exit_code == 0);
-    const auto listed = nlohmann::json::parse(std::ifstream(work.path / "k" / "kernels.json"));
-    CHECK_FALSE(listed.at("device").get<std::string>().empty());
-    std::set<std::string> shaders;
-    std::set<std::pair<std::string, std::string>> variants;
-    for (const auto& kernel : listed.at("kernels")) {
-        shaders.insert(kernel.at("shader").get<std::string>());
-        variants.emplace(kernel.at("shader").get<std::string>(), kernel.at("constants").dump());
-        CHECK(kernel.at("statistics").is_object());
-    }
-    CHECK(variants.size() == listed.at("kernels").size());
-    // Each shader that there is.
-    std::set<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders")) {
-        if (entry.path().extension() == ".comp") { files.insert(entry.path().stem().string()); }
-    }
-    CHECK(shaders == files);
-    checkRefused(work.run("kernels", kNoDriver), 3, "Vulkan");
-    checkRefused(work.run("kernels --device nobody"), 3, "nobody");
 }
 
 TEST_CASE("badValuesExitWithOneAndSayTheRange") {
