@@ -66,45 +66,23 @@ void splitTargets(FramePlan& plan, const FrameSettings& settings) {
     }
 }
 
-// The chosen tiles of a target. It has its own list: most splats touch tiles of one of an eye's two pictures alone, and projecting costs
-// more than culling.
-void renderChosen(FramePlan& plan, int target, ListPlan list) {
-    plan.targets[static_cast<std::size_t>(target)].list = target;
-    list.eyes.first = list.eyes.order_eye = list.eyes.list = target;
-    list.eyes.count = 1;
-    list.of_chosen = true;
-    list.role = plan.targets[static_cast<std::size_t>(target)].role;
-    plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
-    plan.lists.push_back(list);
-    plan.steps.push_back({Step::Kind::kRender, target});
-}
-
-// An eye in two pictures, of which the smaller comes first: what it holds says where it will do.
-void renderInTwo(FramePlan& plan, int eye, const ListPlan& list) {
-    TargetPlan& sharp = plan.targets[static_cast<std::size_t>(eye)];
-    sharp.choice = TileChoice::kSharp;
-    plan.targets[static_cast<std::size_t>(*sharp.half)].choice = TileChoice::kHalf;
-    plan.steps.push_back({Step::Kind::kHalfTiles, eye});
-    renderChosen(plan, *sharp.half, list);
-    plan.steps.push_back({Step::Kind::kOwnTiles, eye});
-    renderChosen(plan, eye, list);
-    plan.steps.push_back({Step::Kind::kFill, eye});
-}
-
-// The chosen tiles of two targets, the first in `order` first, from one list.
-void renderChosen(FramePlan& plan, std::array<int, 2> order, ListPlan list) {
-    const int first = std::min(order[0], order[1]);
-    TargetPlan &one = plan.targets[static_cast<std::size_t>(order[0])], &other = plan.targets[static_cast<std::size_t>(order[1])];
-    one.list = other.list = list.eyes.first = list.eyes.list = first;
-    list.eyes.count = 2;
+// The chosen tiles of the targets of one eye, or of two, the first in this order first, from one list. An eye's two pictures have a list
+// each: most splats touch tiles of one of them alone, and projecting costs more than culling.
+void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bool at_once) {
+    const auto targetAt = [&](std::size_t i) -> TargetPlan& { return plan.targets[static_cast<std::size_t>(order[i])]; };
+    const int first = *std::ranges::min_element(order);
+    for (std::size_t i = 0; i < order.size(); ++i) { targetAt(i).list = first; }
+    list.eyes.first = list.eyes.list = first;
+    list.eyes.count = static_cast<int>(order.size());
     list.eyes.order_eye = order[0];
     list.of_chosen = true;
+    if (order.size() == 1) { list.role = targetAt(0).role; }
     const auto makeList = [&](const ListPlan& made) {
         plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
         plan.lists.push_back(made);
     };
     // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
-    if (plan.shares_order && one.eye.size_px == other.eye.size_px) {
+    if (at_once && plan.shares_order && targetAt(0).eye.size_px == targetAt(1).eye.size_px) {
         list.eyes.shares = 2;
         makeList(list);
         plan.steps.push_back({Step::Kind::kRenderAll, order[0]});
@@ -112,8 +90,25 @@ void renderChosen(FramePlan& plan, std::array<int, 2> order, ListPlan list) {
     }
     makeList(list);
     plan.steps.push_back({Step::Kind::kRender, order[0]});
-    if (!plan.shares_order) { makeList({.eyes = {.order_eye = order[1], .list = first}, .role = other.role, .culls = false}); }
+    if (order.size() == 1) { return; }
+    if (!plan.shares_order) { makeList({.eyes = {.order_eye = order[1], .list = first}, .role = targetAt(1).role, .culls = false}); }
     plan.steps.push_back({Step::Kind::kRender, order[1]});
+}
+
+// Eyes in two pictures each, of which the smaller ones come first: what they hold says where they will do.
+void renderInTwo(FramePlan& plan, std::span<const int> eyes, const ListPlan& list) {
+    std::vector<int> halves;
+    for (const int eye : eyes) {
+        TargetPlan& sharp = plan.targets[static_cast<std::size_t>(eye)];
+        halves.push_back(*sharp.half);
+        sharp.choice = TileChoice::kSharp;
+        plan.targets[static_cast<std::size_t>(*sharp.half)].choice = TileChoice::kHalf;
+        plan.steps.push_back({Step::Kind::kHalfTiles, eye});
+    }
+    renderChosen(plan, halves, list, false);
+    for (const int eye : eyes) { plan.steps.push_back({Step::Kind::kOwnTiles, eye}); }
+    renderChosen(plan, eyes, list, false);
+    for (const int eye : eyes) { plan.steps.push_back({Step::Kind::kFill, eye}); }
 }
 
 // An eye's targets from their pasts, the smaller first if there are two: what it holds says where it will do.
@@ -147,9 +142,9 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     for (const int e : order) { makeInTwo(plan, e); }
     plan.budget = settings.stereo.budget;
     plan.steps.push_back({Step::Kind::kChoose, 0});
-    renderChosen(plan, order, list);
+    renderChosen(plan, order, list, true);
     if (!in_two) { return; }
-    renderChosen(plan, std::array{*plan.targets[order[0]].half, *plan.targets[order[1]].half}, list);
+    renderChosen(plan, std::array{*plan.targets[order[0]].half, *plan.targets[order[1]].half}, list, true);
     for (const int e : order) { plan.steps.push_back({Step::Kind::kFill, e}); }
 }
 
@@ -164,7 +159,7 @@ void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& 
     warped.kept.past = false;
     if (isInTwo(settings, plan.eyes)) {
         splitTargets(plan, settings);
-        renderInTwo(plan, full, list);
+        renderInTwo(plan, std::array{full}, list);
     } else {
         plan.steps.push_back({Step::Kind::kList, 0});
         plan.lists.push_back(list);
@@ -172,34 +167,6 @@ void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& 
     }
     makeInTwo(plan, other);
     if (plan.targets[static_cast<std::size_t>(other)].half) { plan.steps.push_back({Step::Kind::kFill, other}); }
-}
-
-// Eyes in two pictures each, without a past: the first in full, and the other, where the mode allows, from it.
-void planPeriphery(FramePlan& plan, const FrameSettings& settings, const ListPlan& list) {
-    const int first = plan.dominant, second = 1 - first;
-    const bool from_other = plan.eyes == 2 && settings.mode != Mode::kAlternate;
-    for (TargetPlan& target : plan.targets) { target.kept.past = target.kept.past || from_other; }
-    splitTargets(plan, settings);
-    renderInTwo(plan, first, list);
-    if (plan.eyes == 1) { return; }
-    if (!from_other) {
-        renderInTwo(plan, second, list);
-        return;
-    }
-    const auto makeFrom = [&](int source, int target) {
-        const TargetPlan& other = plan.targets[static_cast<std::size_t>(source)];
-        makeFromPast(plan.targets[static_cast<std::size_t>(target)], Past{other.eye, other.picture}, settings,
-                     static_cast<std::size_t>(second));
-    };
-    const int half = *plan.targets[static_cast<std::size_t>(second)].half;
-    makeFrom(first, second);
-    makeFrom(*plan.targets[static_cast<std::size_t>(first)].half, half);
-    makeInTwo(plan, second);
-    plan.budget = settings.stereo.budget;
-    plan.steps.push_back({Step::Kind::kChoose, 0});
-    renderChosen(plan, second, list);
-    renderChosen(plan, half, list);
-    plan.steps.push_back({Step::Kind::kFill, second});
 }
 
 StereoSettings stereoSettingsOf(const FrameSettings& settings) {
@@ -305,7 +272,13 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     }
 
     if (isInTwo(settings, eyes.size())) {
-        planPeriphery(plan, settings, both);
+        // Both eyes: where each is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
+        splitTargets(plan, settings);
+        if (one_eye) {
+            renderInTwo(plan, std::array{first}, both);
+        } else {
+            renderInTwo(plan, std::array{first, second}, both);
+        }
         return plan;
     }
     if (apart) {
