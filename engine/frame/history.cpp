@@ -13,12 +13,14 @@ namespace {
 constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
+// From farther away a past is worse than the other eye, which is 6 cm away and has just been rendered: docs/tried.md, *Reuse over time*.
+constexpr double kFarthestPastMetres = 0.05;
 // Beyond this a past is too coarse, or much finer than what is wanted.
 constexpr double kMostZoom = 2.0;
 
-bool moves(const Pose& from, const Pose& to, double units_per_metre) {
+bool moves(const Pose& from, const Pose& to, double farthest) {
     const bool turns = std::abs(glm::dot(from.orientation, to.orientation)) < std::cos(0.5 * glm::radians(kJumpDegrees));
-    return turns || glm::distance(from.position, to.position) > kJumpMetres * units_per_metre;
+    return turns || glm::distance(from.position, to.position) > farthest;
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
     for (std::size_t e = 0; e < eyes.size(); ++e) {
         const Intrinsics &lens = before[e].intrinsics, &other_lens = eyes[e].intrinsics;
         const bool zooms = std::abs(other_lens.fx - lens.fx) + std::abs(other_lens.fy - lens.fy) > kJumpZoom * lens.fx;
-        if (zooms || moves(before[e].world_from_camera, eyes[e].world_from_camera, units_per_metre)) { return true; }
+        if (zooms || moves(before[e].world_from_camera, eyes[e].world_from_camera, kJumpMetres * units_per_metre)) { return true; }
     }
     return false;
 }
@@ -51,7 +53,7 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
 bool canComeFrom(const Eye& past, const Eye& eye, double units_per_metre) {
     const double zoom_x = eye.intrinsics.fx / past.intrinsics.fx, zoom_y = eye.intrinsics.fy / past.intrinsics.fy;
     const bool zooms = std::min(zoom_x, zoom_y) < 1.0 / kMostZoom || std::max(zoom_x, zoom_y) > kMostZoom;
-    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, units_per_metre);
+    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, kFarthestPastMetres * units_per_metre);
 }
 
 MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {
