@@ -110,17 +110,13 @@ void drawTimes(const PanelStatus& status) {
                      ImVec2(0.0f, 60.0f));
     if (status.frame == nullptr) { return; }
     const FrameCounters& counters = status.frame->counters;
-    std::uint64_t tiles = 0, hidden = 0, splats = 0;
-    for (const TargetCounters& target : counters.targets) {
-        tiles = std::max(tiles, target.tiles);
-        hidden += target.tiles_hidden;
-        splats = std::max(splats, target.splats_visible);
-    }
+    std::uint64_t splats = 0;
+    for (const TargetCounters& target : counters.targets) { splats = std::max(splats, target.splats_visible); }
     const WarpedCounters warped = counters.warped.value_or(WarpedCounters{});
     const WarpedCounters::Classes pixels = warped.pixels.value_or(WarpedCounters::Classes{});
     const auto percent = [](std::uint64_t part, double whole) { return 100.0 * static_cast<double>(part) / std::max(whole, 1.0); };
     writeLine(fmt::format("GPU {:.2f} ms   patched {:.1f} %   holes {:.2f} %   splats {:.0f} k", status.frame->gpu_total_ms,
-                          percent(warped.tiles_patched, static_cast<double>(tiles) - 0.5 * static_cast<double>(hidden)),
+                          percent(warped.tiles_patched, static_cast<double>(warped.tiles_shown)),
                           percent(pixels.hole, static_cast<double>(pixels.covered + pixels.gap + pixels.hole)),
                           static_cast<double>(splats) / 1000.0));
 }
