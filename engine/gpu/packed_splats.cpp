@@ -42,18 +42,6 @@ constexpr double kHair = 1.0 + 1e-5, kRounding = 1e-5;
 // How far a splat of this opacity is seen, in scales.
 double reachOf(float opacity) { return kHair * std::sqrt(std::max(2.0 * std::log(255.0 * static_cast<double>(opacity)), 0.0) + kRounding); }
 
-// Of the page's splats that can be seen.
-gpu::ScenePage boundsOf(const Scene& scene, std::uint64_t first, std::uint64_t count) {
-    PageBounds bounds;
-    for (std::uint64_t i = first; i < first + count; ++i) {
-        const std::optional<glm::vec4> rotation = rotationToShow(scene, i);
-        if (!rotation) { continue; }
-        const glm::vec3 scales(scene.scales[i], scene.isGaussian3d() ? scene.thicknesses[i] : 0.0f);
-        bounds.add(scene.positions[i], glm::quat(rotation->w, rotation->x, rotation->y, rotation->z), scales, scene.opacities[i]);
-    }
-    return bounds.page();
-}
-
 }  // namespace
 
 glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity) {
@@ -127,7 +115,7 @@ gpu::SceneChunk ChunkLayout::chunkAt(const Buffer& buffer, std::uint64_t offset_
 }
 
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
-                std::uint8_t* to) {
+                std::uint8_t* to, PageBounds* bounds) {
     const auto put = [&]<typename T>(std::uint64_t array, std::uint64_t i, const T& value) {
         std::memcpy(to + array + i * sizeof(T), &value, sizeof(T));
     };
@@ -142,6 +130,11 @@ void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, co
         put(layout.scales, i, scene.scales[splat]);
         if (traits.isGaussian3d()) { put(layout.thicknesses, i, scene.thicknesses[splat]); }
         put(layout.opacities, i, rotation ? scene.opacities[splat] : 0.0f);
+        if (rotation && bounds != nullptr) {
+            const glm::vec3 scales(scene.scales[splat], scene.isGaussian3d() ? scene.thicknesses[splat] : 0.0f);
+            bounds->add(scene.positions[splat], glm::quat(rotation->w, rotation->x, rotation->y, rotation->z), scales,
+                        scene.opacities[splat]);
+        }
         const float* sh = scene.sh.data() + splat * coefficients * 3;
         put(layout.base_colours, i, glm::uvec2(packHalves(sh[0], sh[1]), packHalves(sh[2], 0.0f)));
         const auto half = [&](std::uint64_t h) { return h < 3 * (kept - 1) ? sh[3 + h] : 0.0f; };
@@ -158,8 +151,9 @@ PackedPages::PackedPages(const Scene& scene, std::size_t first, std::size_t coun
     bytes_.resize(pages * layout.bytes);  // zeros: an opacity of 0 is never seen
     for (std::size_t page = 0; page < pages; ++page) {
         const std::size_t from = first + page * gpu::kPageSplats, splats = std::min<std::size_t>(gpu::kPageSplats, first + count - from);
-        packSplats(scene, from, splats, traits, layout, bytes_.data() + page * layout.bytes);
-        pages_.push_back(boundsOf(scene, from, splats));
+        PageBounds bounds;
+        packSplats(scene, from, splats, traits, layout, bytes_.data() + page * layout.bytes, &bounds);
+        pages_.push_back(bounds.page());
     }
 }
 

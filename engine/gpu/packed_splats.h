@@ -38,11 +38,6 @@ struct ChunkLayout {
     std::uint64_t sh_bytes_per_splat = 0;
 };
 
-// Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout` (of at least `count` splats).
-// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out.
-void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
-                std::uint8_t* to);
-
 // Half the size of the box in the world's axes around all of a splat that is not fainter than kMinAlpha, and a hair for what the device
 // rounds. `scales` are along the axes of `rotation`, which is of unit length (a disc's third is 0); nothing is seen of an opacity below
 // kMinAlpha.
@@ -59,6 +54,12 @@ private:
     double reach_ = 0.0;
     std::uint32_t shown_ = 0;
 };
+
+// Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout` (of at least `count` splats).
+// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out. What of them can be seen goes into
+// `bounds`.
+void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
+                std::uint8_t* to, PageBounds* bounds = nullptr);
 
 // Some splats in pages of kPageSplats, each laid out by itself, with the bounds of each; the last is filled up with splats that are never
 // seen. Made on any thread.

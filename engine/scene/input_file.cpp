@@ -42,7 +42,9 @@ void InputFile::open(const std::filesystem::path& path) {
         requireNoLfsPointer({start.data(), readAt(0, std::as_writable_bytes(std::span(start)))}, name_);
     }
     // One more than a small file has: its last line is not too long only because it fills the buffer.
-    buffer_.resize(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
+    const auto buffer_bytes = static_cast<std::size_t>(std::clamp<std::uint64_t>(sizeBytes() + 1, kLeastBufferBytes, kMostBufferBytes));
+    room_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);  // untouched where the file is read by its parts
+    buffer_ = {room_.get(), buffer_bytes};
 }
 
 FileStamp InputFile::stamp() const {

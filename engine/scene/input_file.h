@@ -67,7 +67,8 @@ private:
     File file_;
     FileStamp opened_;
     std::uint64_t position_bytes_ = 0;
-    std::vector<char> buffer_;
+    std::unique_ptr<char[]> room_;
+    std::span<char> buffer_;
     std::size_t begin_ = 0, end_ = 0;  // the unread part of the buffer
 };
 
