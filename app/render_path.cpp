@@ -63,6 +63,7 @@ HeadPath readHeadPath(const RenderOptions& options) {
 std::vector<PathFrame> renderPath(StereoFrame& frame, LiveScene* live, const FrameSettings& path_settings, const Cameras& start,
                                   double units_per_metre, const HeadPath& path, OutputFiles& files) {
     FrameSettings settings = path_settings;
+    settings.units_per_metre = units_per_metre;
     settings.keep_past = true;
     const bool mono = settings.mode == Mode::kMono;
     std::vector<PathFrame> frames;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <utility>
 
 TEST_SUITE_BEGIN("frame_mix");
 
@@ -50,9 +51,9 @@ public:
 
     // On to the next frame.
     void go() {
-        if (dice_.falls(0.35)) { change(); }
+        if (dice_.falls(0.5)) { change(); }
         if (dice_.falls(0.3)) { changeEyes(); }
-        const double reach = dice_.falls(0.15) ? 0.5 : 0.004;  // a jump, now and then
+        const double reach = dice_.falls(0.2) ? dice_.between(0.02, 0.4) : 0.004;  // a jump, now and then
         middle_.world_from_camera.position += dice_.vector(reach);
         middle_.world_from_camera.orientation =
             glm::normalize(middle_.world_from_camera.orientation * glm::angleAxis(0.005, glm::normalize(dice_.vector(1) + 1e-3)));
@@ -85,33 +86,52 @@ public:
     [[nodiscard]] bool goesAhead() { return dice_.falls(0.5); }
 
 private:
+    // All of it at first, then a few things at a time, so that pasts live on.
     void change() {
         FrameSettings& s = settings_;
-        s.mode = dice_.falls(0.4) ? Mode::kTemporal : kModes[dice_.below(kModes.size())];
-        s.dominant = dice_.falls(0.5) ? kLeft : kRight;
-        s.near = dice_.falls(0.5) ? 0.2 : dice_.between(0.01, 0.4);
-        s.background = dice_.falls(0.5) ? glm::dvec3(0) : glm::abs(dice_.vector(1));
-        s.order = dice_.falls(0.3) ? Order::kDistance : Order::kDepth;
-        s.per_eye = dice_.falls(0.3);
-        s.half_floats = dice_.falls(0.5);
-        s.keep_depth = dice_.falls(0.5);
-        s.keep_both_depths = dice_.falls(0.3);
-        s.keep_moments = dice_.falls(0.2);
-        s.keep_classes = dice_.falls(0.3);
-        s.square_boxes = dice_.falls(0.5);
-        s.half_periphery = dice_.falls(0.4);
-        s.keep_past = dice_.falls(0.8);
-        for (auto& gaze : s.gazes) {
-            gaze.reset();
-            if (dice_.falls(0.5)) { gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)}; }
+        const auto maybe = [&](auto&& set) {
+            if (dice_.falls(0.12)) { set(); }
+        };
+        const auto always = [&](auto&& set) { set(); };
+        const auto set = [&](auto&& when) {
+            when([&] { s.mode = dice_.falls(0.5) ? Mode::kTemporal : kModes[dice_.below(kModes.size())]; });
+            when([&] { s.dominant = dice_.falls(0.5) ? kLeft : kRight; });
+            when([&] { s.near = dice_.falls(0.5) ? 0.2 : dice_.between(0.01, 0.4); });
+            when([&] { s.background = dice_.falls(0.5) ? glm::dvec3(0) : glm::abs(dice_.vector(1)); });
+            when([&] { s.order = dice_.falls(0.3) ? Order::kDistance : Order::kDepth; });
+            when([&] { s.per_eye = dice_.falls(0.3); });
+            when([&] { s.half_floats = dice_.falls(0.5); });
+            when([&] { s.keep_depth = dice_.falls(0.5); });
+            when([&] { s.keep_both_depths = dice_.falls(0.3); });
+            when([&] { s.keep_moments = dice_.falls(0.1); });
+            when([&] { s.keep_classes = dice_.falls(0.3); });
+            when([&] { s.square_boxes = dice_.falls(0.5); });
+            when([&] { s.half_periphery = dice_.falls(0.5); });
+            when([&] { s.keep_past = dice_.falls(0.9); });
+            when([&] {
+                const bool both = dice_.falls(0.6);
+                for (auto& gaze : s.gazes) {
+                    gaze.reset();
+                    if (both || dice_.falls(0.3)) {
+                        gaze = Gaze{{dice_.between(-0.3, 0.3), dice_.between(-0.3, 0.3), 1}, dice_.between(0.05, 0.4)};
+                    }
+                }
+            });
+            when([&] { s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5); });
+            when([&] { s.stereo.forward = dice_.falls(0.3); });
+            when([&] {
+                s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum;
+            });
+            when([&] { s.stereo.tight_edges = dice_.falls(0.5); });
+            when([&] { s.stereo.center_rois = dice_.falls(0.3); });
+            when([&] { s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32; });
+            when([&] { hides_ = dice_.falls(0.3); });
+        };
+        if (std::exchange(is_new_, false)) {
+            set(always);
+        } else {
+            set(maybe);
         }
-        s.stereo.budget = dice_.falls(0.2) ? 1.0 : dice_.between(0.1, 0.5);
-        s.stereo.forward = dice_.falls(0.3);
-        s.stereo.depth_choice = dice_.falls(0.7) ? gpu::kDepthInverse : dice_.falls(0.5) ? gpu::kDepthMean : gpu::kDepthSum;
-        s.stereo.tight_edges = dice_.falls(0.5);
-        s.stereo.center_rois = dice_.falls(0.3);
-        s.stereo.move_cost = dice_.falls(0.5) ? 0 : 32;
-        hides_ = dice_.falls(0.3);
     }
 
     void changeEyes() {
@@ -130,7 +150,7 @@ private:
     std::array<glm::uvec2, 2> sizes_{};
     std::array<ViewAngles, 2> angles_{};
     double cant_ = 0.0;
-    bool hides_ = false;
+    bool hides_ = false, is_new_ = true;
     std::array<std::vector<std::uint8_t>, 2> hidden_;
 };
 

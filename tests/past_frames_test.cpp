@@ -203,6 +203,38 @@ TEST_CASE_FIXTURE(Gpu, "after a jump of the head one eye is rendered in full, an
 }
 
 // As where a governor looks for the resolution that keeps the rate.
+TEST_CASE_FIXTURE(Gpu, "a past comes from less than the way to the other eye; without one a frame is waited for") {
+    constexpr double kStepMetres = 0.0033166;  // of eyesAt
+    const auto countFull = [](Walk& walk) {
+        const auto shown = walk.shown(), full = walk.full();
+        return (shown[0].values == full[0].values ? 1 : 0) + (shown[1].values == full[1].values ? 1 : 0);
+    };
+    for (const auto& [metres, full] : {std::pair(0.04, 0), std::pair(0.06, 1)}) {
+        Walk walk(context(), makeSettings(Mode::kTemporal));
+        walk.go(0.0);
+        walk.go(metres / kStepMetres);
+        CHECK(countFull(walk) == full);
+    }
+    // One eye is rendered in any case, so that only the other's past counts, which is one frame old.
+    Walk alternate(context(), makeSettings(Mode::kAlternate));
+    for (int frame = 0; frame < 4; ++frame) { alternate.go(frame * 0.04 / kStepMetres); }
+    CHECK(countFull(alternate) == 1);
+
+    const ViewedScene view = viewAtelier();
+    const GpuScene scene(context(), view.scene);
+    StereoFrame frame(context(), scene);
+    const test::KeptKernels kept(context(), frame);
+    FrameSettings settings = makeSettings(Mode::kTemporal);
+    std::vector<int> told;
+    for (const double metres : {0.0, 0.003, 0.006, 0.009, 0.109, 0.112}) {
+        const auto result = frame.renderAhead(eyesAt(view.eye, metres / kStepMetres), settings);
+        told.push_back(result ? static_cast<int>(result->mark) : -1);
+        ++settings.mark;
+    }
+    CHECK(told[3] < 3);   // told later
+    CHECK(told[4] == 4);  // at once
+}
+
 TEST_CASE_FIXTURE(Gpu, "a past of another size or of other angles is a past like any other, also when both change in each frame") {
     const ViewedScene view = viewAtelier();
     const GpuScene scene(context(), view.scene);

@@ -86,7 +86,7 @@ TEST_CASE_FIXTURE(Gpu, "without a past both eyes are as alone") {
         Walk walk(context(), settingsOf(mode));
         const FrameResult result = walk.go(0.0);
         CHECK(walk.shown(kLeft).values == walk.alone(kLeft, true).values);
-        CHECK(walk.shown(kRight).values == walk.alone(kRight, true).values);
+        CHECK(walk.psnr(kRight, true) > 80.0);  // in the left eye's order, which rounding may make another one
         CHECK(walk.psnr(kRight, false) > 40.0);
         CHECK(result.left_out.end() !=
               std::ranges::find_if(result.left_out, [](const std::string& sentence) { return sentence.starts_with("reprojection: "); }));

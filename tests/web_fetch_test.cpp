@@ -109,8 +109,30 @@ TEST_CASE("a file that broke off goes on where it ended, if it is still the same
     // A rest that is too short is one more break; nothing goes on from a busy server's answer.
     CHECK(rangesAfter("\"1\"", rest(half, "\"1\"", kPly.size() - 1)) == Asked{" ", asks, fmt::format("bytes={}- \"1\"", kPly.size() - 1)});
     CHECK(rangesAfter("\"1\"", answer("503 Service Unavailable", "", "busy")) == Asked{" ", asks, asks});
+    CHECK(rangesAfter("\"1\"", WebAnswer{"HTTP/1.1 200 OK\r\nContent-", WebAnswer::Then::kClose}) == Asked{" ", asks, asks});
     // Without a version that says that every byte is the same, nothing is put together.
     CHECK(rangesAfter("W/\"1\"", answer("200 OK", "", kPly)) == Asked{" ", " "});
+}
+
+TEST_CASE("a file of unknown length goes on only to the length that the rest tells") {
+    const std::string chunk = fmt::format("{:x}\r\n{}", kPly.size(), kPly.substr(0, 300));
+    const WebAnswer cut{"HTTP/1.1 200 OK\r\nETag: \"1\"\r\nTransfer-Encoding: chunked\r\n\r\n" + chunk, WebAnswer::Then::kClose};
+    const auto part = [](std::size_t from, std::size_t end, const std::string& total) {
+        return answer("206 Partial Content", fmt::format("ETag: \"1\"\r\nContent-Range: bytes {}-{}/{}\r\n", from, end - 1, total),
+                      kPly.substr(from, end - from));
+    };
+    const std::string total = std::to_string(kPly.size());
+    for (const auto& [second, requests] :
+         {std::pair(part(300, kPly.size(), total), 2u), std::pair(part(300, 500, total), 3u), std::pair(part(300, 500, "*"), 3u)}) {
+        const Folder folder;
+        const Scene scene = loadScene(folder.write("a.ply", kPly));
+        const WebServer server([&](const WebRequest& request) {
+            if (request.number < 2) { return request.number == 0 ? cut : second; }
+            return request.headers.contains("range") ? part(500, kPly.size(), total) : answer("200 OK", "ETag: \"1\"\r\n", kPly);
+        });
+        checkSameScene(scene, loadFromWeb(server.at("/a.ply"), webSettings(folder)));
+        CHECK(server.asked().size() == requests);
+    }
 }
 
 TEST_CASE("a large file may break off more often than attempts are made") {

@@ -60,7 +60,10 @@ public:
     }
     Beside(const Beside&) = delete;
     Beside& operator=(const Beside&) = delete;
-    ~Beside() { ::pclose(told_); }
+    ~Beside() {
+        end();
+        ::pclose(told_);
+    }
 
     // The next line of what it prints that has `part` in it; none at its end.
     std::optional<std::string> lineWith(const std::string& part) {

@@ -108,6 +108,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
         const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
         runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
                                         {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
+        if (!result.counters.warped) { runner.quality.resize(1); }  // both eyes were rendered
     } else if (plan.psnr && method.stereo.mode == Mode::kMono && method.stereo.half_periphery) {
         const Image picture = frame->readPicture(0);
         StereoOptions sharp = method.stereo;

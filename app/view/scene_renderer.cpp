@@ -62,7 +62,10 @@ void SceneRenderer::makeImages(ConnectedHeadset& headset, glm::uvec2 size_px, gl
 }
 
 void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settings) {
-    governor_.wish(settings.quality, settings.stereo.mode, {settings.stereo.budget, settings.resolution_scale});
+    // In two pictures each both eyes are rendered, whatever the budget.
+    const StereoOptions& stereo = settings.stereo;
+    const bool in_two = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
+    governor_.wish(settings.quality, in_two ? Mode::kShared : stereo.mode, {stereo.budget, settings.resolution_scale});
     fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     const double scale = governor_.settings().resolution_scale;
@@ -72,7 +75,8 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
 
 ShownRate SceneRenderer::rate() const {
     ShownRate rate{met_.metHz(), met_.displayHz(), governor_.settings().resolution_scale, {}, governor_.isBeaten()};
-    if (hasBudget(frame_.mode)) { rate.budget = governor_.settings().budget; }
+    const bool renders_both = frame_.mode == Mode::kPredicted && isInTwo(frame_, 2);
+    if (hasBudget(frame_.mode) && !renders_both) { rate.budget = governor_.settings().budget; }
     return rate;
 }
 

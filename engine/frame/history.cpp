@@ -14,7 +14,8 @@ constexpr double kJumpMetres = 0.2;
 constexpr double kJumpDegrees = 6.0;
 constexpr double kJumpZoom = 0.1;
 // From farther away a past is worse than the other eye, which is 6 cm away and has just been rendered: docs/tried.md, *Reuse over time*.
-constexpr double kFarthestPastMetres = 0.05;
+// The share is of the way between the eyes, however large the scene is.
+constexpr double kFarthestPastMetres = 0.05, kFarthestPastShare = 0.8;
 // Beyond this a past is too coarse, or much finer than what is wanted.
 constexpr double kMostZoom = 2.0;
 
@@ -35,7 +36,7 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings) {
                      .keep_moments = settings.keep_moments,
                      .keep_classes = settings.keep_classes,
                      .center_rois = settings.stereo.center_rois,
-                     .half_periphery = settings.half_periphery && settings.gazes[0].has_value()};
+                     .half_periphery = isInTwo(settings, eyes.size())};
     for (std::size_t e = 0; e < eyes.size(); ++e) { shape.sizes_px[e] = eyes[e].size_px; }
     return shape;
 }
@@ -50,10 +51,15 @@ bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_
     return false;
 }
 
-bool canComeFrom(const Eye& past, const Eye& eye, double units_per_metre) {
+double farthestPast(std::span<const Eye> eyes, double units_per_metre) {
+    const double between = glm::distance(eyes.front().world_from_camera.position, eyes.back().world_from_camera.position);
+    return std::max(kFarthestPastMetres * units_per_metre, kFarthestPastShare * between);
+}
+
+bool canComeFrom(const Eye& past, const Eye& eye, double farthest) {
     const double zoom_x = eye.intrinsics.fx / past.intrinsics.fx, zoom_y = eye.intrinsics.fy / past.intrinsics.fy;
     const bool zooms = std::min(zoom_x, zoom_y) < 1.0 / kMostZoom || std::max(zoom_x, zoom_y) > kMostZoom;
-    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, kFarthestPastMetres * units_per_metre);
+    return !zooms && !moves(past.world_from_camera, eye.world_from_camera, farthest);
 }
 
 MovingPays::Asked MovingPays::askedBy(std::span<const Eye> eyes, const FrameSettings& settings) {

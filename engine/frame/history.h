@@ -21,8 +21,10 @@ FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 
 // Whether lists for these eyes need not be like those for `before`.
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
+// From how far away the pasts of these eyes may come, in scene units.
+double farthestPast(std::span<const Eye> eyes, double units_per_metre);
 // Whether what `past` saw is of use for `eye`: they stand and look alike. Sizes may differ, and angles, unless by a factor of two.
-bool canComeFrom(const Eye& past, const Eye& eye, double units_per_metre);
+bool canComeFrom(const Eye& past, const Eye& eye, double farthest);
 
 // Whether moving pays: `predicted` leaves it out as long as it did not in the last frame known, if that was asked for the same.
 class MovingPays {

@@ -41,7 +41,6 @@ void makeFromPast(TargetPlan& target, const Past& past, const FrameSettings& set
     target.gaze = settings.gazes[eye];
 }
 
-// Whether each eye has two pictures: it is wanted, and known where all of them look. The references are always in full.
 bool isInTwo(const FrameSettings& settings, std::size_t eyes) {
     const bool may = settings.mode == Mode::kMono || settings.mode == Mode::kPredicted || hasPast(settings.mode);
     const auto gazes = std::span(settings.gazes).first(eyes);

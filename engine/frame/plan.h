@@ -100,6 +100,9 @@ struct FramePlan {
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
 
+// Whether each eye has two pictures: it is wanted, and known where all of them look. The references are always in full.
+[[nodiscard]] bool isInTwo(const FrameSettings& settings, std::size_t eyes);
+
 // Nobody else asks a mode what it does. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
 // pixels paid in the frame before, or nobody knows. `pasts`: what is left of the frames before; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});

@@ -145,7 +145,7 @@ void explainLeftOut(const FrameFacts& frame, FrameResult& result) {
                                               std::uint64_t{tiles.x} * tiles.y, e == kLeft ? "left" : "right"));
     }
     const bool two_full = two && plan.targets[0].half && !plan.targets[0].past && !plan.targets[1].past;
-    leaveOut(two_full, "reprojection: eyes in two pictures each cost little more than one made from the other, and lose nothing");
+    leaveOut(two_full, "reprojection: both eyes are rendered, in two pictures each");
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         if (plan.targets[t].warp) { explainWarp(frame, t, result); }
     }

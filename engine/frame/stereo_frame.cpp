@@ -104,7 +104,9 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
                                                     vk::Semaphore signals) {
     Flight &before_last = flight(), &last = flights_[1 - turn_];
     std::optional<FrameResult> result = land(before_last);
-    bool waits = room_.isFirstFrame() || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
+    // Lists have room for patches while there is a past, and for whole pictures after it.
+    const bool loses_past = pasts_.of_eyes[0] && settings.keep_past && !pastsFor(eyes, settings).of_eyes[0];
+    bool waits = room_.isFirstFrame() || loses_past || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
     // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
@@ -147,8 +149,9 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     splats_known_ = flight.splats_held;
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
-        // Where tiles have no room, what the past made stays; a picture in full has nothing else.
-        if (std::ranges::find(flight.plan.targets, TileChoice::kAll, &TargetPlan::choice) != flight.plan.targets.end()) { pasts_ = {}; }
+        // Where tiles have no room, what a past or another picture made stays; one that is made from neither has nothing else.
+        const auto isMade = [](const TargetPlan& target) { return target.past.has_value() || target.warp.has_value(); };
+        if (!std::ranges::all_of(flight.plan.targets, isMade)) { pasts_ = {}; }
     }
     FrameResult result = take(flight);
     result.counters.ahead = {cut_short_, done_again_};
@@ -228,9 +231,11 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
         askedApartFromSizes(settings) != past_shape_ || !scene_->changesSince(changes_known_)) {
         return {};
     }
+    const double farthest = farthestPast(eyes, settings.units_per_metre);
     for (std::size_t e = 0; e < eyes.size(); ++e) {
+        if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }  // rendered anyway
         const Past& past = *pasts_.of_eyes[e];
-        if (!canComeFrom(past.eye, eyes[e], settings.units_per_metre)) { return {}; }
+        if (!canComeFrom(past.eye, eyes[e], farthest)) { return {}; }
         // What a lens hides is hidden at any size.
         const auto& hidden = settings.hidden_tiles[e];
         const bool same_size = past.eye.size_px == eyes[e].size_px;

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <charconv>
 #include <new>
+#include <string_view>
 #include <utility>
 
 namespace binosplat {
@@ -22,8 +23,6 @@ constexpr std::uint64_t kLongestErrorPage = 1 << 16;
 // Less than this while a server's patience lasts is nothing.
 constexpr std::uint64_t kLeastBytes = 1024;
 constexpr std::size_t kLongestVersion = 256;
-// An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
-constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
 constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
 
 bool isPlain(const std::string& text) {
@@ -128,16 +127,16 @@ std::size_t Transfer::writeBody(char* data, std::size_t size, std::size_t count,
 // Other than `bytes` stops the transfer. Nothing is thrown through curl.
 std::size_t Transfer::take(const char* data, std::size_t bytes) {
     got_bytes_ += bytes;
-    const long answer = status();
-    if (answer == kPartial && kept_bytes_ > 0) {
-        if (!isTheRest()) { return 0; }
-    } else if (answer != kOk) {
-        return got_bytes_ - kept_bytes_ <= kLongestErrorPage ? bytes : 0;
-    } else if (kept_bytes_ > 0) {  // another version, or a server that sends whole files only
-        startOver();
-        got_bytes_ = bytes;
-    }
     try {
+        const long answer = status();
+        if (answer == kPartial && kept_bytes_ > 0) {
+            if (!isTheRest()) { return 0; }
+        } else if (answer != kOk) {
+            return got_bytes_ - kept_bytes_ <= kLongestErrorPage ? bytes : 0;
+        } else if (kept_bytes_ > 0) {  // another version, or a server that sends whole files only
+            startOver();
+            got_bytes_ = bytes;
+        }
         if (file_ == nullptr && !beginBody()) { return 0; }
     } catch (const std::exception& error) {
         refused_ = fmt::format("cannot be kept ({})", error.what());
@@ -160,16 +159,23 @@ bool Transfer::isNoRest() const {
     return kept_bytes_ > 0 && (answer == kNoSuchRange || (answer == kPartial && !isTheRest()));
 }
 
+std::optional<Transfer::ContentRange> Transfer::contentRange() const {
+    constexpr std::string_view kUnit = "bytes ";
+    const std::string text = header("Content-Range");
+    const std::size_t slash = text.find('/');
+    if (!text.starts_with(kUnit) || slash == std::string::npos) { return std::nullopt; }
+    ContentRange range;
+    const char *const from = text.data() + kUnit.size(), *const end = text.data() + text.size();
+    const auto [after, error] = std::from_chars(from, end, range.first);
+    if (error != std::errc{} || after == end || *after != '-') { return std::nullopt; }
+    std::from_chars(text.data() + slash + 1, end, range.total);  // 0 where the server does not know it
+    return range;
+}
+
 bool Transfer::isTheRest() const {
-    std::uint64_t first = 0;
-    const std::string range = header("Content-Range"), unit = "bytes ";
-    if (!range.starts_with(unit)) { return false; }
-    const char *const from = range.data() + unit.size(), *const end = range.data() + range.size();
-    const auto [after, error] = std::from_chars(from, end, first);
-    if (error != std::errc{} || first != kept_bytes_ || after == end || *after != '-') { return false; }
-    const std::size_t slash = range.find('/');
-    const std::string total = slash == std::string::npos ? "" : range.substr(slash + 1);
-    return (!is_sized_ || total == "*" || total == std::to_string(expected_bytes_)) && header("ETag") == version_.etag;
+    const std::optional<ContentRange> range = contentRange();
+    if (!range || range->first != kept_bytes_ || header("ETag") != version_.etag) { return false; }
+    return is_sized_ ? range->total == 0 || range->total == expected_bytes_ : range->total > 0;
 }
 
 bool Transfer::beginBody() {
@@ -204,7 +210,7 @@ void Transfer::startOver() {
     }
     file_.reset();
     version_ = {};
-    got_bytes_ = kept_bytes_ = expected_bytes_ = 0;
+    got_bytes_ = kept_bytes_ = expected_bytes_ = watched_bytes_ = 0;
 }
 
 bool Transfer::canGoOn() const {
@@ -256,11 +262,13 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
     using Kind = Fetched::Kind;
     const long answer = status();
     // What curl takes for a whole answer ended before it began.
-    if (code == CURLE_OK && answer == kOk && file_ == nullptr && !saysLength()) { code = CURLE_GOT_NOTHING; }
+    if (code == CURLE_OK && answer == kOk && (file_ == nullptr || kept_bytes_ > 0) && !saysLength()) { code = CURLE_GOT_NOTHING; }
     if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
     const bool is_rest = answer == kPartial && kept_bytes_ > 0 && isTheRest();
-    // A rest is as long as the server said of the whole, whatever it says of the rest.
-    if (code == CURLE_OK && is_rest && is_sized_ && file_->sizeBytes() != expected_bytes_) { code = CURLE_PARTIAL_FILE; }
+    // With its rest a file is as long as the server said of the whole, whatever it says of the rest.
+    if (code == CURLE_OK && is_rest && file_->sizeBytes() != (is_sized_ ? expected_bytes_ : contentRange()->total)) {
+        code = CURLE_PARTIAL_FILE;
+    }
     if (!is_stalled && code == CURLE_OK && (answer == kOk || is_rest)) {
         if (answer == kOk && (file_ == nullptr || kept_bytes_ > 0)) {  // of an empty file
             startOver();
@@ -274,7 +282,8 @@ std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
 
     const bool is_answer = !is_stalled && (code == CURLE_OK || code == CURLE_WRITE_ERROR);
     const std::string reason = describe(code, is_stalled);
-    if (is_answer ? isBusy(answer) || isNoRest() : is_stalled || isCut(code)) {
+    const bool may_be_back = isCut(code) || (isNoServer(code) && canGoOn());
+    if (is_answer ? isBusy(answer) || isNoRest() : is_stalled || may_be_back) {
         if (canGoOn() && file_->sizeBytes() >= worthwhile_bytes_) {
             worthwhile_bytes_ = file_->sizeBytes() + kWorthwhileBytes;
             attempts_ = 1;

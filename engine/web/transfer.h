@@ -55,6 +55,10 @@ private:
     std::size_t take(const char* data, std::size_t bytes);
     // False, with the reason, if the body is not to be had.
     [[nodiscard]] bool beginBody();
+    struct ContentRange {
+        std::uint64_t first = 0, total = 0;
+    };
+    [[nodiscard]] std::optional<ContentRange> contentRange() const;
     // Whether the answer (206) is the rest of what is there.
     [[nodiscard]] bool isTheRest() const;
     // The rest was asked for, and the answer says that it is not to be had so.
@@ -80,8 +84,11 @@ private:
     std::unique_ptr<curl_slist, ListCloser> headers_;
     std::array<char, CURL_ERROR_SIZE> error_{};
 
-    int attempts_ = 0;                          // since one that was worthwhile
-    std::uint64_t worthwhile_bytes_ = 1 << 20;  // so much of the file makes the next one that
+    // An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
+    static constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
+    int attempts_ = 0;                                   // since one that was worthwhile
+    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // so much of the file makes the next one that; it never falls, or a server whose
+                                                         // file is always another one would be asked for ever
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
     bool is_sized_ = false;  // the server has said how long it is
@@ -89,7 +96,6 @@ private:
     FileVersion version_;           // of the bytes in file_
     std::uint64_t kept_bytes_ = 0;  // of them, those from earlier attempts; more than 0: the rest was asked for
     std::string refused_;           // why the body was not taken
-    std::string last_;              // what was wrong the last time
 };
 
 }  // namespace binosplat
