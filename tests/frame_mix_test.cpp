@@ -73,6 +73,8 @@ public:
 
     [[nodiscard]] FrameSettings settings() {
         FrameSettings settings = settings_;
+        // Moments are for files: there is no kernel for them in pictures that are only shown, nor in pasts.
+        settings.keep_moments = settings.keep_moments && !settings.half_floats && !(settings.keep_past && hasPast(settings.mode));
         const std::vector<Eye> all = eyes();
         for (std::size_t e = 0; e < all.size() && hides_; ++e) {
             const glm::uvec2 tiles = (all[e].size_px + 15u) / 16u;
