@@ -117,8 +117,14 @@ private:
     }
     [[nodiscard]] auto listAt(std::uint64_t offset) const { return in_.buffers.state.address<gpu::ListState>(offset); }
     [[nodiscard]] auto visible() const { return listAt(FrameBuffers::visibleList(in_.list)); }
-    [[nodiscard]] auto moving() const { return in_.words.moving; }
-    [[nodiscard]] auto arrivals() const { return in_.words.arrivals; }
+    [[nodiscard]] std::uint64_t wordCount() const {
+        return std::uint64_t{in_.warp.sizePx().y - 1} * in_.words.row_words + in_.warp.sizePx().x;
+    }
+    [[nodiscard]] auto moving() const { return commands_.reads(in_.words.moving, wordCount(), Content::kMovingPixels); }
+    [[nodiscard]] auto arrivals() const { return commands_.reads(in_.words.arrivals, wordCount(), Content::kMovingPixels); }
+    void fillTarget() const {
+        commands_.fills(in_.target.colours.address<gpu::uint>(), in_.target.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
+    }
     [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
     // Whether resample moves the source's pixels itself.
@@ -140,9 +146,9 @@ void WarpRecorder::weigh() {
                               .tile_kinds = in_.warp.tileKinds(),
                               .tile_costs = in_.warp.tileCosts(),
                               .tile_errors = in_.warp.tileErrors(),
-                              .tile_depths = in_.warp.tileDepths(),
+                              .tile_depths = commands_.fills(in_.warp.tileDepths(), in_.warp.tileCount(), Content::kTileDepths),
                               .tile_mask = in_.warp.tileMask(),
-                              .price_bins = in_.warp.bins(),
+                              .price_bins = commands_.fills(in_.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
                               .shown_mask = in_.source_shown.mask(),
                               .visible = visible(),
                               .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
@@ -163,6 +169,7 @@ void WarpRecorder::clearTiles() {
         begin<ReprojectKernel>();
     }
     commands_.fillZero(in_.warp.tiles());
+    commands_.fills(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins);
     in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
 }
 
@@ -171,7 +178,7 @@ void WarpRecorder::findDepthBounds() {
                                       .colours = in_.source.colours.address<gpu::vec4>(),
                                       .half_colours = in_.source.colours.address<gpu::uvec2>(),
                                       .moving = moving(),
-                                      .bins = in_.warp.bins()};
+                                      .bins = commands_.reads(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins)};
     const glm::uvec2 tiles = in_.warp.sizeTiles();
     dispatch(DepthBoundsKernel{.half_colours = halfFloats()}, bounds, (tiles.x + gpu::kBoundsTiles - 1) / gpu::kBoundsTiles, tiles.y);
 }
@@ -179,7 +186,7 @@ void WarpRecorder::findDepthBounds() {
 void WarpRecorder::findEdgeRois() {
     begin<EdgeRoisKernel>();
     const gpu::EdgeRoisPass edges{.warp = view(),
-                                  .bins = in_.warp.bins(),
+                                  .bins = commands_.reads(in_.warp.bins(), gpu::kDepthBins, Content::kDepthBins),
                                   .tile_kinds = in_.warp.tileKinds(),
                                   .shown_mask = in_.source_shown.mask(),
                                   .counters = counters()};
@@ -189,7 +196,10 @@ void WarpRecorder::findEdgeRois() {
 void WarpRecorder::reproject() {
     if (movesRows()) { return; }
     begin<ReprojectKernel>();
-    const gpu::ReprojectPass pass{.warp = view(), .moving = moving(), .arrivals = arrivals(), .shown_mask = in_.source_shown.mask()};
+    const gpu::ReprojectPass pass{.warp = view(),
+                                  .moving = moving(),
+                                  .arrivals = commands_.fills(in_.words.arrivals, wordCount(), Content::kMovingPixels),
+                                  .shown_mask = in_.source_shown.mask()};
     dispatchByCounter(ReprojectKernel{.rectified = in_.rectified, .hidden_tiles = hidesSource(), .forward = copiesColours()}, pass,
                       offsetof(gpu::WarpCounters, per_pixel_block));
 }
@@ -197,9 +207,13 @@ void WarpRecorder::reproject() {
 void WarpRecorder::resample() {
     const bool whole = predicts() && !in_.source_shown.hideAny() && !keepsClasses();
     resampleFrom(0, !movesRows() ? gpu::kArrivalsGiven : whole ? gpu::kWholeRowMoved : gpu::kRowMoved, predicts());
+    if (!predicts()) { fillTarget(); }
 }
 
-void WarpRecorder::resampleOdd() { resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false); }
+void WarpRecorder::resampleOdd() {
+    resampleFrom(1, in_.rectified ? gpu::kPlacesGiven : gpu::kArrivalsGiven, false);
+    fillTarget();
+}
 
 void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool predict_errors) {
     begin<ResampleKernel>();
@@ -234,18 +248,19 @@ void WarpRecorder::resampleFrom(gpu::uint first_row, gpu::uint row_source, bool 
 
 void WarpRecorder::findNewcomers() {
     begin<NewcomersKernel>();
-    const gpu::NewcomersPass pass{.chunks = in_.scene.chunks(),
-                                  .eyes = in_.buffers.eyes(),
-                                  .warp = view(),
-                                  .tile_depths = in_.warp.tileDepths(),
-                                  .order = in_.buffers.visible.order().values,
-                                  .visible = visible(),
-                                  .source_counts = in_.buffers.visible.tileCounts(),
-                                  .tile_kinds = in_.warp.tileKinds(),
-                                  .tile_errors = in_.warp.tileErrors(),
-                                  .counters = counters(),
-                                  .chunk_bits = in_.scene.chunkBits(),
-                                  .eye = static_cast<gpu::uint>(in_.index)};
+    const gpu::NewcomersPass pass{
+        .chunks = in_.scene.chunks(),
+        .eyes = in_.buffers.eyes(),
+        .warp = view(),
+        .tile_depths = commands_.reads(in_.warp.tileDepths(), in_.warp.tileCount(), Content::kTileDepths),
+        .order = commands_.reads(in_.buffers.visible.order().values, in_.buffers.visible.capacity(), Content::kOrder),
+        .visible = visible(),
+        .source_counts = commands_.reads(in_.buffers.visible.tileCounts(), in_.buffers.visible.capacity(), Content::kTileCounts),
+        .tile_kinds = in_.warp.tileKinds(),
+        .tile_errors = in_.warp.tileErrors(),
+        .counters = counters(),
+        .chunk_bits = in_.scene.chunkBits(),
+        .eye = static_cast<gpu::uint>(in_.index)};
     dispatchByCounter(NewcomersKernel{.splat_kind = in_.scene.splatKind()}, pass, offsetof(gpu::WarpCounters, per_visible));
 }
 
@@ -272,8 +287,8 @@ void WarpRecorder::price() {
         .tile_kinds = in_.warp.tileKinds(),
         .tile_costs = in_.warp.tileCosts(),
         .tile_errors = in_.warp.tileErrors(),
-        .tile_prices = in_.warp.tilePrices(),
-        .price_bins = in_.warp.bins(),
+        .tile_prices = commands_.fills(in_.warp.tilePrices(), in_.warp.tileCount(), Content::kTilePrices),
+        .price_bins = commands_.reads(in_.warp.bins(), gpu::kPriceBins, Content::kPriceBins),
         .masked_tiles = listAt(field(offsetof(TargetState, chosen_tiles))),
         .counters = counters(),
         .budget = counters(),
@@ -288,7 +303,7 @@ void WarpRecorder::select() {
     begin<SelectKernel>();
     const gpu::SelectPass pass{.warp = view(),
                                .tile_kinds = in_.warp.tileKinds(),
-                               .tile_prices = in_.warp.tilePrices(),
+                               .tile_prices = commands_.reads(in_.warp.tilePrices(), in_.warp.tileCount(), Content::kTilePrices),
                                .tile_list = in_.warp.tileList(),
                                .tile_mask = in_.warp.tileMask(),
                                .tile_costs = in_.warp.tileCosts(),
