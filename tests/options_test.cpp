@@ -100,21 +100,7 @@ TEST_CASE("defaultConfigSaysTheDefaults") {
     const RunOptions file = render({"--config", (kConfigs / "default.toml").string()});
     CHECK(file.camera.near == none.camera.near);
     CHECK(file.camera.background == none.camera.background);
-    CHECK(file.stereo.mode == none.stereo.mode);
-    CHECK(file.stereo.dominant == none.stereo.dominant);
-    CHECK(file.stereo.center_roi == none.stereo.center_roi);
-    CHECK(file.stereo.margin_px == none.stereo.margin_px);
-    CHECK(file.stereo.budget == none.stereo.budget);
-    CHECK(file.stereo.depth == none.stereo.depth);
-    CHECK(file.stereo.order == none.stereo.order);
-    CHECK(file.stereo.resampling == none.stereo.resampling);
-    CHECK(file.stereo.per_eye == none.stereo.per_eye);
-    CHECK(file.stereo.gap_px == none.stereo.gap_px);
-    CHECK(file.stereo.edge_samples == none.stereo.edge_samples);
-    CHECK(file.stereo.edge_bounds == none.stereo.edge_bounds);
-    CHECK(file.stereo.hole_error == none.stereo.hole_error);
-    CHECK(file.stereo.newcomer_error == none.stereo.newcomer_error);
-    CHECK(file.stereo.foveation_deg == none.stereo.foveation_deg);
+    CHECK(file.stereo == none.stereo);
     CHECK(file.metres_per_unit == none.metres_per_unit);
     CHECK(none.camera.near == 0.2);
     CHECK(none.stereo.mode == Mode::kPredicted);
@@ -179,7 +165,7 @@ TEST_CASE("commandLineWinsOverConfig") {
     CHECK(from_file.camera.near == 0.5);
     CHECK(from_file.camera.size_px == glm::uvec2(64, 32));
     CHECK(from_file.camera.headset == "quest2");
-    CHECK(from_file.stereo.center_roi);
+    CHECK(from_file.stereo.warp.center_rois);
     CHECK(from_file.stereo.ipd_m == 0.07);
     const RunOptions both = render({"--config", file, "--near", "0.1", "--size", "8x9", "--fov-x", "90", "--ipd", "0"});
     CHECK(both.camera.near == 0.1);
@@ -543,11 +529,11 @@ TEST_CASE("methodsSweepTheirSettings") {
     for (const BenchMethod& method : plan.methods) { names.push_back(method.name); }
     CHECK(names == std::vector<std::string>{"two-pass", "shared", "p budget=0 depth=mean", "p budget=0 depth=sum",
                                             "p budget=0.5 depth=mean", "p budget=0.5 depth=sum", "mono"});
-    CHECK(plan.methods[4].stereo.budget == 0.5);
-    CHECK(plan.methods[4].stereo.gap_px == 3);
+    CHECK(plan.methods[4].stereo.warp.budget == 0.5);
+    CHECK(plan.methods[4].stereo.warp.gap_px == 3);
     CHECK(plan.methods[4].stereo.order == Order::kDistance);
     CHECK_FALSE(plan.methods[0].stereo.order);
-    CHECK(plan.methods[4].stereo.margin_px == 16);
+    CHECK(plan.methods[4].stereo.warp.margin_px == 16);
     CHECK(!plan.ssim);
     const std::vector<DrawnViews> drawn = viewsOf(plan, "/some/where/a.ply", options.run);
     REQUIRE(drawn.size() == 1);
@@ -616,8 +602,8 @@ TEST_CASE("scenes have their own names, or their paths where those are equal") {
 }
 
 TEST_CASE("a flag may be switched off by what stands after its =") {
-    CHECK(render({"--center-roi"}).stereo.center_roi);
-    CHECK_FALSE(render({"--center-roi=false"}).stereo.center_roi);
+    CHECK(render({"--center-roi"}).stereo.warp.center_rois);
+    CHECK_FALSE(render({"--center-roi=false"}).stereo.warp.center_rois);
     CHECK_THROWS_WITH_AS(render({"--center-roi=often"}), "--center-roi is often, must be true or false", Error);
 }
 
@@ -641,9 +627,9 @@ TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralW
     const BenchOptions options = parse<BenchOptions>({"bench", "b", "--out", "out", "--config", (work.path / "a.toml").string()});
     const BenchPlan plan = planBench(options);
     REQUIRE(plan.methods.size() == 4);
-    CHECK(plan.methods[2].stereo.resampling == Resampling::kForward);
+    CHECK(plan.methods[2].stereo.warp.forward);
     CHECK(plan.methods[2].stereo.per_eye);
-    CHECK(plan.methods[3].stereo.resampling == Resampling::kCubic);
+    CHECK_FALSE(plan.methods[3].stereo.warp.forward);
     CHECK_FALSE(plan.methods[3].stereo.per_eye);
     const auto namesOf = [&](const std::string& scene) {
         std::string names;

@@ -91,14 +91,14 @@ TEST_CASE("a click reaches what it points at: boxes, buttons, sliders and pages"
     CHECK(sketch.click("paper").places.contains("Centre ROI (paper)"));
     CHECK(sketch.settings.stereo.mode == Mode::kPaper);
     sketch.click("Centre ROI (paper)");
-    CHECK(sketch.settings.stereo.center_roi);
+    CHECK(sketch.settings.stereo.warp.center_rois);
     CHECK(sketch.settings.stereo.foveation_deg == 0.0);
     sketch.click("Foveation");
     CHECK(sketch.settings.stereo.foveation_deg > 0.0);
     sketch.click("Foveation");
     CHECK(sketch.settings.stereo.foveation_deg == 0.0);
     sketch.click("budget");
-    CHECK(sketch.settings.stereo.budget == doctest::Approx(0.5).epsilon(0.02));
+    CHECK(sketch.settings.stereo.warp.budget == doctest::Approx(0.5).epsilon(0.02));
     CHECK(sketch.click("Save").save);
     CHECK(sketch.click("Load").load);
     CHECK(sketch.click("Quit").quit);
@@ -276,12 +276,12 @@ TEST_CASE("the panel has the names and ranges of the table of options") {
         sketch.draw(&place);
     };
     for (const char* name : {"margin (paper)", "budget", "resolution"}) { slide(name, 0.0); }
-    CHECK(sketch.settings.stereo.margin_px == 0);
-    CHECK(sketch.settings.stereo.budget == 0.0);
+    CHECK(sketch.settings.stereo.warp.margin_px == 0);
+    CHECK(sketch.settings.stereo.warp.budget == 0.0);
     CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.least);
     for (const char* name : {"margin (paper)", "budget", "resolution"}) { slide(name, kPanelPx.x); }
-    CHECK(sketch.settings.stereo.margin_px == 128);
-    CHECK(sketch.settings.stereo.budget == 1.0);
+    CHECK(sketch.settings.stereo.warp.margin_px == 128);
+    CHECK(sketch.settings.stereo.warp.budget == 1.0);
     CHECK(sketch.settings.resolution_scale == *findViewRow("resolution-scale")->field.most);
 }
 

@@ -227,10 +227,10 @@ TEST_CASE("what the panel is set to survives its file") {
     ViewSettings settings;
     settings.stereo.mode = Mode::kPaper;
     settings.stereo.dominant = kRight;
-    settings.stereo.center_roi = true;
-    settings.stereo.margin_px = 48;
-    settings.stereo.budget = 0.25;
-    settings.stereo.depth = PixelDepth::kMean;
+    settings.stereo.warp.center_rois = true;
+    settings.stereo.warp.margin_px = 48;
+    settings.stereo.warp.budget = 0.25;
+    settings.stereo.warp.depth_choice = gpu::kDepthMean;
     settings.resolution_scale = 0.7;
     settings.tint = true;
     settings.panel = false;
@@ -255,7 +255,7 @@ TEST_CASE("what the panel is set to survives its file") {
     checkNear(read.scene_from_room->position, kSome.position);
     CHECK(read.scene_from_room->scale == kSome.scale);
     CHECK(glm::length(read.scene_from_room->orientation - kSome.orientation) < 1e-12);
-    read.stereo.margin_px = 16;
+    read.stereo.warp.margin_px = 16;
     CHECK_FALSE(settings == read);
     CHECK(describeChange(settings, read) == "margin = 16");
 }

@@ -342,7 +342,7 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
     waitUntilReady();
     CHECK(scenes.drawable(settings) == settings);
     CHECK(drawsWithoutCompiling());
-    settings.stereo.budget = 0.9;
+    settings.stereo.warp.budget = 0.9;
     scenes.expect(settings.stereo, size_px, false);
     CHECK_FALSE(scenes.isMakingKernels());
     CHECK(scenes.drawable(settings) == settings);

@@ -125,7 +125,8 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
 bool needSame(const StereoOptions& a, const StereoOptions& b) {
     if (a.mode != b.mode || a.half_periphery != b.half_periphery) { return false; }
     if (a.mode == Mode::kPredicted || hasPast(a.mode) || hasPast(b.mode)) { return a == b; }
-    return !reprojects(a.mode) || (a.center_roi == b.center_roi && (a.depth == PixelDepth::kInverse) == (b.depth == PixelDepth::kInverse));
+    return !reprojects(a.mode) || (a.warp.center_rois == b.warp.center_rois &&
+                                   (a.warp.depth_choice == gpu::kDepthInverse) == (b.warp.depth_choice == gpu::kDepthInverse));
 }
 
 }  // namespace

@@ -8,22 +8,6 @@
 
 namespace binosplat {
 
-namespace {
-
-gpu::uint depthChoice(PixelDepth depth) {
-    switch (depth) {
-        case PixelDepth::kSum:
-            return gpu::kDepthSum;
-        case PixelDepth::kMean:
-            return gpu::kDepthMean;
-        case PixelDepth::kInverse:
-            break;
-    }
-    return gpu::kDepthInverse;
-}
-
-}  // namespace
-
 Mode readMode(const Setting& setting) {
     const std::string name = readChoice(setting, {kModeNames.begin(), kModeNames.end()});
     return static_cast<Mode>(std::ranges::find(kModeNames, name) - kModeNames.begin());
@@ -42,17 +26,7 @@ FrameSettings frameSettings(const CameraOptions& camera, const StereoOptions& st
     settings.background = camera.background;
     settings.order = stereo.order.value_or(usual);
     settings.per_eye = stereo.per_eye;
-    settings.stereo.depth_choice = depthChoice(stereo.depth);
-    settings.stereo.forward = stereo.resampling == Resampling::kForward;
-    settings.stereo.gap_px = stereo.gap_px;
-    settings.stereo.margin_px = stereo.margin_px;
-    settings.stereo.edge_samples = stereo.edge_samples;
-    settings.stereo.tight_edges = stereo.edge_bounds == EdgeBounds::kTight;
-    settings.stereo.center_rois = stereo.center_roi;
-    settings.stereo.budget = stereo.budget;
-    settings.stereo.move_cost = stereo.move_cost;
-    settings.stereo.hole_error = stereo.hole_error;
-    settings.stereo.newcomer_error = stereo.newcomer_error;
+    settings.stereo = stereo.warp;
     settings.half_periphery = stereo.half_periphery;
     return settings;
 }

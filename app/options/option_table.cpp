@@ -30,6 +30,8 @@ constexpr unsigned kTried = kWearer | kMethods;  // what a bench varies
 
 constexpr auto kCamera = &RunOptions::camera;
 constexpr auto kStereo = &RunOptions::stereo;
+constexpr auto kWarp = &StereoOptions::warp;
+static_assert(gpu::kDepthSum == 0 && gpu::kDepthMean == 1 && gpu::kDepthInverse == 2);  // the order of their names
 constexpr auto kPathSegment = &RenderOptions::segment;
 constexpr auto kMotionSegment = &BenchOptions::segment;
 constexpr auto kLoad = &RunOptions::load;
@@ -85,36 +87,36 @@ std::span<const OptionRow<RunOptions>> runRows() {
         {{"ipd", "stereo", kPictures, "METRES", "distance of the eyes", "0.063, or the headset's"},
          field::number<kStereo, &StereoOptions::ipd_m>(0.0, 10.0)},
         {{"center-roi", "stereo", kTried, "", "paper mode: also render again the holes that remain inside the picture"},
-         field::flag<kStereo, &StereoOptions::center_roi>()},
+         field::flag<kStereo, kWarp, &StereoSettings::center_rois>()},
         {{"margin", "stereo", kTried, "PX", "paper mode: pixels added around what is rendered again"},
-         slidesTo(128, field::count<kStereo, &StereoOptions::margin_px>(0, kMaxSide))},
+         slidesTo(128, field::count<kStereo, kWarp, &StereoSettings::margin_px>(0, kMaxSide))},
         {{"budget", "stereo", kTried, "FRACTION",
           "share of work for patching the warped picture: of an eye's (predicted), of both eyes' (temporal)"},
-         field::number<kStereo, &StereoOptions::budget>(0.0, 1.0)},
+         field::number<kStereo, kWarp, &StereoSettings::budget>(0.0, 1.0)},
         {{"move-cost", "stereo", kTried, "PAIRS", "predicted mode: tiles that meet at most this many splats are rendered, not warped"},
-         field::count<kStereo, &StereoOptions::move_cost>(0, kMaxMoveCost)},
+         field::count<kStereo, kWarp, &StereoSettings::move_cost>(0, kMaxMoveCost)},
         {{"depth", "stereo", kTried, "KIND", "depth that reprojects a pixel: D, D/A or A/I"},
-         field::named<kStereo, &StereoOptions::depth>({"sum", "mean", "inverse"})},
+         field::named<kStereo, kWarp, &StereoSettings::depth_choice>({"sum", "mean", "inverse"})},
         {{"order", "stereo", kTried, "KIND", "blending order: by depth, or by distance from the point midway between the eyes",
           "the scene's, or depth"},
          field::named<kStereo, &StereoOptions::order>({"depth", "distance"})},
         {{"resampling", "stereo", kTried, "KIND",
           "reproject and paper modes: warped pixels are sampled with a cubic kernel, or copied forward with gaps interpolated, as in the "
           "paper"},
-         field::named<kStereo, &StereoOptions::resampling>({"cubic", "forward"})},
+         field::named<kStereo, kWarp, &StereoSettings::forward>({"cubic", "forward"})},
         {{"per-eye", "stereo", kTried, "", "paper mode: cull, sort and project for each eye by itself, as two-pass does"},
          field::flag<kStereo, &StereoOptions::per_eye>()},
         {{"gap-px", "stereo", kTried, "PX", "runs of uncovered pixels up to this long are interpolated, longer ones are holes"},
-         field::count<kStereo, &StereoOptions::gap_px>(0, kMaxGapPx)},
+         field::count<kStereo, kWarp, &StereoSettings::gap_px>(0, kMaxGapPx)},
         {{"edge-samples", "stereo", kTried, "N", "paper mode: samples along each edge of the picture"},
-         field::count<kStereo, &StereoOptions::edge_samples>(1, kMaxSide)},
+         field::count<kStereo, kWarp, &StereoSettings::edge_samples>(1, kMaxSide)},
         {{"edge-bounds", "stereo", kTried, "KIND",
           "paper mode: width of the re-rendered borders, as in the paper, or also covering disocclusion by near content"},
-         field::named<kStereo, &StereoOptions::edge_bounds>({"paper", "tight"})},
+         field::named<kStereo, kWarp, &StereoSettings::tight_edges>({"paper", "tight"})},
         {{"hole-error", "stereo", kTried, "E", "predicted mode: weight of the difference expected of a hole's pixel"},
-         field::number<kStereo, &StereoOptions::hole_error>(0.0, kMaxExpectedError)},
+         field::number<kStereo, kWarp, &StereoSettings::hole_error>(0.0, kMaxExpectedError)},
         {{"newcomer-error", "stereo", kTried, "E", "predicted mode: error of a pixel covered by splats that the dominant eye does not see"},
-         field::number<kStereo, &StereoOptions::newcomer_error>(0.0, kMaxExpectedError)},
+         field::number<kStereo, kWarp, &StereoSettings::newcomer_error>(0.0, kMaxExpectedError)},
         {{"foveation", "stereo", kTried, "DEG",
           "predicted mode: angle around the gaze within which all errors count; beyond it, only those the eye can see; 0: off"},
          field::number<kStereo, &StereoOptions::foveation_deg>(0.0, 90.0)},

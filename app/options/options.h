@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/geometry.h"
-#include "engine/mode.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/settings.h"
+#include "engine/stereo_settings.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,33 +27,13 @@ struct CameraOptions {
     glm::dvec3 background{0.0};
 };
 
-// The cost of warping a tile, in pairs of tile and splat, where nobody has measured it.
-inline constexpr std::uint32_t kDefaultMoveCost = 32;
-
-// The depth that warps a pixel, from its blended sums: D, D/A or A/I (docs/how-it-works.md).
-enum class PixelDepth { kSum, kMean, kInverse };
-// How warped pixels are sampled: with a cubic kernel, or copied forward with gaps interpolated, as in the paper.
-enum class Resampling { kCubic, kForward };
-// The width of the paper's borders: as there, or also covering disocclusion by near content.
-enum class EdgeBounds { kPaper, kTight };
-
 struct StereoOptions {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
-    std::optional<double> ipd_m;
-    bool center_roi = false;
-    std::uint32_t margin_px = 32;
-    double budget = 0.2;
-    std::uint32_t move_cost = kDefaultMoveCost;
-    PixelDepth depth = PixelDepth::kInverse;
     std::optional<Order> order;  // absent: as the scene asks, by depth mostly
-    Resampling resampling = Resampling::kCubic;
     bool per_eye = false;
-    std::uint32_t gap_px = 2;
-    std::uint32_t edge_samples = 64;
-    EdgeBounds edge_bounds = EdgeBounds::kPaper;
-    double hole_error = 1.0;
-    double newcomer_error = 0.3;
+    StereoSettings warp{.move_cost = kDefaultMoveCost};
+    std::optional<double> ipd_m;
     double foveation_deg = 0.0;      // about where the eyes look, in which all is seen; 0: everywhere
     bool half_periphery = false;     // with foveation: half the resolution where the eyes would not see more
     std::optional<glm::dvec3> gaze;  // in the head's axes: x right, y down, z forward; absent: where the lenses are best

@@ -65,7 +65,7 @@ void SceneRenderer::govern(ConnectedHeadset& headset, const ViewSettings& settin
     // In two pictures each both eyes are rendered, whatever the budget.
     const StereoOptions& stereo = settings.stereo;
     const bool in_two = stereo.mode == Mode::kPredicted && stereo.half_periphery && stereo.foveation_deg > 0.0 && !headset.inset;
-    governor_.wish(settings.quality, in_two ? Mode::kShared : stereo.mode, {stereo.budget, settings.resolution_scale});
+    governor_.wish(settings.quality, in_two ? Mode::kShared : stereo.mode, {stereo.warp.budget, settings.resolution_scale});
     fitImages(headset, settings);
     if (governor_.settings() != std::exchange(governed_, governor_.settings())) { ++governed_count_; }
     const double scale = governor_.settings().resolution_scale;
@@ -89,7 +89,7 @@ bool SceneRenderer::dropDepth(ConnectedHeadset& headset) {
 FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const ViewSettings& settings, double scale, const FrameViews& views,
                                              Order usual_order) {
     StereoOptions stereo = settings.stereo;
-    stereo.budget = governor_.settings().budget;
+    stereo.warp.budget = governor_.settings().budget;
     if (headset.inset) { stereo.half_periphery = false; }  // the runtime lays one picture over the other
     FrameSettings frame = frameSettings(options_.camera, stereo, usual_order);
     // Of the wearer, however large the scene is.

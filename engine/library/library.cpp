@@ -19,7 +19,6 @@ namespace binosplat::engine {
 namespace {
 
 constexpr unsigned kLargestSize = 16384;
-constexpr gpu::uint kMoveCost = 32;  // tiles of no more pairs are rendered: docs/tried.md, *One eye from the other*
 constexpr std::uint64_t kCacheBytes = std::uint64_t{4} << 30;  // of scenes from the web, as --cache-limit
 
 glm::dvec3 vectorOf(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -75,7 +74,7 @@ FrameSettings frameSettingsOf(const Settings& settings, Order order) {
     frame.order = order;
     frame.keep_past = hasPast(frame.mode);
     frame.stereo.budget = settings.budget;
-    frame.stereo.move_cost = kMoveCost;
+    frame.stereo.move_cost = kDefaultMoveCost;
     return frame;
 }
 

@@ -13,32 +13,15 @@
 
 #include "engine/gpu/gpu_scene.h"
 #include "engine/gpu/kernel.h"
-#include "engine/mode.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/shown_tiles.h"
 #include "engine/passes/warp_buffers.h"
+#include "engine/stereo_settings.h"
 #include "shaders/shared/passes.h"
 
 #include <optional>
 
 namespace binosplat {
-
-// What the passes are given in addition to the two cameras.
-struct StereoSettings {
-    TileChoice choice = TileChoice::kPredicted;
-    gpu::uint depth_choice = gpu::kDepthInverse;
-    bool forward = false;  // colours are copied as in the paper, not sampled; kPredicted always samples
-    gpu::uint gap_px = 2;
-    gpu::uint margin_px = 32;
-    gpu::uint edge_samples = 64;
-    bool tight_edges = false;
-    bool center_rois = false;
-    double budget = 0.2;      // share of an eye's work
-    gpu::uint move_cost = 0;  // of a tile, in pairs
-    double hole_error = 1.0;
-    double newcomer_error = 0.3;
-    bool operator==(const StereoSettings&) const = default;
-};
 
 // Where an eye looks, for TileChoice::kPredicted: what it does not see there is not worth rendering again.
 struct Gaze {

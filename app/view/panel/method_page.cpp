@@ -52,7 +52,7 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order
     choose(widgets, "Dominant eye", *findRunRow("dominant"), options, 3);
     choose(widgets, "Pixel depth", *findRunRow("depth"), options, 3);
     const float width = ImGui::GetContentRegionAvail().x;
-    widgets.checkbox("Centre ROI (paper)", &stereo.center_roi);
+    widgets.checkbox("Centre ROI (paper)", &stereo.warp.center_rois);
     ImGui::SameLine(0.4f * width);
     bool by_distance = stereo.order.value_or(usual_order) == Order::kDistance;
     if (widgets.checkbox("Sort by distance", &by_distance)) { stereo.order = by_distance ? Order::kDistance : Order::kDepth; }
@@ -62,16 +62,16 @@ void drawMethod(PanelWidgets& widgets, ViewSettings& settings, Order usual_order
     if (widgets.checkbox("Foveation", &foveated)) { stereo.foveation_deg = foveated ? settings.last_foveation_deg : 0.0; }
     const SliderRange margins = sliderOf(*findRunRow("margin"));
     const int least_px = static_cast<int>(margins.least), most_px = static_cast<int>(margins.most);
-    int margin = static_cast<int>(stereo.margin_px);
+    int margin = static_cast<int>(stereo.warp.margin_px);
     if (ImGui::SliderInt("margin (paper)", &margin, least_px, most_px, "%d px")) {
-        stereo.margin_px = static_cast<std::uint32_t>(std::clamp(margin, least_px, most_px));
+        stereo.warp.margin_px = static_cast<std::uint32_t>(std::clamp(margin, least_px, most_px));
     }
     widgets.noteSlider("margin (paper)");
     const SliderRange budgets = sliderOf(*findRunRow("budget"));
-    auto budget = static_cast<float>(100.0 * stereo.budget);
+    auto budget = static_cast<float>(100.0 * stereo.warp.budget);
     if (ImGui::SliderFloat("budget", &budget, static_cast<float>(100.0 * budgets.least), static_cast<float>(100.0 * budgets.most),
                            stereo.mode == Mode::kTemporal ? "%.0f %% of both eyes" : "%.0f %% of an eye")) {
-        stereo.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
+        stereo.warp.budget = std::clamp(static_cast<double>(budget) / 100.0, budgets.least, budgets.most);
     }
     widgets.noteSlider("budget");
     settings.stereo = stereo;

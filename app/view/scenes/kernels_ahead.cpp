@@ -80,8 +80,8 @@ void makeKernelsAt(std::uint32_t width_px, StereoFrame& small, const CameraOptio
 bool FramesAhead::isLike(const FramesAhead& other) const {
     // These change while a slider is dragged, and are numbers that kernels are told; any foveation has the same ones.
     const auto withoutNumbers = [](StereoOptions options) {
-        options.budget = 0.0;
-        options.margin_px = 0;
+        options.warp.budget = 0.0;
+        options.warp.margin_px = 0;
         options.foveation_deg = options.foveation_deg > 0.0 ? 1.0 : 0.0;
         return options;
     };
