@@ -4,6 +4,7 @@
 #include "app/view/panel/panel_content.h"
 #include "app/view/panel/panel_font.h"
 #include "app/view/panel/panel_style.h"
+#include "app/view/wearer/wearer_controls.h"
 
 #include <doctest/doctest.h>
 #include <imgui.h>
@@ -26,6 +27,7 @@ public:
         font = std::make_unique<PanelFont>();
         takeLetters();
         status.has_scene = true;
+        status.tools = WearerControls().choices();
         status.scene = "scene.ply";
     }
     PanelSketch(const PanelSketch&) = delete;

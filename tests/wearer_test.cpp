@@ -1,6 +1,7 @@
 // Facts about the wearer's hands without a headset: who points, where a throw lands, what the vignette covers, how hands are drawn.
 #include "app/view/room/hand_picture.h"
 #include "app/view/room/vignette.h"
+#include "app/view/wearer/teleport.h"
 #include "app/view/wearer/wearer_controls.h"
 
 #include <doctest/doctest.h>
@@ -176,11 +177,12 @@ TEST_CASE("who teleports stands where the throw lands, once the stick is let go,
     CHECK(controls.aimingHand() == kLeft);
     CHECK_FALSE(controls.isMoving());
     CHECK(state.sceneFromRoom().position == glm::dvec3(0.0));
-    const glm::dvec3 target = controls.teleportAim().target.value();
+    const glm::dvec3 target = aimTeleport(*now.hands[kLeft].aim, *now.floor_m).target.value();
+    CHECK(controls.things(now.room_from_head.position).size() == kTeleportStrips + 1);
     now.hands[kLeft].stick = {0.0, 0.0};
     controls.update(now, panel, state);
     CHECK_FALSE(controls.aimingHand().has_value());
-    CHECK(controls.teleportAim().arc.empty());
+    CHECK(controls.things(now.room_from_head.position).empty());
     // The head is above the target now, as high as before.
     const glm::dvec3 head = transform(state.sceneFromRoom(), now.room_from_head.position);
     CHECK(head.x == doctest::Approx(target.x));

@@ -121,7 +121,7 @@ void Viewer::chooseThings(const WearerNow& wearer, const FrameViews& views) {
     sight.eye = wearer.room_from_head.position;
     if (state_.settings().hands) { sight.hands = wearer.hands; }
     sight.things = panel_.inRoom().rays(sight.eye, controls_.aimingHand());
-    std::ranges::copy(thingsOf(controls_.teleportAim(), sight.eye), std::back_inserter(sight.things));
+    std::ranges::copy(controls_.things(sight.eye), std::back_inserter(sight.things));
     sight.vignette_m = vignette_.widthMetres(views.eyes);
     headset().things.choose(sight);
 }

@@ -77,6 +77,7 @@ void Viewer::layOutPanel(bool hung, double step_seconds) {
     status.rate = renderer_.rate();
     status.has_scene = scenes_.get() != nullptr;
     status.can_pass_through = instance_.canSeeThrough();
+    status.tools = controls_.choices();
     if (connection_.headset() != nullptr) { status.refresh_rates = headset().refresh_rates; }
     if (status.has_scene) { status.usual_order = scenes_.get()->gpu_scene.usualOrder(); }
     if (status.has_scene) {

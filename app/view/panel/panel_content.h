@@ -5,6 +5,7 @@
 #include "app/view/panel/panel_widgets.h"
 #include "app/view/panel/scene_chooser.h"
 #include "app/view/settings/view_settings.h"
+#include "app/view/wearer/wearer_tool.h"
 #include "engine/frame/stereo_frame.h"
 
 #include <glm/glm.hpp>
@@ -55,6 +56,7 @@ struct PanelStatus {
     std::string files;                                       // what of them is read or written beside the frames; empty: nothing
     bool can_reload_shaders = false;                         // whether there is a button for it
     bool can_pass_through = false;                           // likewise
+    std::vector<ToolChoice> tools;                           // what they let the wearer choose
     std::vector<double> refresh_rates;                       // that the headset can be asked for; where there are any, a row of them
     std::vector<std::pair<std::string, std::string>> facts;  // of the scene, see describeFacts
     ShownPlace place;

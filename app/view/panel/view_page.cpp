@@ -89,18 +89,24 @@ void choose(PanelWidgets& widgets, const char* words, const std::array<const cha
     }
 }
 
-void drawMoving(PanelWidgets& widgets, ViewSettings& settings, bool can_pass_through) {
-    choose(widgets, "Left stick", std::array{"Walk", "Teleport"}, settings.teleport);
-    choose(widgets, "Right stick", std::array{"Turn by 30\xc2\xb0", "Turn smoothly"}, settings.smooth_turn);
+void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector<ToolChoice>& tools, bool can_pass_through) {
+    for (const ToolChoice& tool : tools) {
+        if (tool.names[0] != nullptr) { choose(widgets, tool.words, tool.names, settings.*tool.chosen); }
+    }
     choose(widgets, "Background", std::array{"Default", "Black", "Grey", "White"}, settings.backdrop);
     const float width = ImGui::GetContentRegionAvail().x;
     widgets.checkbox("Vignette", &settings.vignette);
     ImGui::SameLine(0.24f * width);
     widgets.checkbox("Hands", &settings.hands);
-    ImGui::SameLine(0.43f * width);
-    widgets.checkbox("Two-handed tilt", &settings.tilt);
+    float place = 0.43f;
+    for (const ToolChoice& tool : tools) {
+        if (tool.names[0] != nullptr) { continue; }
+        ImGui::SameLine(place * width);
+        widgets.checkbox(tool.words, &(settings.*tool.chosen));
+        place += 0.31f;
+    }
     if (!can_pass_through) { return; }
-    ImGui::SameLine(0.74f * width);
+    ImGui::SameLine(place * width);
     widgets.checkbox("Passthrough", &settings.passthrough);
 }
 
@@ -129,7 +135,7 @@ void drawRates(PanelWidgets& widgets, ViewSettings& settings, const std::vector<
 void drawViewPage(PanelWidgets& widgets, ViewSettings& settings, const PanelStatus& status, PanelRequests& requests) {
     drawQualityRow(widgets, settings, status.rate);
     drawPlace(widgets, status.place, requests);
-    drawMoving(widgets, settings, status.can_pass_through);
+    drawMoving(widgets, settings, status.tools, status.can_pass_through);
     static constexpr std::array kKept{"Picture", "Save", "Load"};
     if (const auto pressed = widgets.row(kKept, {}, kTargetPx)) {
         (*pressed == 0 ? requests.take_picture : *pressed == 1 ? requests.save : requests.load) = true;

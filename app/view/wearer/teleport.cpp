@@ -1,7 +1,11 @@
 // A throw.
 #include "app/view/wearer/teleport.h"
 
+#include "app/view/placement/placement.h"
+#include "app/view/wearer/sticks.h"
+
 #include <cmath>
+#include <utility>
 
 namespace binosplat {
 
@@ -9,6 +13,8 @@ namespace {
 
 constexpr double kThrowMetresPerSecond = 7.0, kFallMetresPerSecond2 = 9.8;
 constexpr double kArcWidthMetres = 0.012, kTargetMetres = 0.5, kAboveFloorMetres = 0.01;
+// Where the runtime knows no floor: below the head of a wearer who stands at the start.
+constexpr double kUsualFloorMetres = 1.6;
 
 }  // namespace
 
@@ -29,12 +35,42 @@ TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m) {
     return aim;
 }
 
-std::vector<Thing> thingsOf(const TeleportAim& aim, const glm::dvec3& eye) {
-    std::vector<Thing> things;
-    for (std::size_t i = 0; i + 1 < aim.arc.size(); ++i) {
-        if (const auto strip = stripBetween(aim.arc[i], aim.arc[i + 1], kArcWidthMetres, eye)) { things.push_back({Sprite::kRay, *strip}); }
+void Teleport::update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) {
+    const std::optional<glm::dvec3> target = std::exchange(aim_, {}).target;
+    if (!state.settings().teleport) {
+        aiming_.reset();
+        return;
     }
-    if (aim.target) { things.push_back({Sprite::kTarget, lying(*aim.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
+    const auto aims = [&](int h) {
+        const xr::Hand& hand = now.hands[static_cast<std::size_t>(h)];
+        // Who aims may pass over the panel.
+        const bool may_push = h == kLeft && (aiming_ == h || !panel.isPointedAtBy(h));
+        const bool pushed = may_push && hand.stick.y > (aiming_ == h ? kStickRests : kStickPushed);
+        return hand.aim.has_value() && (pushed || panel.clicksElsewhere(h));
+    };
+    if (aiming_ && !aims(*aiming_)) {
+        // A hand that was lost did not let go.
+        if (now.hands[static_cast<std::size_t>(*aiming_)].aim && target) {
+            glm::dvec3 step_m = *target - now.room_from_head.position;
+            step_m.y = 0.0;
+            state.place(movedBy(state.sceneFromRoom(), step_m));
+        }
+        aiming_.reset();
+    }
+    for (const int h : {kRight, kLeft}) {
+        if (!aiming_ && aims(h)) { aiming_ = h; }
+    }
+    if (aiming_) { aim_ = aimTeleport(*now.hands[static_cast<std::size_t>(*aiming_)].aim, now.floor_m.value_or(kUsualFloorMetres)); }
+}
+
+std::vector<Thing> Teleport::things(const glm::dvec3& eye) const {
+    std::vector<Thing> things;
+    for (std::size_t i = 0; i + 1 < aim_.arc.size(); ++i) {
+        if (const auto strip = stripBetween(aim_.arc[i], aim_.arc[i + 1], kArcWidthMetres, eye)) {
+            things.push_back({Sprite::kRay, *strip});
+        }
+    }
+    if (aim_.target) { things.push_back({Sprite::kTarget, lying(*aim_.target - glm::dvec3(0.0, kAboveFloorMetres, 0.0), kTargetMetres)}); }
     return things;
 }
 

@@ -1,10 +1,7 @@
 // Where a wearer who points at the floor will stand. Room axes: x right, y down, z forward; metres.
 #pragma once
 
-#include "app/view/room/thing.h"
-
-#include <optional>
-#include <vector>
+#include "app/view/wearer/wearer_tool.h"
 
 namespace binosplat {
 
@@ -18,7 +15,21 @@ constexpr std::size_t kTeleportStrips = 6;
 // `floor_m`.
 TeleportAim aimTeleport(const Pose& room_from_aim, double floor_m);
 
-// The arc and its end, as `eye` sees them.
-std::vector<Thing> thingsOf(const TeleportAim& aim, const glm::dvec3& eye);
+// Where that is chosen, the left stick ahead or a trigger away from the panel aims at the floor, and letting go moves the wearer there.
+class Teleport : public WearerTool {
+public:
+    void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
+    [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
+    [[nodiscard]] const TeleportAim& aim() const { return aim_; }
+    // The arc and its end.
+    [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const override;
+    [[nodiscard]] std::vector<ToolChoice> choices() const override {
+        return {{"Left stick", {"Walk", "Teleport"}, &ViewSettings::teleport}};
+    }
+
+private:
+    std::optional<int> aiming_;
+    TeleportAim aim_;
+};
 
 }  // namespace binosplat
