@@ -615,6 +615,27 @@ TEST_CASE("a picture that holds what is no number is not called equal") {
     CHECK(benchTable({"GPU", "", {result}}).find("equal") == std::string::npos);
 }
 
+TEST_CASE("of an error an eye sees each tile's share, and notices it from a hundredth of the contrast on") {
+    const glm::uvec2 size_px(32, 16);  // two tiles
+    const Image full{size_px, 4, std::vector<float>(4 * 512, 0.5f)};
+    Image picture = full;
+    for (std::size_t i = 0; i < 512; ++i) { picture.values[4 * i] += i % 32 < 16 ? 0.02f : 0.005f; }  // squares of 0.1024 and 0.0064 a tile
+    const SeenScores seen = measureSeen(full, picture, std::array{0.5, 1.0});
+    CHECK(seen.mean_square == doctest::Approx((0.5 * 0.1024 + 0.0064) / (3 * 512)).epsilon(1e-4));
+    CHECK(seen.psnrDb() == doctest::Approx(10.0 * std::log10(3 * 512 / 0.0576)).epsilon(1e-4));
+    CHECK(seen.noticed == 0.5);
+    CHECK(measureSeen(full, full, std::array{0.5, 1.0}).noticed == 0.0);
+    // It stands in the tables, and has a panel of its own in the plot.
+    BenchResult result = makeResult("a", Mode::kMono, 1, 1.0);
+    result.quality = {{"all", 512, 0.01, {}, {}, {}}};
+    CHECK(benchPlot({"GPU", "", {result}}).find("of what the eye sees") == std::string::npos);
+    result.seen = seen;
+    CHECK(benchPlot({"GPU", "", {result}}).find("of what the eye sees") != std::string::npos);
+    CHECK(benchTable({"GPU", "", {result}}).find("an error of 44.26 dB, and notices it in 50.00 %") != std::string::npos);
+    CHECK(benchJson({"GPU", "", {result}}).find("\"noticed\": 0.5") != std::string::npos);
+    CHECK(benchCsv({"GPU", "", {result}}).find(",44.2597,0.5,") != std::string::npos);
+}
+
 TEST_CASE("aMethodMayBeThePaperToTheLetterAndViewsMayDrawAScenesSplatsInSeveralWays") {
     const Workplace work;
     writeText(work.path / "a.toml",

@@ -58,6 +58,11 @@ Json resultJson(const BenchResult& result) {
     if (result.ratio_to_shared) { json["ratio_to_shared"] = *result.ratio_to_shared; }
     if (result.ratio_to_twin) { json["ratio_to_twin"] = *result.ratio_to_twin; }
     if (!result.quality.empty()) { json["affiliated_against_full"] = qualityJson(result.quality); }
+    if (result.seen) {
+        json["seen_by_the_eye"] = {
+            {"mean_square", result.seen->mean_square}, {"psnr_db", result.seen->psnrDb()}, {"noticed", result.seen->noticed}};
+        if (!std::isfinite(result.seen->psnrDb())) { json["seen_by_the_eye"]["psnr_db"] = nullptr; }
+    }
     if (result.move_cost) { json["move_cost"] = *result.move_cost; }
     json["tiles_rendered"] = result.tiles_rendered;
     json["work_rendered"] = result.work_rendered;
@@ -102,6 +107,8 @@ std::vector<Column> fixedColumns(const BenchRun& run) {
             {"ratio_to_shared", [](R r) { return number(r.ratio_to_shared); }},
             {"ratio_to_twin", [](R r) { return number(r.ratio_to_twin); }},
             {"move_cost", [](R r) { return number(r.move_cost); }},
+            {"seen_psnr_db", [](R r) { return r.seen ? number(r.seen->psnrDb()) : ""; }},
+            {"noticed", [](R r) { return r.seen ? number(r.seen->noticed) : ""; }},
             {"tiles_rendered", [](R r) { return number(r.tiles_rendered); }},
             {"work_rendered", [](R r) { return number(r.work_rendered); }},
             {"stereo_bytes_per_pixel", [](R r) { return number(r.stereo_bytes_per_pixel); }},

@@ -16,24 +16,31 @@ namespace {
 
 double pixelsOf(const BenchResult& result) { return static_cast<double>(result.size_px.x) * static_cast<double>(result.size_px.y); }
 
+std::optional<double> errorOf(const BenchResult& result) {
+    const OriginScores* all = scoresOf(result, "all");
+    return all == nullptr ? std::nullopt : std::optional(all->psnrDb());
+}
+
+std::optional<double> seenErrorOf(const BenchResult& result) { return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt; }
+
 // One panel per point whose methods have an error: a series of points per mode, those of the front joined.
-std::vector<PlotPanel> errorPanels(const BenchRun& run) {
+std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&)) {
     std::vector<PlotPanel> panels;
     for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
         const BenchResult& first = run.results[begin];
-        PlotPanel panel{.title = namePoint(first), .x_label = "GPU time of the pair, ms", .y_label = "PSNR of the affiliated eye, dB"};
+        PlotPanel panel{.title = namePoint(first), .x_label = "GPU time of the pair, ms", .y_label = y_label};
         panel.x_scale = panel.y_scale = Scale::kLinear;
         std::vector<const BenchResult*> front;
         std::map<std::optional<Mode>, std::size_t> methods;  // by mode
         for (end = begin; end < run.results.size() && samePoint(first, run.results[end]); ++end) { ++methods[run.results[end].mode]; }
         for (std::size_t i = begin; i < end; ++i) {
             const BenchResult& result = run.results[i];
-            const OriginScores* all = scoresOf(result, "all");
+            const std::optional<double> psnr_db = psnrDbOf(result);
             if (result.mode && rendersBothInFull(*result.mode)) { panel.marks.push_back({result.method + " (no error)", result.total_ms}); }
-            if (all == nullptr) { continue; }
+            if (!psnr_db) { continue; }
             PlotLine& line = lineOf(panel, modeNameOf(result));
             line.joined = false;
-            line.points.emplace_back(result.total_ms, all->psnrDb());
+            line.points.emplace_back(result.total_ms, *psnr_db);
             // In a crowd only the front is named.
             line.names.push_back(methods[result.mode] < 6 || result.on_front ? result.method : "");
             if (result.on_front) { front.push_back(&result); }
@@ -42,7 +49,7 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run) {
         std::ranges::sort(front, {}, [](const BenchResult* result) { return result->total_ms; });
         PlotLine& line = lineOf(panel, "Pareto front");
         line.dots = false;
-        for (const BenchResult* result : front) { line.points.emplace_back(result->total_ms, scoresOf(*result, "all")->psnrDb()); }
+        for (const BenchResult* result : front) { line.points.emplace_back(result->total_ms, *psnrDbOf(*result)); }
         panels.push_back(std::move(panel));
     }
     return panels;
@@ -91,7 +98,8 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
 }  // namespace
 
 std::string benchPlot(const BenchRun& run) {
-    std::vector<PlotPanel> panels = errorPanels(run);
+    std::vector<PlotPanel> panels = errorPanels(run, "PSNR of the affiliated eye, dB", errorOf);
+    std::ranges::move(errorPanels(run, "PSNR of what the eye sees of the error, dB", seenErrorOf), std::back_inserter(panels));
     std::set<Group> done;
     for (const BenchResult& result : run.results) {
         const Group group = groupOf(result);

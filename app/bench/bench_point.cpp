@@ -5,6 +5,7 @@
 #include "app/options/modes.h"
 #include "app/report/report.h"
 #include "app/terminal/interrupt.h"
+#include "engine/reference/periphery.h"
 #include "engine/reference/reference.h"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ struct Runner {
     FrameResult last, compared;
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;
+    std::optional<SeenScores> seen;
     bool is_twin = false;
 
     void count(const FrameResult& result) {
@@ -59,6 +61,7 @@ BenchResult summarize(const Runner& runner, const BenchPoint& point) {
         result.counters = counters.named();
     }
     result.counters.merge(runner.compared.counters.named());  // those that cost time
+    result.seen = runner.seen;
     result.peak_gpu_bytes = runner.peak_gpu_bytes;
     result.tiles_rendered = runner.last.tiles_rendered;
     result.work_rendered = runner.last.work_rendered;
@@ -103,10 +106,17 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
     runner.peak_gpu_bytes = frames.peakAlone(point.cameras, point.run.camera, method.stereo);
     const auto [result, frame] = frames.render(point.cameras, point.run.camera, method.stereo, true);
     runner.compared = result;
+    const auto seenIn = [&](const Image& whole, const Image& picture, const Eye& eye, const std::optional<Gaze>& gaze) {
+        if (gaze) { runner.seen = measureSeen(whole, picture, reference::findSharesThere(eye, {gaze->direction, gaze->clear_rad})); }
+    };
+    const std::array<std::optional<Gaze>, 2> gazes = gazesOf(point.cameras, method.stereo);
     if (plan.psnr && reprojects(method.stereo.mode)) {
-        const int affiliated = 1 - method.stereo.dominant;
-        const double focal_px = point.cameras.eyes[static_cast<std::size_t>(affiliated)].intrinsics.fx;
-        runner.quality = measureQuality(full, frame->readPicture(affiliated), frame->readTileKinds(), frame->readPixelClasses(),
+        const auto affiliated = static_cast<std::size_t>(1 - method.stereo.dominant);
+        const Eye& eye = point.cameras.eyes[affiliated];
+        const double focal_px = eye.intrinsics.fx;
+        const Image picture = frame->readPicture(static_cast<int>(affiliated));
+        seenIn(full, picture, eye, gazes[affiliated]);
+        runner.quality = measureQuality(full, picture, frame->readTileKinds(), frame->readPixelClasses(),
                                         {plan.ssim, plan.flip, focal_px, plan.lpips ? &*plan.lpips : nullptr});
         if (!result.counters.warped) { runner.quality.resize(1); }  // both eyes were rendered
     } else if (plan.psnr && method.stereo.mode == Mode::kMono && method.stereo.half_periphery) {
@@ -114,6 +124,7 @@ Runner prepare(const BenchMethod& method, const BenchPoint& point, const BenchPl
         StereoOptions sharp = method.stereo;
         sharp.half_periphery = false;
         const Image own_full = frames.render(point.cameras, point.run.camera, sharp, true).frame->readPicture(0);
+        seenIn(own_full, picture, point.cameras.middle, gazes[0]);
         runner.quality = measureQuality(own_full, picture, {}, {},
                                         {plan.ssim, plan.flip, point.cameras.middle.intrinsics.fx, plan.lpips ? &*plan.lpips : nullptr});
         runner.quality.resize(1);  // no pixel comes from another eye

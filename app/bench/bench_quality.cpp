@@ -1,6 +1,7 @@
 // How far the affiliated eye's picture is from its own full render.
 #include "app/bench/bench_quality.h"
 
+#include "engine/passes/frame_buffers.h"
 #include "engine/picture/flip.h"
 #include "engine/picture/metrics.h"
 #include "engine/picture/roi_picture.h"
@@ -52,6 +53,27 @@ double squareOf(const Image& a, const Image& b, std::size_t pixel) {
 double psnrOf(double mean_square) { return mean_square == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * std::log10(mean_square); }
 
 double OriginScores::psnrDb() const { return psnrOf(mean_square); }
+
+double SeenScores::psnrDb() const { return psnrOf(mean_square); }
+
+SeenScores measureSeen(const Image& full, const Image& picture, std::span<const double> shares) {
+    const glm::uvec2 tiles = tilesOf(full.size_px);
+    std::vector<double> errors(shares.size(), 0.0);
+    for (std::size_t pixel = 0; pixel < full.pixelCount(); ++pixel) {
+        const std::size_t x = pixel % full.size_px.x / gpu::kTileSize, y = pixel / full.size_px.x / gpu::kTileSize;
+        errors[y * tiles.x + x] += 3.0 * squareOf(full, picture, pixel);
+    }
+    SeenScores seen;
+    std::size_t off = 0, noticed = 0;
+    for (std::size_t t = 0; t < errors.size(); ++t) {
+        const double error = shares[t] * errors[t];
+        seen.mean_square += error / (3.0 * static_cast<double>(full.pixelCount()));
+        off += error > 0.0 ? 1 : 0;
+        noticed += error >= static_cast<double>(gpu::kLeastSeenError) ? 1 : 0;
+    }
+    if (off > 0) { seen.noticed = static_cast<double>(noticed) / static_cast<double>(off); }
+    return seen;
+}
 
 PhotoScores compareWithPhoto(const Image& picture, const Image& photo, const Lpips* lpips) {
     Image shown = picture;

@@ -34,6 +34,17 @@ struct QualityOptions {
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
+// What of the error an eye sees that looks somewhere.
+struct SeenScores {
+    double mean_square = 0.0;
+    double noticed = 0.0;  // share of the tiles with an error in which what is seen of it is kLeastSeenError or more
+
+    [[nodiscard]] double psnrDb() const;
+};
+
+// `shares`: by tile, how much of its error's square the eye sees, see reference::findSharesThere.
+SeenScores measureSeen(const Image& full, const Image& picture, std::span<const double> shares);
+
 // Against a photograph, as evaluations of 3DGS and 2DGS do: the picture clamped to 0 to 1, zeros beyond the border for SSIM.
 struct PhotoScores {
     double psnr_db, ssim;

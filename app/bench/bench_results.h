@@ -36,6 +36,7 @@ struct BenchResult {
     std::map<std::string, std::uint64_t> counters;
     std::uint64_t peak_gpu_bytes = 0;
     std::vector<OriginScores> quality;  // of the affiliated eye; empty where it is rendered in full
+    std::optional<SeenScores> seen;     // likewise, where it is known where the eye looks
     // Median of the ratios of frames that took turns: what slows the machine for a while slows both. Of total_ms where they did not.
     std::optional<double> ratio_to_two_pass, ratio_to_shared;
     std::optional<double> ratio_to_twin;               // mono: to the twin's
