@@ -9,6 +9,7 @@
 #endif
 
 #include <map>
+#include <numeric>
 #include <set>
 
 TEST_SUITE_BEGIN("chunk_loader");
@@ -82,6 +83,11 @@ TEST_CASE("what is wished for comes whole, the coarsest level before any finer o
     }
     CHECK(loader.takeLines().empty());
     CHECK(files.size() > 4);
+    const std::optional<LoaderWork> work = loader.tryWork();
+    REQUIRE(work.has_value());
+    CHECK(work->splats == std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
+                                          [](std::uint64_t sum, const LoadedPart& part) { return sum + part.splats; }));
+    CHECK(work->seconds > 0.0);
 }
 
 TEST_CASE("the same wishes give the same parts in the same order, on any number of threads") {

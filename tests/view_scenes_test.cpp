@@ -81,7 +81,8 @@ TEST_CASE("a streamed scene is there at once, becomes finer while frames go on, 
     const std::string& output = run.outcome.output;
     CHECK(output.find("shows split") < output.find("all that is seen is there: "));
     CHECK(says(run, "all that is seen is there: "));
-    CHECK(says(run, "16 levels of leaves; frames that waited for it: 0"));
+    CHECK(says(run, "16 levels of leaves, 0.0"));
+    CHECK(says(run, " s; frames that waited for it: 0"));
     CHECK(says(run, "0_2.sog is not there, expected a chunk of the scene; what is there stays"));
     REQUIRE(run.frames.size() > 4);
     for (std::size_t frame = 2; frame + 4 < run.frames.size(); ++frame) { REQUIRE(run.layers(frame, "projection").size() == 1); }

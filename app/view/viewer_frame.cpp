@@ -79,10 +79,15 @@ void Viewer::drawFrame() {
 void Viewer::sayLive(LoadedScene& scene) {
     for (const std::string& line : scene.live->tryTakeLines()) { say(line); }
     if (said_there_ || scene.stream == nullptr || !scene.stream->isSettled()) { return; }
+    const std::optional<LoaderWork> work = scene.stream->tryWork();
+    if (!work) { return; }
     said_there_ = true;
     const StreamCounters counters = scene.stream->counters();
-    log_.say(fmt::format("all that is seen is there: {} splats, {} levels of leaves; frames that waited for it: {}",
-                         counters.splats_resident, counters.chunks_resident, counters.frames_waited_for_loading));
+    log_.say(
+        fmt::format("all that is seen is there: {} splats, {} levels of leaves, {:.2f} million splats decoded in {:.1f} s; frames that "
+                    "waited for it: {}",
+                    counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats), work->seconds,
+                    counters.frames_waited_for_loading));
 }
 
 bool Viewer::prepareScene(const FrameViews& views) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <exception>
 #include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace binosplat {
@@ -114,6 +115,11 @@ bool ChunkLoader::isDone() const {
 bool ChunkLoader::isSurelyDone() const {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     return lock && done_.empty() && !nextFile();
+}
+
+std::optional<LoaderWork> ChunkLoader::tryWork() const {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    return lock ? std::optional(work_) : std::nullopt;
 }
 
 bool ChunkLoader::waitForNews(std::chrono::milliseconds most) const {
@@ -267,13 +273,22 @@ LoadedPart ChunkLoader::read(const Decoded& decoded, LeafLevel at) const {
 }
 
 void ChunkLoader::load(std::size_t file, const std::vector<LeafLevel>& wishes) {
+    auto began = Clock::now();
     const Decoded& decoded = decode(file);
+    // With the mutex held.
+    const auto count = [&](std::uint64_t splats) {
+        const auto now = Clock::now();
+        work_.splats += splats;
+        work_.seconds += std::chrono::duration<double>(now - std::exchange(began, now)).count();
+    };
     for (std::size_t first = 0; first < wishes.size();) {
         // Those that are still wished for.
         std::vector<LeafLevel> batch;
         {
             std::unique_lock lock(mutex_);
+            count(0);
             changed_.wait(lock, [&] { return stops_ || done_splats_ < settings_.waiting_splats; });
+            began = Clock::now();
             if (stops_) { throw Cancelled(); }
             for (; first < wishes.size() && batch.size() < kPartsAtOnce; ++first) {
                 if (isWished(wishes[first])) { batch.push_back(wishes[first]); }
@@ -282,6 +297,8 @@ void ChunkLoader::load(std::size_t file, const std::vector<LeafLevel>& wishes) {
         std::vector<std::optional<LoadedPart>> parts(batch.size());
         forBlocks(batch.size(), 1, settings_.threads, [&](std::size_t i, std::size_t) { parts[i] = read(decoded, batch[i]); });
         const std::lock_guard lock(mutex_);
+        count(std::accumulate(parts.begin(), parts.end(), std::uint64_t{0},
+                              [](std::uint64_t sum, const auto& part) { return sum + part->splats; }));
         for (std::optional<LoadedPart>& part : parts) {
             if (!isWished(part->at)) { continue; }
             removeWish(part->at);

@@ -37,6 +37,12 @@ struct LoaderSettings {
     std::function<void(LoadedPart&)> finish = {};  // what else is done to a part, on the loader's threads
 };
 
+// What was decoded, and how long that took, without waiting for room or for wishes.
+struct LoaderWork {
+    std::uint64_t splats = 0;
+    double seconds = 0.0;
+};
+
 class ChunkLoader {
 public:
     ChunkLoader(std::unique_ptr<ChunkSource> source, LoaderSettings settings);
@@ -58,6 +64,7 @@ public:
     [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
     [[nodiscard]] std::vector<std::string> tryTakeLines();
     [[nodiscard]] bool isSurelyDone() const;
+    [[nodiscard]] std::optional<LoaderWork> tryWork() const;
     // One sentence for each file that is broken or missing, and one for each time that a server does not answer; each once.
     [[nodiscard]] std::vector<std::string> takeLines();
     // By file whether it cannot be had now. Wishes in such files are not loaded.
@@ -114,6 +121,7 @@ private:
     std::vector<LeafLevel> coarsest_, finer_;
     std::deque<LoadedPart> done_;
     std::uint64_t done_splats_ = 0;
+    LoaderWork work_;
     std::vector<std::string> lines_;
     std::vector<Trouble> troubles_;  // by file
     std::uint64_t news_count_ = 0;

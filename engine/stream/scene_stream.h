@@ -47,6 +47,7 @@ public:
     [[nodiscard]] bool isSettled() const override;
     [[nodiscard]] double share() const override;
     [[nodiscard]] StreamCounters counters() const override;
+    [[nodiscard]] std::optional<LoaderWork> tryWork() const { return loader_->tryWork(); }
     [[nodiscard]] std::vector<std::string> takeLines() override { return loader_->takeLines(); }
     [[nodiscard]] std::vector<std::string> tryTakeLines() override { return loader_->tryTakeLines(); }
 
