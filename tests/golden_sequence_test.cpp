@@ -111,16 +111,20 @@ std::array<Image, 2> walkOfTwin(Mode mode, const ViewedScene& view) {
     return pair;
 }
 
-std::array<Image, 2> walkOfDevice(const Context& context, Mode mode, const ViewedScene& view) {
+// With a gaze half of the resolution is where it does not look.
+std::array<Image, 2> walkOfDevice(const Context& context, Mode mode, const ViewedScene& view, const std::optional<Gaze>& gaze = {}) {
     const GpuScene scene(context, view.scene);
     StereoFrame frame(context, scene);
     const test::KeptKernels kept(context, frame);
     FrameSettings settings;
     settings.mode = mode;
     settings.keep_past = true;
+    settings.half_periphery = gaze.has_value();
+    settings.gazes = {gaze, gaze};
     for (int i = 0; i <= kFrames; ++i) {
         settings.stereo.budget = budgetOf(i);
-        frame.render(eyesAt(view.eye, i), settings);
+        const FrameResult result = frame.render(eyesAt(view.eye, i), settings);
+        if (gaze) { CHECK(result.counters.periphery.value().half_tiles > 0); }
     }
     return {frame.readPicture(kLeft), frame.readPicture(kRight)};
 }
@@ -233,6 +237,22 @@ TEST_CASE_FIXTURE(Gpu, "the last pair of a walk is what twin and device come to"
         CHECK(compare(full, device).psnrDb() > 30.0);
         CHECK(compare(full, device).psnrDb() < kLeastDb);
     }
+}
+
+// Its passes have twins of their own, see periphery_past_test.
+TEST_CASE_FIXTURE(Gpu, "the last pair of a walk in two pictures an eye is what it was") {
+    const ViewedScene view = test::viewBuiltin("builtin:atelier", {160, 112}, 20000);
+    const Gaze aside{{-3.0, 1.0, -2.0}, 0.0};  // so few pixels show less than an eye resolves but far from where it looks
+    const Image device = besideEachOther(walkOfDevice(context(), Mode::kTemporal, view, aside));
+    const Image expected = test::readGolden("walk-temporal-half", device);
+    MESSAGE(compare(expected, device).psnrDb() << " dB");
+    test::checkGolden("walk-temporal-half", expected, device, "device", kLeastDb);
+    const auto eyes = eyesAt(view.eye, kFrames);
+    const Image full = besideEachOther(
+        {test::toImage(renderFull(view.scene, eyes[kLeft]).picture), test::toImage(renderFull(view.scene, eyes[kRight]).picture)});
+    MESSAGE(compare(full, device).psnrDb() << " dB to the full render");
+    CHECK(compare(full, device).psnrDb() > 30.0);
+    CHECK(compare(full, device).psnrDb() < kLeastDb);
 }
 
 #endif

@@ -321,10 +321,10 @@ TEST_CASE_FIXTURE(Shown, "another method is drawn once its kernels are there, ma
         frame.half_floats = true;
         frame.keep_depth = frame.keep_both_depths = false;
         frame.square_boxes = false;
-        const std::size_t before = scenes.get()->frame.kernelCount();
-        scenes.get()->frame.renderAhead(stereoPair(middle, 0.063), frame);
-        scenes.get()->frame.finish();
-        return scenes.get()->frame.kernelCount() == before;
+        const std::size_t before = scenes.frame().kernelCount();
+        scenes.frame().renderAhead(stereoPair(middle, 0.063), frame);
+        scenes.frame().finish();
+        return scenes.frame().kernelCount() == before;
     };
     CHECK(drawsWithoutCompiling());
     // Chosen while it is shown: until then frames go on as they were. Numbers of sliders are there at once.
