@@ -113,8 +113,9 @@ FrameSettings SceneRenderer::settingsOfFrame(ConnectedHeadset& headset, const Vi
     return frame;
 }
 
-void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                             const FrameViews& views) {
+    LoadedScene& scene = *shown.get();
     frame_ = settingsOfFrame(headset, settings, scene_from_room.scale, views, scene.gpu_scene.usualOrder());
     eyes_.clear();
     inset_eyes_.clear();
@@ -128,11 +129,10 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, LoadedScene& scene, const
     all.insert(all.end(), inset_eyes_.begin(), inset_eyes_.end());
     scene.follow(all, headset.session.stepSeconds());
     try {
-        scene.frame.makeRoom(eyes_, frame_);
+        shown.frame().makeRoom(eyes_, frame_);
         glm::uvec2 largest_px = headset.images->partPx();
         if (headset.inset) {
-            if (!scene.insets) { scene.insets = StereoFrame::beside(scene.frame); }
-            scene.insets->makeRoom(inset_eyes_, inset_frame_);
+            shown.insets().makeRoom(inset_eyes_, inset_frame_);
             largest_px = glm::max(largest_px, headset.inset_images->partPx());
         }
         presenter_.makeRoom(largest_px, headset.images->takesDepth());
@@ -158,7 +158,7 @@ void SceneRenderer::aimInsets(const ConnectedHeadset& headset, const Similarity&
     }
 }
 
-void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+void SceneRenderer::render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                            const std::function<void(Commands&)>& record_panel) {
     const bool one_eye = settings.showsOneEye();
     headset.images->seeThrough(seesThrough(settings));
@@ -169,17 +169,17 @@ void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const 
     }
     if (headset.inset) {
         headset.inset_images->seeThrough(seesThrough(settings));
-        const std::optional<FrameResult> known = scene.insets->renderAhead(inset_eyes_, inset_frame_, [&](Commands& commands) {
-            recordEyes(commands, *headset.inset_images, *scene.insets, settings.tint, nullptr);
+        const std::optional<FrameResult> known = shown.insets().renderAhead(inset_eyes_, inset_frame_, [&](Commands& commands) {
+            recordEyes(commands, *headset.inset_images, shown.insets(), settings.tint, nullptr);
         });
         if (known) { insets_ms_ = known->gpu_total_ms; }
     } else {
         insets_ms_ = 0.0;
     }
-    std::optional<FrameResult> known = scene.frame.renderAhead(
+    std::optional<FrameResult> known = shown.frame().renderAhead(
         eyes_, frame_,
         [&](Commands& commands) {
-            recordEyes(commands, *headset.images, scene.frame, settings.tint, window);
+            recordEyes(commands, *headset.images, shown.frame(), settings.tint, window);
             record_panel(commands);
         },
         window != nullptr ? window->drawn() : vk::Semaphore());
@@ -188,6 +188,7 @@ void SceneRenderer::render(ConnectedHeadset& headset, LoadedScene& scene, const 
         last_ = std::move(*known);
         last_.gpu_total_ms += insets_ms_;
     }
+    LoadedScene& scene = *shown.get();
     scene.count(last_.counters);
     if (known && scene.stream) { fitSplats(*scene.stream, headset.session.periodMs()); }
     met_.add(headset.session.periodMs(), headset.session.lostPeriods());

@@ -6,7 +6,7 @@
 #include "app/view/governor/splat_budget.h"
 #include "app/view/headset/connected_headset.h"
 #include "app/view/panel/panel_content.h"
-#include "app/view/scenes/scene_loader.h"
+#include "app/view/scenes/shown_scene.h"
 #include "app/view/settings/view_settings.h"
 #include "app/view/window/mirror_window.h"
 
@@ -40,11 +40,11 @@ public:
     bool dropDepth(ConnectedHeadset& headset);
 
     // What render() will show. Throws Error where there is no memory for it; nothing is shown then, until this succeeds with less.
-    void prepare(ConnectedHeadset& headset, LoadedScene& scene, const Similarity& scene_from_room, const ViewSettings& settings,
+    void prepare(ConnectedHeadset& headset, ShownScene& shown, const Similarity& scene_from_room, const ViewSettings& settings,
                  const FrameViews& views);
     // Renders and presents that, in one submission with what `record_panel` records, and does not wait for it. With a `window` it keeps
     // an eye for that.
-    void render(ConnectedHeadset& headset, LoadedScene& scene, const ViewSettings& settings, MirrorWindow* window,
+    void render(ConnectedHeadset& headset, ShownScene& shown, const ViewSettings& settings, MirrorWindow* window,
                 const std::function<void(Commands&)>& record_panel);
 
     // The wearer wants the room behind the scene, and the headset can show it.

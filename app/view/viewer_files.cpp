@@ -74,16 +74,14 @@ void Viewer::load() {
 }
 
 void Viewer::reloadShaders() {
-    LoadedScene* scene = scenes_.get();
-    if (scene == nullptr || !panel_.status().can_reload_shaders) { return; }
+    if (scenes_.get() == nullptr || !panel_.status().can_reload_shaders) { return; }
     // Its thread may be making kernels.
     if (scenes_.isLoading()) {
         say("shaders stay as they are until the next scene is there");
         return;
     }
     say(binosplat::reloadShaders(context_, shaderFolder(options_.shaders), [&] {
-        if (scene->insets) { (void)scene->insets->finish(); }  // it has the same ones
-        scene->frame.rebuildKernels();
+        scenes_.rebuildKernels();
         renderer_.presenter().rebuildKernels();
     }));
 }
@@ -95,7 +93,7 @@ void Viewer::takePicture() {
         const std::filesystem::path folder = std::filesystem::current_path(error);
         check(!error, "the picture cannot be written: the working directory is gone");
         sayPicture(pictures_.finish());
-        pictures_.begin(scenes_.get()->frame, drawn_.showsOneEye(), folder);
+        pictures_.begin(scenes_.frame(), drawn_.showsOneEye(), folder);
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         say(fmt::format("the picture cannot be read: {}", error.what()));
     } catch (const Error& error) { say(error.what()); }

@@ -61,7 +61,7 @@ void Viewer::drawFrame() {
     const bool fits = prepareScene(views);
     onWindow(&MirrorWindow::acquire);
     if (LoadedScene* scene = scenes_.get(); scene != nullptr && fits) {
-        renderer_.render(headset(), *scene, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
+        renderer_.render(headset(), scenes_, drawn_, window_.get(), [this](Commands& commands) { recordPanel(commands); });
         ++frames_of_scene_;
         if (scene->live) { sayLive(*scene); }
         if (picture_asked_) { takePicture(); }
@@ -91,7 +91,6 @@ void Viewer::sayLive(LoadedScene& scene) {
 }
 
 bool Viewer::prepareScene(const FrameViews& views) {
-    LoadedScene* scene = scenes_.get();
     ViewSettings asked = state_.settings();
     if (headset().inset) { asked.stereo.half_periphery = false; }  // as the renderer does
     scenes_.expect(asked.stereo, renderer_.sizePx(asked), asked.tint);
@@ -103,7 +102,7 @@ bool Viewer::prepareScene(const FrameViews& views) {
         renderer_.govern(headset(), drawn_);
         ViewSettings wished = drawn_;
         if (picture_asked_) { wished.visibility_mask = false; }  // no lens hides anything of a picture
-        if (scene != nullptr) { renderer_.prepare(headset(), *scene, state_.sceneFromRoom(), wished, views); }
+        if (scenes_.get() != nullptr) { renderer_.prepare(headset(), scenes_, state_.sceneFromRoom(), wished, views); }
         state_.keepFitting(drawn_);
         return true;
     } catch (const Error& error) {

@@ -98,7 +98,7 @@ void Viewer::keepPictureOfScene() {
     if (scene == nullptr || std::exchange(frames_of_scene_, 0) < kLeastFramesSeen) { return; }
     try {
         waitForQueue();
-        Image view = scene->frame.readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant));
+        Image view = scenes_.frame().readPicture(drawn_.showsOneEye() ? 0 : static_cast<int>(drawn_.stereo.dominant));
         files_.write("keeping a picture of the scene",
                      [name = scene->name, about = describeBriefly(scene->facts), view = std::move(view)]() -> FileWorker::Done {
                          keepSeenScene(name, makeScenePicture(view), about);

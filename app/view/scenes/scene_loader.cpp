@@ -98,7 +98,7 @@ void SceneLoader::load(const Context& context, const RunOptions& options, bool s
             progress_ = kReadingShare + (1.0 - kReadingShare) * share;
         };
         if (opened) {
-            loaded_ = std::make_unique<LoadedScene>(context, std::move(*opened));
+            loaded_ = std::make_unique<LoadedScene>(std::move(*opened));
             const Eye eye = startEye(start);
             if (SceneStream* const stream = loaded_->stream) {
                 settled ? stream->settle({&eye, 1}, bringing) : stream->settleCoarsest({&eye, 1}, bringing);
@@ -136,10 +136,11 @@ void SceneLoader::makeKernels(const Context& context, const RunOptions& options)
             made_for_ = ahead_;
         }
         if (made_for_->known.contains(kindOf(*loaded_))) { continue; }
-        const auto small = makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
+        std::unique_ptr<StereoFrame> made = makeKernelsAhead(context, loaded_->gpu_scene, options.camera, *made_for_, [this] {
             if (cancelled_) { throw Cancelled(); }
         });
-        loaded_->frame.takeKernels(*small);
+        if (loaded_->kernels) { made->takeKernels(*loaded_->kernels); }
+        loaded_->kernels = std::move(made);
     }
 }
 

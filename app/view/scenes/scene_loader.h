@@ -19,12 +19,12 @@
 
 namespace binosplat {
 
-// A scene that can be shown, whole, streamed or moving. Stays where it is: the frame refers to the scene.
+// A scene that can be shown, whole, streamed or moving.
 struct LoadedScene {
     LoadedScene(const Context& context, const Scene& scene, const Progress& progress)
-        : whole(std::make_unique<GpuScene>(context, scene, progress)), gpu_scene(*whole), frame(context, gpu_scene) {}
-    LoadedScene(const Context& context, OpenedScene opened)
-        : live(std::move(opened.live)), stream(opened.stream), moving(opened.moving), gpu_scene(live->scene()), frame(context, gpu_scene) {
+        : whole(std::make_unique<GpuScene>(context, scene, progress)), gpu_scene(*whole) {}
+    explicit LoadedScene(OpenedScene opened)
+        : live(std::move(opened.live)), stream(opened.stream), moving(opened.moving), gpu_scene(live->scene()) {
         if (moving != nullptr) { clock = {moving->rateHz(), moving->series().size()}; }
     }
     // Before a frame of such eyes: what they ask for comes nearer, and a scene that moves goes on. Never waits.
@@ -33,17 +33,16 @@ struct LoadedScene {
     void count(FrameCounters& counters) const;
 
     std::string name;
-    std::unique_ptr<GpuScene> whole;  // or
-    std::unique_ptr<LiveScene> live;  // that loads while it is shown
-    SceneStream* stream = nullptr;    // the same, where it is streamed
-    MovingScene* moving = nullptr;    // likewise
-    const GpuScene& gpu_scene;        // of either
-    SceneClock clock;                 // of one that moves
-    StereoFrame frame;
-    std::unique_ptr<StereoFrame> insets;  // of a headset that takes some, once it was asked for them
-    Similarity start;                     // see startPlacement
-    glm::dvec3 up{0.0, -1.0, 0.0};        // see upOfScene
-    std::optional<double> floor;          // see floorHeight, along `up`
+    std::unique_ptr<GpuScene> whole;       // or
+    std::unique_ptr<LiveScene> live;       // that loads while it is shown
+    SceneStream* stream = nullptr;         // the same, where it is streamed
+    MovingScene* moving = nullptr;         // likewise
+    const GpuScene& gpu_scene;             // of either
+    SceneClock clock;                      // of one that moves
+    std::unique_ptr<StereoFrame> kernels;  // of frames that show it, see makeKernelsAhead; null: none were made
+    Similarity start;                      // see startPlacement
+    glm::dvec3 up{0.0, -1.0, 0.0};         // see upOfScene
+    std::optional<double> floor;           // see floorHeight, along `up`
     std::vector<Viewpoint> viewpoints;
     LoadNotes notes;
     SceneFacts facts;

@@ -66,7 +66,7 @@ void ShownScene::expect(const StereoOptions& stereo, glm::uvec2 size_px, bool ti
     }
     if (!scene_ || options_.load_first) { return; }
     if (maker_ && maker_->isDone()) {
-        if (StereoFrame* const made = maker_->made()) { scene_->frame.takeKernels(*made); }
+        if (StereoFrame* const made = maker_->made()) { frame_->takeKernels(*made); }
         if (!maker_->hasGivenUp()) { haveReady(maker_->ahead()); }
         maker_.reset();
     }
@@ -98,13 +98,14 @@ std::string ShownScene::take(ViewState& state) {
     const std::unique_ptr<SceneLoader> loader = std::move(loader_);
     try {
         std::unique_ptr<LoadedScene> taken = loader->take();
-        {
-            const std::lock_guard lock(context_.queueMutex());
-            context_.queue().waitIdle();
-        }
         maker_.reset();
-        // Drivers need many times a frame's time to make them.
-        if (scene_) { taken->frame.takeKernels(scene_->frame); }
+        try {
+            showInFrames(*taken);
+        } catch (...) {
+            if (scene_) { showInFrames(*scene_); }
+            throw;
+        }
+        if (taken->kernels) { frame_->takeKernels(*std::exchange(taken->kernels, nullptr)); }
         if (scene_) { left_[scene_->place] = state.sceneFromRoom(); }
         scene_ = std::move(taken);
         if (ahead_) { haveReady(loader->madeFor()); }
@@ -115,6 +116,26 @@ std::string ShownScene::take(ViewState& state) {
     const std::string complaint = place(state);
     for (const std::string& line : scene_->notes.lines) { log_.print("note: " + line); }
     return complaint;
+}
+
+void ShownScene::showInFrames(const LoadedScene& scene) {
+    // Each waits for its own frames under way, and then nothing reads the scene before.
+    if (insets_) { insets_->show(scene.gpu_scene); }
+    if (frame_) {
+        frame_->show(scene.gpu_scene);
+    } else {
+        frame_ = std::make_unique<StereoFrame>(context_, scene.gpu_scene);
+    }
+}
+
+StereoFrame& ShownScene::insets() {
+    if (!insets_) { insets_ = StereoFrame::beside(*frame_); }
+    return *insets_;
+}
+
+void ShownScene::rebuildKernels() {
+    if (insets_) { (void)insets_->finish(); }  // it has the same ones
+    frame_->rebuildKernels();
 }
 
 std::string ShownScene::goOnWithout(const std::string& why) {

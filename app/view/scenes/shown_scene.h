@@ -21,6 +21,12 @@ public:
 
     // Null until the first one is there.
     [[nodiscard]] LoadedScene* get() const { return scene_.get(); }
+    // The frame of whatever scene is shown, once there is one; and another one, made at the first call, for the insets of a headset that
+    // takes some. Throws Error if the device lacks the memory.
+    [[nodiscard]] StereoFrame& frame() const { return *frame_; }
+    [[nodiscard]] StereoFrame& insets();
+    // Makes their kernels anew, see StereoFrame.
+    void rebuildKernels();
     // Its name, or until it is there what was asked for.
     [[nodiscard]] const std::string& name() const { return scene_ ? scene_->name : asked_; }
     // Share done of the next one or, where none is on its way, of what the wearer sees of a streamed one; empty if that is all there.
@@ -49,6 +55,7 @@ public:
 
 private:
     [[nodiscard]] std::string place(ViewState& state);
+    void showInFrames(const LoadedScene& scene);
     // By name: where the wearer stood when another scene took the place of one.
     std::map<std::string, Similarity> left_;
     void lookBeside(FileWorker& files);
@@ -66,7 +73,8 @@ private:
     int steps_asked_ = 0;  // beside the last one, that were not looked for yet
     bool is_looking_ = false;
     std::unique_ptr<LoadedScene> scene_;
-    std::unique_ptr<KernelMaker> maker_;  // of the scene
+    std::unique_ptr<StereoFrame> frame_, insets_;  // of it
+    std::unique_ptr<KernelMaker> maker_;           // likewise
     std::vector<std::unique_ptr<SceneLoader>> given_up_;
     std::unique_ptr<SceneLoader> loader_;  // last: its thread ends first
 };
