@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/geometry.h"
+#include "engine/passes/stereo_settings.h"
 #include "engine/setup/head_motion.h"
 #include "engine/setup/settings.h"
-#include "engine/stereo_settings.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -15,8 +15,8 @@
 #include "engine/gpu/kernel.h"
 #include "engine/passes/eye_relation.h"
 #include "engine/passes/shown_tiles.h"
+#include "engine/passes/stereo_settings.h"
 #include "engine/passes/warp_buffers.h"
-#include "engine/stereo_settings.h"
 #include "shaders/shared/passes.h"
 
 #include <optional>
