@@ -35,41 +35,47 @@ Json qualityJson(const std::vector<OriginScores>& quality) {
     return json;
 }
 
+Json numberOrNull(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(); }
+
+// What both files have, null where a result has none of it.
+Json fieldsOf(const BenchResult& r) {
+    return {{"series", r.series},
+            {"scene", r.scene},
+            {"view", r.view},
+            {"headset", r.headset},
+            {"splats", r.splats},
+            {"backbone", r.backbone},
+            {"width", r.size_px.x},
+            {"height", r.size_px.y},
+            {"method", r.method},
+            {"mode", modeNameOf(r)},
+            {"frames", r.frames},
+            {"gpu_total_ms", r.total_ms},
+            {"gpu_total_least_ms", r.least_ms},
+            {"gpu_total_most_ms", r.most_ms},
+            {"ratio_to_two_pass", numberOrNull(r.ratio_to_two_pass)},
+            {"ratio_to_shared", numberOrNull(r.ratio_to_shared)},
+            {"ratio_to_twin", numberOrNull(r.ratio_to_twin)},
+            {"move_cost", numberOrNull(r.move_cost)},
+            {"seen_psnr_db", r.seen ? numberOrNull(r.seen->psnrDb()) : Json()},
+            {"noticed", r.seen ? Json(r.seen->noticed) : Json()},
+            {"tiles_rendered", r.tiles_rendered},
+            {"work_rendered", r.work_rendered},
+            {"stereo_bytes_per_pixel", r.stereo_bytes_per_pixel},
+            {"peak_gpu_bytes", r.peak_gpu_bytes},
+            {"on_front", r.on_front}};
+}
+
 Json resultJson(const BenchResult& result) {
-    Json counters = Json::object();
-    for (const auto& [name, count] : result.counters) { counters[name] = count; }
-    Json json{{"series", result.series},
-              {"scene", result.scene},
-              {"view", result.view},
-              {"headset", result.headset},
-              {"splats", result.splats},
-              {"backbone", result.backbone},
-              {"width", result.size_px.x},
-              {"height", result.size_px.y},
-              {"method", result.method},
-              {"mode", modeNameOf(result)},
-              {"frames", result.frames},
-              {"gpu_ms", timesJson(byLabel(result.pass_ms))},
-              {"stage_ms", timesJson(stagesOf(result.mode, result.pass_ms))},
-              {"gpu_total_ms", result.total_ms},
-              {"gpu_total_least_ms", result.least_ms},
-              {"gpu_total_most_ms", result.most_ms}};
-    if (result.ratio_to_two_pass) { json["ratio_to_two_pass"] = *result.ratio_to_two_pass; }
-    if (result.ratio_to_shared) { json["ratio_to_shared"] = *result.ratio_to_shared; }
-    if (result.ratio_to_twin) { json["ratio_to_twin"] = *result.ratio_to_twin; }
-    if (!result.quality.empty()) { json["affiliated_against_full"] = qualityJson(result.quality); }
-    if (result.seen) {
-        json["seen_by_the_eye"] = {
-            {"mean_square", result.seen->mean_square}, {"psnr_db", result.seen->psnrDb()}, {"noticed", result.seen->noticed}};
-        if (!std::isfinite(result.seen->psnrDb())) { json["seen_by_the_eye"]["psnr_db"] = nullptr; }
+    Json json = Json::object();
+    const Json fields = fieldsOf(result);
+    for (const auto& [name, value] : fields.items()) {
+        if (!value.is_null()) { json[name] = value; }
     }
-    if (result.move_cost) { json["move_cost"] = *result.move_cost; }
-    json["tiles_rendered"] = result.tiles_rendered;
-    json["work_rendered"] = result.work_rendered;
-    json["stereo_bytes_per_pixel"] = result.stereo_bytes_per_pixel;
-    json["on_front"] = result.on_front;
-    json["counters"] = counters;
-    json["peak_gpu_bytes"] = result.peak_gpu_bytes;
+    json["gpu_ms"] = timesJson(byLabel(result.pass_ms));
+    json["stage_ms"] = timesJson(stagesOf(result.mode, result.pass_ms));
+    if (!result.quality.empty()) { json["affiliated_against_full"] = qualityJson(result.quality); }
+    json["counters"] = result.counters;
     return json;
 }
 
@@ -81,39 +87,16 @@ struct Column {
 
 std::string number(const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : std::string(); }
 
+std::string cellOf(const Json& value) {
+    if (value.is_null()) { return {}; }
+    if (value.is_string()) { return csvCell(value.get<std::string>()); }
+    if (value.is_boolean()) { return value.get<bool>() ? "1" : "0"; }
+    return value.is_number_float() ? number(value.get<double>()) : value.dump();
+}
+
 std::string timeCell(const NamedTimes& times, const std::string& name) {
     const auto found = std::ranges::find(times, name, &std::pair<std::string, double>::first);
     return found == times.end() ? "" : fmt::format("{:.6g}", found->second);
-}
-
-std::vector<Column> fixedColumns(const BenchRun& run) {
-    using R = const BenchResult&;
-    return {{"device", [device = run.device](R) { return csvCell(device); }},
-            {"series", [](R r) { return csvCell(r.series); }},
-            {"scene", [](R r) { return csvCell(r.scene); }},
-            {"view", [](R r) { return csvCell(r.view); }},
-            {"headset", [](R r) { return csvCell(r.headset); }},
-            {"splats", [](R r) { return fmt::format("{}", r.splats); }},
-            {"backbone", [](R r) { return r.backbone; }},
-            {"width", [](R r) { return fmt::format("{}", r.size_px.x); }},
-            {"height", [](R r) { return fmt::format("{}", r.size_px.y); }},
-            {"method", [](R r) { return csvCell(r.method); }},
-            {"mode", [](R r) { return modeNameOf(r); }},
-            {"frames", [](R r) { return fmt::format("{}", r.frames); }},
-            {"gpu_total_ms", [](R r) { return number(r.total_ms); }},
-            {"gpu_total_least_ms", [](R r) { return number(r.least_ms); }},
-            {"gpu_total_most_ms", [](R r) { return number(r.most_ms); }},
-            {"ratio_to_two_pass", [](R r) { return number(r.ratio_to_two_pass); }},
-            {"ratio_to_shared", [](R r) { return number(r.ratio_to_shared); }},
-            {"ratio_to_twin", [](R r) { return number(r.ratio_to_twin); }},
-            {"move_cost", [](R r) { return number(r.move_cost); }},
-            {"seen_psnr_db", [](R r) { return r.seen ? number(r.seen->psnrDb()) : ""; }},
-            {"noticed", [](R r) { return r.seen ? number(r.seen->noticed) : ""; }},
-            {"tiles_rendered", [](R r) { return number(r.tiles_rendered); }},
-            {"work_rendered", [](R r) { return number(r.work_rendered); }},
-            {"stereo_bytes_per_pixel", [](R r) { return number(r.stereo_bytes_per_pixel); }},
-            {"peak_gpu_bytes", [](R r) { return fmt::format("{}", r.peak_gpu_bytes); }},
-            {"on_front", [](R r) { return std::string(r.on_front ? "1" : "0"); }}};
 }
 
 // Passes and counters that any result has, in order of first appearance.
@@ -129,7 +112,11 @@ std::vector<std::string> namesIn(const BenchRun& run, Entries&& entries) {
 }
 
 std::vector<Column> allColumns(const BenchRun& run) {
-    std::vector<Column> columns = fixedColumns(run);
+    std::vector<Column> columns{{"device", [device = run.device](const BenchResult&) { return csvCell(device); }}};
+    const Json fields = fieldsOf({});
+    for (const auto& field : fields.items()) {
+        columns.push_back({field.key(), [name = field.key()](const BenchResult& r) { return cellOf(fieldsOf(r).at(name)); }});
+    }
     for (const std::string origin : kOrigins) {
         const auto add = [&](const char* what, auto&& of) {
             columns.push_back({origin + " " + what, [origin, of](const BenchResult& r) {

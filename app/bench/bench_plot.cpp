@@ -23,8 +23,10 @@ std::optional<double> errorOf(const BenchResult& result) {
 
 std::optional<double> seenErrorOf(const BenchResult& result) { return result.seen ? std::optional(result.seen->psnrDb()) : std::nullopt; }
 
-// One panel per point whose methods have an error: a series of points per mode, those of the front joined.
-std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&)) {
+// One panel per point whose methods have an error: a series of points per mode; those of the front, which is one of the whole error,
+// joined.
+std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std::optional<double> (*psnrDbOf)(const BenchResult&),
+                                   bool draws_front) {
     std::vector<PlotPanel> panels;
     for (std::size_t begin = 0, end = 0; begin < run.results.size(); begin = end) {
         const BenchResult& first = run.results[begin];
@@ -46,6 +48,10 @@ std::vector<PlotPanel> errorPanels(const BenchRun& run, const char* y_label, std
             if (result.on_front) { front.push_back(&result); }
         }
         if (panel.lines.empty()) { continue; }
+        if (!draws_front) {
+            panels.push_back(std::move(panel));
+            continue;
+        }
         std::ranges::sort(front, {}, [](const BenchResult* result) { return result->total_ms; });
         PlotLine& line = lineOf(panel, "Pareto front");
         line.dots = false;
@@ -98,8 +104,8 @@ std::vector<PlotPanel> scalingPanels(const BenchRun& run, const Group& group) {
 }  // namespace
 
 std::string benchPlot(const BenchRun& run) {
-    std::vector<PlotPanel> panels = errorPanels(run, "PSNR of the affiliated eye, dB", errorOf);
-    std::ranges::move(errorPanels(run, "PSNR of what the eye sees of the error, dB", seenErrorOf), std::back_inserter(panels));
+    std::vector<PlotPanel> panels = errorPanels(run, "PSNR of the affiliated eye, dB", errorOf, true);
+    std::ranges::move(errorPanels(run, "PSNR of what the eye sees of the error, dB", seenErrorOf, false), std::back_inserter(panels));
     std::set<Group> done;
     for (const BenchResult& result : run.results) {
         const Group group = groupOf(result);

@@ -34,7 +34,7 @@ struct QualityOptions {
 std::vector<OriginScores> measureQuality(const Image& full, const Image& picture, std::span<const std::uint32_t> tile_kinds,
                                          std::span<const std::uint8_t> pixel_classes, const QualityOptions& options);
 
-// What of the error an eye sees that looks somewhere.
+// What an eye that looks somewhere sees of the error.
 struct SeenScores {
     double mean_square = 0.0;
     double noticed = 0.0;  // share of the tiles with an error in which what is seen of it is kLeastSeenError or more

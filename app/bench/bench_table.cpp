@@ -12,9 +12,10 @@ namespace {
 
 std::string ratioText(const std::optional<double>& ratio) { return ratio ? fmt::format("{:.3f}", *ratio) : "-"; }
 
-std::string decibelsOf(double mean_square) { return mean_square == 0.0 ? "equal" : fmt::format("{:.2f}", psnrOf(mean_square)); }
-
-std::string psnrText(const OriginScores* scores) { return scores == nullptr ? "-" : decibelsOf(scores->mean_square); }
+std::string psnrText(const OriginScores* scores) {
+    if (scores == nullptr) { return "-"; }
+    return scores->mean_square == 0.0 ? "equal" : fmt::format("{:.2f}", scores->psnrDb());
+}
 
 std::string scoreText(const std::optional<double>& score) { return score ? fmt::format("{:.4f}", *score) : "-"; }
 
@@ -106,9 +107,11 @@ std::string benchTable(const BenchRun& run) {
             if (r->move_cost) {
                 table += fmt::format("  {}: moving a tile took as long as rendering {:.0f} pairs\n", r->method, *r->move_cost);
             }
-            if (r->seen) {
-                table += fmt::format("  {}: the eye sees an error of {} dB, and notices it in {:.2f} % of the tiles that have one\n",
-                                     r->method, decibelsOf(r->seen->mean_square), 100.0 * r->seen->noticed);
+            if (r->seen && r->seen->mean_square == 0.0) {
+                table += fmt::format("  {}: the eye sees no error\n", r->method);
+            } else if (r->seen) {
+                table += fmt::format("  {}: the eye sees an error of {:.2f} dB, and notices it in {:.2f} % of the tiles that have one\n",
+                                     r->method, r->seen->psnrDb(), 100.0 * r->seen->noticed);
             }
             if (r->ratio_to_twin && *r->ratio_to_twin > 0.0) {
                 table += fmt::format("  mono is {:.2f} times as fast as its float64 twin on the CPU\n", 1.0 / *r->ratio_to_twin);
