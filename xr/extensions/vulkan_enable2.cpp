@@ -21,9 +21,16 @@ VkPhysicalDevice graphicsDevice(const Instance& instance, VkInstance vulkan_inst
     return chosen;
 }
 
-void requireSuccess(VkResult result, const char* what) {
-    if (result == VK_SUCCESS) { return; }
-    throw Error(ExitCode::kNoDevice, fmt::format("{}: {}", what, vk::to_string(vk::Result(result))));
+// By the runtime's `function`, which has Vulkan's result besides its own.
+template <typename Function, typename Made, typename Info>
+Made create(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, Info info, const char* function) {
+    info.systemId = instance.system();
+    info.pfnGetInstanceProcAddr = get_address;
+    Made made = VK_NULL_HANDLE;
+    VkResult result = VK_SUCCESS;
+    checkResult(instance.function<Function>(function)(instance.handle(), &info, &made, &result), function);
+    if (result != VK_SUCCESS) { throw Error(ExitCode::kNoDevice, fmt::format("{}: {}", function, vk::to_string(vk::Result(result)))); }
+    return made;
 }
 
 VkInstance createInstance(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, const VkInstanceCreateInfo& vulkan_info) {
@@ -36,30 +43,16 @@ VkInstance createInstance(const Instance& instance, PFN_vkGetInstanceProcAddr ge
                                 XR_VERSION_MINOR(least), VK_API_VERSION_MAJOR(wanted), VK_API_VERSION_MINOR(wanted)));
     }
     auto info = structure<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
-    info.systemId = instance.system();
-    info.pfnGetInstanceProcAddr = get_address;
     info.vulkanCreateInfo = &vulkan_info;
-    VkInstance created = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
-    const auto create = instance.function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR");
-    checkResult(create(instance.handle(), &info, &created, &result), "xrCreateVulkanInstanceKHR");
-    requireSuccess(result, "xrCreateVulkanInstanceKHR");
-    return created;
+    return create<PFN_xrCreateVulkanInstanceKHR, VkInstance>(instance, get_address, info, "xrCreateVulkanInstanceKHR");
 }
 
 VkDevice createDevice(const Instance& instance, PFN_vkGetInstanceProcAddr get_address, VkPhysicalDevice physical_device,
                       const VkDeviceCreateInfo& vulkan_info) {
     auto info = structure<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
-    info.systemId = instance.system();
-    info.pfnGetInstanceProcAddr = get_address;
     info.vulkanPhysicalDevice = physical_device;
     info.vulkanCreateInfo = &vulkan_info;
-    VkDevice created = VK_NULL_HANDLE;
-    VkResult result = VK_SUCCESS;
-    const auto create = instance.function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR");
-    checkResult(create(instance.handle(), &info, &created, &result), "xrCreateVulkanDeviceKHR");
-    requireSuccess(result, "xrCreateVulkanDeviceKHR");
-    return created;
+    return create<PFN_xrCreateVulkanDeviceKHR, VkDevice>(instance, get_address, info, "xrCreateVulkanDeviceKHR");
 }
 
 }  // namespace

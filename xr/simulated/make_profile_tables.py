@@ -128,8 +128,19 @@ def constant(path):
     return "k" + "".join(word.capitalize() for word in re.split(r"\W|_", path) if word)
 
 
+def write_row(items):
+    """As many to a line as fit."""
+    line = "   "
+    for item in items:
+        if len(line) + len(item) > 139:
+            print(line)
+            line = "   "
+        line += f" {item},"
+    print(line)
+
+
 def write_components(profile):
-    print(f"inline constexpr Component {constant(profile.name)}[] = {{")
+    items = []
     for (user_path, path), (kind, ways) in profile.components.items():
         if kind == VECTOR:
             if not {(user_path, path + axis) for axis in ("/x", "/y")} <= profile.components.keys():
@@ -137,7 +148,9 @@ def write_components(profile):
             continue
         depends = simplest([way for way in ways], profile.ways) if None not in ways else ""
         user = f"\"{user_path}\"" if user_path else "{}"
-        print(f"    {{{KINDS[kind]}, \"{path}\"" + (f", {user}" if user_path or depends else "") + (f", \"{depends}\"" if depends else "") + "},")
+        items.append(f"{{{KINDS[kind]}, \"{path}\"" + (f", {user}" if user_path or depends else "") + (f", \"{depends}\"" if depends else "") + "}")
+    print(f"inline constexpr Component {constant(profile.name)}[] = {{")
+    write_row(items)
     print("};")
 
 
@@ -162,10 +175,10 @@ def main():
         groups.setdefault(tuple(profile.user_paths), "kHands" if len(profile.user_paths) == 2 else constant(profile.user_paths[0]))
     for paths, name in groups.items():
         print(f"inline constexpr std::string_view {name}[] = {{" + ", ".join(f"\"{path}\"" for path in paths) + "};")
-    print()
+    print("\n// clang-format off")
     for profile in profiles:
         write_components(profile)
-    print("\ninline constexpr Profile kProfiles[] = {")
+    print("// clang-format on\n\ninline constexpr Profile kProfiles[] = {")
     for profile in profiles:
         depends = simplest(profile.ways, [frozenset()])
         print(f"    {{\"{PREFIX}{profile.name}\", \"{PLAYED[profile.name]}\", {groups[tuple(profile.user_paths)]}, {constant(profile.name)}"

@@ -49,6 +49,21 @@ const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* ge
     return session.is_running ? action.readings.at(info.subactionPath) : kInactive;
 }
 
+template <typename State, typename ValueOf>
+XrResult answerState(const char* call, XrSession session, const XrActionStateGetInfo* getInfo, XrActionType type, State* state,
+                     XrStructureType state_type, const ValueOf& valueOf) {
+    return answer(call, [&] {
+        Session& owner = getSession(session);
+        const ActionReading& reading = readingFor(owner, getInfo, type);
+        State& output = checkStruct(state, state_type);
+        output.currentState = valueOf(reading.value);
+        output.changedSinceLastSync = reading.has_changed;
+        output.lastChangeTime = reading.changed_at;
+        output.isActive = reading.is_active;
+        return successOf(owner);
+    });
+}
+
 }  // namespace
 
 XrResult xrAttachSessionActionSets(XrSession session, const XrSessionActionSetsAttachInfo* attachInfo) {
@@ -93,42 +108,20 @@ XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
 }
 
 XrResult xrGetActionStateBoolean(XrSession session, const XrActionStateGetInfo* getInfo, XrActionStateBoolean* state) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
-        const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_BOOLEAN_INPUT);
-        XrActionStateBoolean& output = checkStruct(state, XR_TYPE_ACTION_STATE_BOOLEAN);
-        output.currentState = reading.value.x > 0;
-        output.changedSinceLastSync = reading.has_changed;
-        output.lastChangeTime = reading.changed_at;
-        output.isActive = reading.is_active;
-        return successOf(owner);
-    });
+    return answerState(__func__, session, getInfo, XR_ACTION_TYPE_BOOLEAN_INPUT, state, XR_TYPE_ACTION_STATE_BOOLEAN,
+                       [](const glm::dvec2& value) { return static_cast<XrBool32>(value.x > 0); });
 }
 
 XrResult xrGetActionStateFloat(XrSession session, const XrActionStateGetInfo* getInfo, XrActionStateFloat* state) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
-        const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_FLOAT_INPUT);
-        XrActionStateFloat& output = checkStruct(state, XR_TYPE_ACTION_STATE_FLOAT);
-        output.currentState = static_cast<float>(reading.value.x);
-        output.changedSinceLastSync = reading.has_changed;
-        output.lastChangeTime = reading.changed_at;
-        output.isActive = reading.is_active;
-        return successOf(owner);
-    });
+    return answerState(__func__, session, getInfo, XR_ACTION_TYPE_FLOAT_INPUT, state, XR_TYPE_ACTION_STATE_FLOAT,
+                       [](const glm::dvec2& value) { return static_cast<float>(value.x); });
 }
 
 XrResult xrGetActionStateVector2f(XrSession session, const XrActionStateGetInfo* getInfo, XrActionStateVector2f* state) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
-        const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_VECTOR2F_INPUT);
-        XrActionStateVector2f& output = checkStruct(state, XR_TYPE_ACTION_STATE_VECTOR2F);
-        output.currentState = {static_cast<float>(reading.value.x), static_cast<float>(reading.value.y)};
-        output.changedSinceLastSync = reading.has_changed;
-        output.lastChangeTime = reading.changed_at;
-        output.isActive = reading.is_active;
-        return successOf(owner);
-    });
+    return answerState(__func__, session, getInfo, XR_ACTION_TYPE_VECTOR2F_INPUT, state, XR_TYPE_ACTION_STATE_VECTOR2F,
+                       [](const glm::dvec2& value) {
+                           return XrVector2f{static_cast<float>(value.x), static_cast<float>(value.y)};
+                       });
 }
 
 XrResult xrGetActionStatePose(XrSession session, const XrActionStateGetInfo* getInfo, XrActionStatePose* state) {

@@ -89,6 +89,22 @@ XrResult answerNoExtensions(const char* function, XrInstance instance, XrSystemI
     });
 }
 
+// Of a VkInstance or a VkDevice.
+template <typename Info>
+void checkCreation(const Info& info, const char* made_from) {
+    checkSystem(info.systemId);
+    require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
+    require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
+            "vkGetInstanceProcAddr or the ", made_from, " is missing");
+}
+
+VkPhysicalDevice giveDevice(Instance& owner, VkInstance instance) {
+    require(instance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
+    owner.graphics_device = chooseDevice(loaderOf(owner, instance), instance);
+    owner.graphics_instance = instance;
+    return owner.graphics_device;
+}
+
 }  // namespace
 
 XrResult xrGetVulkanGraphicsRequirements2KHR(XrInstance instance, XrSystemId systemId,
@@ -118,10 +134,7 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         const XrVulkanInstanceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
         VkInstance& output = checkOutput(vulkanInstance);
         VkResult& result = checkOutput(vulkanResult);
-        checkSystem(info.systemId);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
-        require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
-                "vkGetInstanceProcAddr or the VkInstanceCreateInfo is missing");
+        checkCreation(info, "VkInstanceCreateInfo");
         const auto create = resolve<PFN_vkCreateInstance>(info.pfnGetInstanceProcAddr, VK_NULL_HANDLE, "vkCreateInstance");
         result = create(info.vulkanCreateInfo, info.vulkanAllocator, &output);
         if (result == VK_SUCCESS) { owner.vulkan_loaders[output] = info.pfnGetInstanceProcAddr; }
@@ -141,10 +154,7 @@ XrResult xrGetVulkanGraphicsDevice2KHR(XrInstance instance, const XrVulkanGraphi
         const XrVulkanGraphicsDeviceGetInfoKHR& info = checkStruct(getInfo, XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
         VkPhysicalDevice& output = checkOutput(vulkanPhysicalDevice);
         checkSystem(info.systemId);
-        require(info.vulkanInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
-        owner.graphics_device = chooseDevice(loaderOf(owner, info.vulkanInstance), info.vulkanInstance);
-        owner.graphics_instance = info.vulkanInstance;
-        output = owner.graphics_device;
+        output = giveDevice(owner, info.vulkanInstance);
         return XR_SUCCESS;
     });
 }
@@ -154,10 +164,7 @@ XrResult xrGetVulkanGraphicsDeviceKHR(XrInstance instance, XrSystemId systemId, 
         Instance& owner = getInstance(instance);
         checkSystem(systemId);
         VkPhysicalDevice& output = checkOutput(vkPhysicalDevice);
-        require(vkInstance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
-        owner.graphics_device = chooseDevice(loaderOf(owner, vkInstance), vkInstance);
-        owner.graphics_instance = vkInstance;
-        output = owner.graphics_device;
+        output = giveDevice(owner, vkInstance);
         return XR_SUCCESS;
     });
 }
@@ -169,10 +176,7 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
         const XrVulkanDeviceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
         VkDevice& output = checkOutput(vulkanDevice);
         VkResult& result = checkOutput(vulkanResult);
-        checkSystem(info.systemId);
-        require(info.createFlags == 0, XR_ERROR_VALIDATION_FAILURE, "createFlags is ", info.createFlags, ", no flags are known");
-        require(info.pfnGetInstanceProcAddr != nullptr && info.vulkanCreateInfo != nullptr, XR_ERROR_VALIDATION_FAILURE,
-                "vkGetInstanceProcAddr or the VkDeviceCreateInfo is missing");
+        checkCreation(info, "VkDeviceCreateInfo");
         require(info.vulkanPhysicalDevice != VK_NULL_HANDLE && info.vulkanPhysicalDevice == owner.graphics_device, XR_ERROR_HANDLE_INVALID,
                 "not the device that xrGetVulkanGraphicsDevice2KHR gave");
         const auto create = resolve<PFN_vkCreateDevice>(info.pfnGetInstanceProcAddr, owner.graphics_instance, "vkCreateDevice");
