@@ -140,11 +140,6 @@ void Passes::recordCull(Commands& commands, const GpuScene& scene, const FrameBu
     dispatchOverBlocks(commands, kernels_.get(kernel), pass, scene, buffers, eyes.list);
 }
 
-void Passes::recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
-    recordCull(commands, scene, buffers, eyes, role);
-    recordOrder(commands, scene, buffers, eyes, role);
-}
-
 void Passes::recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role) {
     commands.beginPass({role, FrameStage::kSort, "compact"});
     const KeyValues order = buffers.visible.order(), spare = buffers.visible.spare();

@@ -89,9 +89,8 @@ public:
 
     // How many splats are visible: cull alone.
     void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // A list of visible splats: cull to sort_depth.
-    void recordVisible(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // Of these compact and sort_depth alone, also once more by the depths of another eye; which eyes see the splats is not asked again.
+    // The list of these, front to back: compact and sort_depth; also once more by the depths of another eye, and which eyes see the splats
+    // is not asked again.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
     // The picture of an eye: project to rasterize.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role);

@@ -44,12 +44,14 @@ KernelTable pastKernels() {
 void PastPasses::recordWarp(Commands& commands, const PastInputs& in) {
     commands.beginPass({in.role, WarpPastKernel::kStage, WarpPastKernel::kShader});
     const std::uint64_t blocks = FrameBuffers::targetField(in.index, offsetof(TargetState, past_blocks));
+    commands.reads(in.source.colours.address<gpu::uint>(), in.source.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
+    commands.fills(in.target.colours.address<gpu::uint>(), in.target.colours.bytes() / sizeof(gpu::uint), Content::kPicture);
     const gpu::WarpPastPass pass{
         .view = in.buffers.state.address<gpu::PastView>(FrameBuffers::targetField(in.index, offsetof(TargetState, past))),
-        .source = commands.reads(in.source.colours.address<gpu::vec4>(), in.source.colours.bytes() / sizeof(gpu::vec4), Content::kPicture),
+        .source = in.source.colours.address<gpu::vec4>(),
         .source_words = in.source.words.address<gpu::uint>(),
         .source_tiles = in.source.tiles.address<gpu::PastTile>(),
-        .target = commands.fills(in.target.colours.address<gpu::vec4>(), in.target.colours.bytes() / sizeof(gpu::vec4), Content::kPicture),
+        .target = in.target.colours.address<gpu::vec4>(),
         .target_words = in.target.words.address<gpu::uint>(),
         .tiles = in.target.tiles.address<gpu::PastTile>(),
         .tile_kinds = in.warp.tileKinds(),
