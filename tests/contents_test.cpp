@@ -23,6 +23,7 @@ TEST_CASE("whatever comes to lie over a part takes its place there, and leaves t
     CHECK(contents.hold(120, 10, Content::kTileCounts));
     CHECK(contents.hold(130, 70, Content::kDepthKeys));
     CHECK_FALSE(contents.hold(100, 100, Content::kDepthKeys));
+    CHECK(contents.hold(125, 0, Content::kDepthKeys));
     contents.forget();
     CHECK(contents.hold(120, 10, Content::kDepthKeys));
 }

@@ -134,6 +134,8 @@ void SceneRenderer::prepare(ConnectedHeadset& headset, ShownScene& shown, const 
         if (headset.inset) {
             shown.insets().makeRoom(inset_eyes_, inset_frame_);
             largest_px = glm::max(largest_px, headset.inset_images->partPx());
+        } else {
+            shown.dropInsets();
         }
         presenter_.makeRoom(largest_px, headset.images->takesDepth());
     } catch (const Error&) {

@@ -84,7 +84,7 @@ void Viewer::sayLive(LoadedScene& scene) {
     said_there_ = true;
     const StreamCounters counters = scene.stream->counters();
     log_.say(
-        fmt::format("all that is seen is there: {} splats, {} levels of leaves, {:.2f} million splats decoded in {:.1f} s; frames that "
+        fmt::format("all that is seen is there: {} splats, {} levels of leaves, {:.2f} million splats read in {:.1f} s; frames that "
                     "waited for it: {}",
                     counters.splats_resident, counters.chunks_resident, 1e-6 * static_cast<double>(work->splats), work->seconds,
                     counters.frames_waited_for_loading));

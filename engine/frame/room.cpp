@@ -43,10 +43,9 @@ FrameRoom::FrameRoom(const Context& context, const FrameCapacity& first_capacity
 }
 
 void FrameRoom::show(const GpuScene& scene) {
-    scene_ = &scene;
-    first_frame_ = true;
-    lists_ = {};
     lists_ = makeFrameBuffers(context_, scene.splatCount(), scene.isInPages());
+    scene_ = &scene;
+    first_frame_ = room_ahead_fits_ = true;
 }
 
 void FrameRoom::resize(Buffer& buffer, const char* name, std::uint64_t bytes) {

@@ -40,11 +40,12 @@ std::unique_ptr<StereoFrame> StereoFrame::beside(const StereoFrame& other) {
 
 void StereoFrame::show(const GpuScene& scene) {
     finish();
+    room_.show(scene);
     scene_ = &scene;
     moving_pays_.forget();
     pasts_ = {};
     changes_known_ = scene.changesRecorded();
-    room_.show(scene);
+    cut_short_ = done_again_ = 0;
 }
 
 void StereoFrame::rebuildKernels() {

@@ -26,7 +26,8 @@ public:
     // one thread has both.
     static std::unique_ptr<StereoFrame> beside(const StereoFrame& other);
 
-    // From now on frames are of `scene`, on the same device. Kernels stay compiled.
+    // From now on frames are of `scene`, on the same device. Kernels stay compiled. Waits for frames under way. Throws Error if the device
+    // lacks the memory: then frames are of the scene before.
     void show(const GpuScene& scene);
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the

@@ -23,6 +23,7 @@ void Contents::fill(std::uint64_t begin, std::uint64_t bytes, Content content) {
 }
 
 bool Contents::hold(std::uint64_t begin, std::uint64_t bytes, Content content) const {
+    if (bytes == 0) { return true; }
     auto part = parts_.upper_bound(begin);
     if (part != parts_.begin() && std::prev(part)->second.end > begin) { --part; }
     for (; part != parts_.end() && part->first < begin + bytes; ++part) {

@@ -37,7 +37,7 @@ struct LoaderSettings {
     std::function<void(LoadedPart&)> finish = {};  // what else is done to a part, on the loader's threads
 };
 
-// What was decoded, and how long that took, without waiting for room or for wishes.
+// What was read, and how long that took: files are fetched and decoded; waiting for room or for wishes does not count.
 struct LoaderWork {
     std::uint64_t splats = 0;
     double seconds = 0.0;

@@ -99,15 +99,15 @@ void drawMoving(PanelWidgets& widgets, ViewSettings& settings, const std::vector
     ImGui::SameLine(0.24f * width);
     widgets.checkbox("Hands", &settings.hands);
     float place = 0.43f;
+    const auto tick = [&](const char* words, bool& chosen) {
+        if (place < 0.8f) { ImGui::SameLine(place * width); }
+        widgets.checkbox(words, &chosen);
+        place = place < 0.8f ? place + 0.31f : 0.31f;
+    };
     for (const ToolChoice& tool : tools) {
-        if (tool.names[0] != nullptr) { continue; }
-        ImGui::SameLine(place * width);
-        widgets.checkbox(tool.words, &(settings.*tool.chosen));
-        place += 0.31f;
+        if (tool.names[0] == nullptr) { tick(tool.words, settings.*tool.chosen); }
     }
-    if (!can_pass_through) { return; }
-    ImGui::SameLine(place * width);
-    widgets.checkbox("Passthrough", &settings.passthrough);
+    if (can_pass_through) { tick("Passthrough", settings.passthrough); }
 }
 
 // The headset's; nothing where it cannot be asked for any.

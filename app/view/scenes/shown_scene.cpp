@@ -99,15 +99,10 @@ std::string ShownScene::take(ViewState& state) {
     try {
         std::unique_ptr<LoadedScene> taken = loader->take();
         maker_.reset();
-        try {
-            showInFrames(*taken);
-        } catch (...) {
-            if (scene_) { showInFrames(*scene_); }
-            throw;
-        }
-        if (taken->kernels) { frame_->takeKernels(*std::exchange(taken->kernels, nullptr)); }
         if (scene_) { left_[scene_->place] = state.sceneFromRoom(); }
+        showInFrames(*taken);
         scene_ = std::move(taken);
+        if (const auto kernels = std::exchange(scene_->kernels, nullptr)) { frame_->takeKernels(*kernels); }
         if (ahead_) { haveReady(loader->madeFor()); }
     } catch (const vk::DeviceLostError&) { throw; } catch (const vk::SystemError& error) {
         return goOnWithout(error.what());
@@ -120,12 +115,14 @@ std::string ShownScene::take(ViewState& state) {
 
 void ShownScene::showInFrames(const LoadedScene& scene) {
     // Each waits for its own frames under way, and then nothing reads the scene before.
-    if (insets_) { insets_->show(scene.gpu_scene); }
     if (frame_) {
         frame_->show(scene.gpu_scene);
     } else {
         frame_ = std::make_unique<StereoFrame>(context_, scene.gpu_scene);
     }
+    try {
+        if (insets_) { insets_->show(scene.gpu_scene); }
+    } catch (const Error&) { insets_.reset(); }  // said when a headset takes some
 }
 
 StereoFrame& ShownScene::insets() {

@@ -25,6 +25,7 @@ public:
     // takes some. Throws Error if the device lacks the memory.
     [[nodiscard]] StereoFrame& frame() const { return *frame_; }
     [[nodiscard]] StereoFrame& insets();
+    void dropInsets() { insets_.reset(); }
     // Makes their kernels anew, see StereoFrame.
     void rebuildKernels();
     // Its name, or until it is there what was asked for.

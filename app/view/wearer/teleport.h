@@ -20,7 +20,6 @@ class Teleport : public WearerTool {
 public:
     void update(const WearerNow& now, const PanelInRoom& panel, ViewState& state) override;
     [[nodiscard]] std::optional<int> aimingHand() const override { return aiming_; }
-    [[nodiscard]] const TeleportAim& aim() const { return aim_; }
     // The arc and its end.
     [[nodiscard]] std::vector<Thing> things(const glm::dvec3& eye) const override;
     [[nodiscard]] std::vector<ToolChoice> choices() const override {
