@@ -272,6 +272,18 @@ TEST_CASE_FIXTURE(Gpu, "lists that the device has no memory for cost the picture
         if (auto result = frame.renderAhead(eyesAt(view.eye, 0), blind)) { last = std::move(*result); }
     }
     CHECK(count(last, "frames_cut_short") <= cut_short + 2);  // two were under way
+    // Another scene, which fits, begins anew in the same frame.
+    const ViewedScene splat = test::viewBuiltin("builtin:one-splat", {128, 128});
+    const GpuScene splat_scene(tight, splat.scene), roomy_splat(context(), splat.scene);
+    frame.show(splat_scene);
+    for (int step = 0; step < 4; ++step) {
+        if (auto result = frame.renderAhead(eyesAt(splat.eye, step), seeing)) { last = std::move(*result); }
+    }
+    frame.finish();
+    CHECK(count(last, "frames_cut_short") == 0);
+    roomy.show(roomy_splat);
+    roomy.render(eyesAt(splat.eye, 3), seeing);
+    CHECK(frame.readPicture(kLeft).values == roomy.readPicture(kLeft).values);
     CHECK(tight.validationMessages().empty());
 }
 
