@@ -142,7 +142,7 @@ void WarpRecorder::weigh() {
     in_.target_shown.recordKinds(commands_, in_.warp.tiles(), WarpBuffers::tileKindsOffset());
     const gpu::WeighPass pass{.warp = view(),
                               .ranges = in_.buffers.tile_ranges.address<gpu::uvec2>(),
-                              .moving = moving(),
+                              .moving = in_.may_move ? moving() : gpu::DeviceAddress<gpu::uint>{},  // else the source came without
                               .tile_kinds = in_.warp.tileKinds(),
                               .tile_costs = in_.warp.tileCosts(),
                               .tile_errors = in_.warp.tileErrors(),
