@@ -15,7 +15,7 @@ struct Pose {
     glm::dvec3 position{0.0};
 };
 
-// a_from_c out of a_from_b and b_from_c.
+// a_from_c, from a_from_b and b_from_c.
 Pose compose(const Pose& a_from_b, const Pose& b_from_c);
 Pose inverse(const Pose& target_from_source);
 glm::dvec3 transform(const Pose& target_from_source, const glm::dvec3& point_source);
@@ -43,13 +43,13 @@ struct Eye {
     Pose world_from_camera;
     Intrinsics intrinsics;
     glm::uvec2 size_px{0, 0};
-    // How wide a pixel of the eye's own picture is in this one, which may have fewer: splats keep the low-pass that they have there.
+    // How wide a pixel of the eye's own picture is in this one, which may have fewer: splats keep the low-pass of the former.
     double own_pixel_px = 1.0;
 };
 
 enum Side : int { kLeft = 0, kRight = 1 };
 
-// The middle between all eyes; of one eye its own place, exactly.
+// The middle between all eyes; for one eye exactly its own place.
 glm::dvec3 middleOf(std::span<const Eye> eyes);
 
 // Left eye at -ipd/2 and right eye at +ipd/2 along the x axis of `middle`, otherwise alike.

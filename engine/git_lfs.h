@@ -12,7 +12,7 @@ namespace binosplat {
 inline constexpr std::size_t kLongestLfsPointer = 1024;
 inline constexpr std::string_view kLfsPointerStart = "version https://git-lfs.github.com/spec/";
 
-// Throws Error if `start`, the beginning of `file`, is that of a pointer.
+// Throws Error if `start`, the beginning of `file`, is a pointer's.
 inline void requireNoLfsPointer(std::string_view start, const std::string& file) {
     check(!start.starts_with(kLfsPointerStart),
           "{}: is a Git LFS pointer, three lines in place of the file: must be fetched (`git lfs pull`)", file);

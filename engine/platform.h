@@ -65,7 +65,7 @@ double threadSeconds();
 // From here on a write beyond the limit of file sizes fails like one to a full disk, and does not end the program.
 void letLongWritesFail();
 
-// Runs a program that is found as a shell finds it, with all it prints going to the new file `log`; whether it returned 0. Throws Error
+// Runs a program, found as a shell finds it, with its output in the new file `log`; returns true if its exit status was 0. Throws Error
 // if it cannot be started.
 bool runProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
 

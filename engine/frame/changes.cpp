@@ -1,4 +1,4 @@
-// Boxes in the world as rectangles in a picture.
+// From boxes in the world to rectangles in a picture.
 #include "engine/frame/changes.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// What splats reach beyond their own extent by the low-pass, in pixels of the eye's own picture, and a hair.
+// How far the low-pass extends splats, in pixels of the eye's own picture, and a hair.
 constexpr double kBorderPx = 3.0;
 
 std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye, double near) {
@@ -28,7 +28,7 @@ std::optional<gpu::ChangedRect> rectOf(const SceneChange& change, const Eye& eye
         low = glm::min(low, place);
         high = glm::max(high, place);
     };
-    // Of what lies beyond the near plane: corners, and where edges meet the plane. Corners of an edge differ in one bit.
+    // The part beyond the near plane: corners, and where edges cross the plane. Corners of an edge differ in one bit.
     for (std::size_t c = 0; c < corners.size(); ++c) {
         if (corners[c].z >= near) { hold(corners[c]); }
         for (const std::size_t bit : {1u, 2u, 4u}) {

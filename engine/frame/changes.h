@@ -1,4 +1,4 @@
-// Where eyes see what of a scene came, went or faded.
+// Where eyes see the parts of a scene that came, went or faded.
 #pragma once
 
 #include "engine/geometry.h"
@@ -10,10 +10,10 @@
 
 namespace binosplat {
 
-// A picture takes so many; of more changes those that came one after another are taken for one, about all of them.
+// The most that a picture takes. If there are more, changes that came one after another are merged into one, around all of them.
 inline constexpr std::size_t kMostChanges = 256;
 
-// As far as anything of them lies beyond `near`, and in the picture. A change of all of a part's opacity counts for kChangedError.
+// The parts of them that lie beyond `near` and in the picture. A change of all of a part's opacity counts for kChangedError.
 std::vector<gpu::ChangedRect> rectsOf(std::span<const SceneChange> changes, const Eye& eye, double near);
 
 // The share of an eye's tiles in which something is seen that came or went, or faded by more than half, 0 to 1.

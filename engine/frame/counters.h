@@ -1,4 +1,4 @@
-// What a frame counted.
+// A frame's counters.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@ namespace binosplat {
 struct TargetCounters {
     std::uint64_t splats_visible = 0;  // in its list
     std::uint64_t tile_pairs = 0;
-    std::optional<std::uint64_t> square_box_tile_pairs;  // those that the customary square bound would make
-    std::uint64_t tiles = 0, tiles_hidden = 0;           // of these nobody sees
+    std::optional<std::uint64_t> square_box_tile_pairs;  // pairs that the usual square bound would make
+    std::uint64_t tiles = 0, tiles_hidden = 0;           // tiles_hidden: those that nobody sees
     std::uint64_t pixels = 0, pixel_bytes = 0;
 };
 
-// Of the picture that is made from another.
+// Of a picture that is made from another.
 struct WarpedCounters {
-    // What made its pixels, before tiles are rendered again; where that was kept.
+    // How its pixels came about, before tiles are rendered again; if that was kept.
     struct Classes {
         std::uint64_t covered = 0, gap = 0, hole = 0;
     };
-    // In pairs of tile and splat; where tiles are weighed.
+    // In pairs of tile and splat; if tiles are weighed.
     struct Work {
         std::uint64_t tiles_cheap = 0, tiles_weighed_as_moved = 0, full = 0, patched = 0, saved_by_moving = 0;
     };
     std::optional<Classes> pixels;
-    std::uint64_t tiles_shown = 0;  // of the pictures that are made from others
+    std::uint64_t tiles_shown = 0;  // of pictures that are made from others
     std::uint64_t tiles_patched = 0, tiles_edge = 0, tiles_center = 0, tiles_predicted = 0;
     std::optional<Work> work;
     std::uint64_t hole_components = 0, splats_newcomers = 0, bytes = 0;
@@ -39,12 +39,12 @@ struct FrameCounters {
     std::uint64_t commands = 0, splats_read = 0;
     std::uint64_t scene_bytes = 0, visible_bytes = 0, pair_bytes = 0, scratch_bytes = 0;
     std::vector<TargetCounters> targets;  // one for each eye
-    // Of a scene of which parts come and go: pages that hold splats, and those that cull looked at for the list that needed most.
+    // Of a scene whose parts come and go: pages that hold splats, and those that cull examined for the list that needed most.
     struct Pages {
         std::uint64_t resident = 0, seen = 0;
     };
     std::optional<Pages> pages;
-    // An eye in two pictures: what the smaller one took, and how many tiles of each are rendered.
+    // An eye in two pictures: pairs and bytes of the smaller one, and how many tiles of each are rendered.
     struct Periphery {
         std::uint64_t tile_pairs = 0, half_tiles = 0, sharp_tiles = 0, bytes = 0;
     };
@@ -55,13 +55,13 @@ struct FrameCounters {
         std::uint64_t frames_cut_short = 0, frames_done_again = 0;
     };
     std::optional<Ahead> ahead;
-    // Of a scene that is streamed or moves, from whoever brings it.
+    // Of a scene that is streamed or moves, from whoever loads it.
     struct Streaming {
         std::uint64_t splats_resident = 0, chunks_resident = 0, frames_waited_for_loading = 0, scene_frames_late = 0;
     };
     std::optional<Streaming> streaming;
 
-    // As reports name them; none of a frame that was not drawn.
+    // By their names in reports; empty for a frame that was not drawn.
     [[nodiscard]] std::map<std::string, std::uint64_t> named() const;
 };
 

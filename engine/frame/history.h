@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// What frames must have in common to be under way together.
+// Frames that are under way together must have this in common.
 struct FrameShape {
     Mode mode = Mode::kMono;
     int dominant = 0;
@@ -19,14 +19,14 @@ struct FrameShape {
 };
 FrameShape shapeOf(std::span<const Eye> eyes, const FrameSettings& settings);
 
-// Whether lists for these eyes need not be like those for `before`.
+// True if lists for these eyes may differ much from those for `before`.
 bool jumps(std::span<const Eye> before, std::span<const Eye> eyes, double units_per_metre);
-// From how far away the pasts of these eyes may come, in scene units.
+// The farthest that a past may lie from these eyes, in scene units.
 double farthestPast(std::span<const Eye> eyes, double units_per_metre);
-// Whether what `past` saw is of use for `eye`: they stand and look alike. Sizes may differ, and angles, unless by a factor of two.
+// True if what `past` saw is of use for `eye`: they stand and look alike. Sizes may differ, and angles by less than a factor of two.
 bool canComeFrom(const Eye& past, const Eye& eye, double farthest);
 
-// Whether moving pays: `predicted` leaves it out as long as it did not in the last frame known, if that was asked for the same.
+// Whether warping pays: `predicted` does without as long as it did not pay in the last known frame, if that was asked for the same.
 class MovingPays {
 public:
     struct Asked {
@@ -41,13 +41,13 @@ public:
     [[nodiscard]] bool mayMove(const FrameSettings& settings, const Asked& asked) const {
         return choiceOf(settings.mode) != TileChoice::kPredicted || asked != asked_ || pays_;
     }
-    // A frame comes that is asked for so.
+    // The next frame is asked for like this.
     void ask(const Asked& asked, bool may_move) {
         asked_ = asked;
         pays_ = may_move;
     }
     [[nodiscard]] const Asked& asked() const { return asked_; }
-    // What became of a frame that was asked for `asked`.
+    // The result of a frame that was asked for `asked`.
     void learn(const FrameSettings& settings, const Asked& asked, bool pays) {
         if (asked == asked_) { pays_ = choiceOf(settings.mode) != TileChoice::kPredicted || pays; }
     }

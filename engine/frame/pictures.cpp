@@ -1,4 +1,4 @@
-// What the host reads of the last frame.
+// Reading the last frame's results on the host.
 #include "engine/frame/stereo_frame.h"
 
 #include <glm/gtc/packing.hpp>
@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-// D of a pixel whose word this is.
+// D of a pixel with this word.
 float depthOf(gpu::uint word, float alpha) {
     const float inverse_depth = word == 0 ? 0.0f : std::bit_cast<float>(((word >> 6) - 1) << 5);  // lib/moving_pixel.glsl
     return inverse_depth > 0.0f ? alpha / inverse_depth : 0.0f;

@@ -10,23 +10,23 @@
 namespace binosplat {
 namespace {
 
-// What `source` keeps for the target that is made from it.
+// The sums and words that `source` keeps for the target that is made from it.
 void keepForWarp(Kept& source, const Warp& warp) {
-    if (!warp.may_move || source.past) { return; }  // a past moves as it is
+    if (!warp.may_move || source.past) { return; }  // a past is warped as it is
     const bool predicts = warp.settings.choice == TileChoice::kPredicted;
     source.moving = true;
     source.spread = predicts;
     source.depth_choice = warp.settings.depth_choice;
-    // Odd rows will be moved like even ones, unless somebody asks for their moments.
+    // Odd rows will be warped like even ones, unless somebody asks for their moments.
     source.even_rows = predicts && warp.relation.rectified && !source.moments && source.depth_choice == gpu::kDepthInverse;
 }
 
 }  // namespace
 
-// Pictures that two eyes with a past take turns in: the pasts, one that is made meanwhile, and one more where sizes change.
+// Pictures that two eyes with a past take turns in: the pasts, one that is being made, and one more in case sizes change.
 constexpr int kPastPictures = 4;
 
-// One that is nobody's past, nor the spare one.
+// A picture that is nobody's past, nor the spare one.
 int fourthPicture(const Pasts& pasts) {
     int picture = 0;
     while (picture == pasts.spare || picture == pasts.of_eyes[0]->picture || picture == pasts.of_eyes[1]->picture) { ++picture; }
@@ -66,7 +66,7 @@ void splitTargets(FramePlan& plan, const FrameSettings& settings) {
 }
 
 // The chosen tiles of the targets of one eye, or of two, the first in this order first, from one list. An eye's two pictures have a list
-// each: most splats touch tiles of one of them alone, and projecting costs more than culling.
+// each: most splats touch tiles of only one of them, and projecting costs more than culling.
 void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bool at_once) {
     const auto targetAt = [&](std::size_t i) -> TargetPlan& { return plan.targets[static_cast<std::size_t>(order[i])]; };
     const int first = *std::ranges::min_element(order);
@@ -80,7 +80,7 @@ void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bo
         plan.steps.push_back({Step::Kind::kList, static_cast<int>(plan.lists.size())});
         plan.lists.push_back(made);
     };
-    // A patch is too little work for a GPU: stage by stage it has that of both eyes, where they have the same order and tiles.
+    // A patch is too little work for a GPU: stage by stage it gets that of both eyes, if they have the same order and tiles.
     if (at_once && plan.shares_order && targetAt(0).eye.size_px == targetAt(1).eye.size_px) {
         list.eyes.shares = 2;
         makeList(list);
@@ -94,7 +94,7 @@ void renderChosen(FramePlan& plan, std::span<const int> order, ListPlan list, bo
     plan.steps.push_back({Step::Kind::kRender, order[1]});
 }
 
-// Eyes in two pictures each, of which the smaller ones come first: what they hold says where they will do.
+// Eyes in two pictures each, the smaller ones first: their content tells where they suffice.
 void renderInTwo(FramePlan& plan, std::span<const int> eyes, const ListPlan& list) {
     std::vector<int> halves;
     for (const int eye : eyes) {
@@ -110,7 +110,7 @@ void renderInTwo(FramePlan& plan, std::span<const int> eyes, const ListPlan& lis
     for (const int eye : eyes) { plan.steps.push_back({Step::Kind::kFill, eye}); }
 }
 
-// An eye's targets from their pasts, the smaller first if there are two: what it holds says where it will do.
+// An eye's targets from their pasts, the smaller first if there are two: its content tells where it suffices.
 void makeInTwo(FramePlan& plan, int eye) {
     const TargetPlan& target = plan.targets[static_cast<std::size_t>(eye)];
     if (!target.half) {
@@ -132,7 +132,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
         TargetPlan& target = plan.targets[eye];
         makeFromPast(target, *pasts.of_eyes[eye], settings, eye);
         target.picture = picture;
-        // Free once this target is made; another size needs memory of its own, since that is still read.
+        // Free once this target is made; another size needs memory of its own, since this is still read.
         const bool fits = target.past->eye.size_px == eyes[static_cast<std::size_t>(order[1])].size_px;
         picture = fits ? target.past->picture : fourthPicture(pasts);
     }
@@ -147,7 +147,7 @@ void planTemporal(FramePlan& plan, const FrameSettings& settings, std::span<cons
     for (const int e : order) { plan.steps.push_back({Step::Kind::kFill, e}); }
 }
 
-// One eye in full, in turn, and the other from its past.
+// One eye in full, taking turns, and the other from its past.
 void planAlternate(FramePlan& plan, const FrameSettings& settings, const Pasts& pasts, const ListPlan& list) {
     const int full = pasts.turn, other = 1 - full;
     TargetPlan &rendered = plan.targets[full], &warped = plan.targets[other];
@@ -196,7 +196,7 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
         const TargetPlan& target = plan.targets[e];
         if (target.kept.past) { after.of_eyes[e] = Past{target.eye, target.picture}; }
     }
-    // What was a past is free, once this frame has read it.
+    // A picture that was a past is free, once this frame has read it.
     const auto isFree = [&](int picture) {
         return std::ranges::none_of(after.of_eyes, [&](const auto& past) { return past && past->picture == picture; });
     };
@@ -211,7 +211,7 @@ Pasts pastsAfter(const FramePlan& plan, const Pasts& before) {
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts) {
     const bool keeps_past = hasPast(settings.mode) && settings.keep_past;
     const bool has_past = keeps_past && pasts.of_eyes[0] && pasts.of_eyes[1];
-    // Without a past, and where none is kept, they are as these.
+    // Without a past, or if none is kept, they fall back to these modes.
     const Mode mode = settings.mode == Mode::kTemporal && !keeps_past  ? Mode::kPredicted
                       : settings.mode == Mode::kAlternate && !has_past ? Mode::kShared
                                                                        : settings.mode;
@@ -221,7 +221,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
           "the eyes have {}x{} and {}x{} pixels: to make one from the other they must be equal", eyes[0].size_px.x, eyes[0].size_px.y,
           eyes.back().size_px.x, eyes.back().size_px.y);
     const int first = one_eye ? 0 : settings.dominant, second = 1 - first;
-    // Whether each eye is culled and ordered by itself.
+    // True if each eye is culled and ordered by itself.
     const bool apart = one_eye || mode == Mode::kTwoPass || mode == Mode::kAlternate || (mode == Mode::kPaper && settings.per_eye);
 
     FramePlan plan{.near = settings.near, .background = settings.background, .square_boxes = settings.square_boxes};
@@ -271,7 +271,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
     }
 
     if (isInTwo(settings, eyes.size())) {
-        // Both eyes: where each is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
+        // Both eyes: if each is cheap to render, making one from the other saves a tenth of the time for 15 to 30 dB.
         splitTargets(plan, settings);
         if (one_eye) {
             renderInTwo(plan, std::array{first}, both);
@@ -290,7 +290,7 @@ FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bo
 
     TargetPlan &source = plan.targets[first], &target = plan.targets[second];
     if (apart) { listOf(second); }
-    const bool is_new = mode == Mode::kTemporal;  // nothing is there from before, but the other eye is
+    const bool is_new = mode == Mode::kTemporal;  // the only picture to warp is the other eye's
     if (is_new && source.eye.size_px != target.eye.size_px) {
         makeFromPast(target, Past{source.eye, source.picture}, settings, static_cast<std::size_t>(second));
         plan.budget = settings.stereo.budget;

@@ -20,16 +20,16 @@ struct ListPlan {
     EyesOfList eyes;
     Role role = Role::kNone;
     bool of_chosen = false;  // holds what touches the chosen tiles of its eyes, and is made once these are known
-    bool culls = true;       // otherwise it is the one that is there, in the order of another eye
+    bool culls = true;       // otherwise it is the existing one, in the order of another eye
 };
 
-// Where the pixels of a target come from that are not rendered.
+// Where pixels of a target that are not rendered come from.
 struct Warp {
     int source = 0;  // of the plan's targets; it is rendered before
     EyeRelation relation;
     StereoSettings settings;
-    bool may_move = true;           // otherwise nothing is, and what tells whether moving would pay is found out for the next frame
-    std::optional<Gaze> gaze = {};  // empty: all of the target is seen alike
+    bool may_move = true;           // otherwise nothing is warped; only whether warping would pay is found out, for the next frame
+    std::optional<Gaze> gaze = {};  // empty: all of the target counts alike
 };
 
 // The last picture of an eye that later ones are made from.
@@ -37,7 +37,7 @@ struct Past {
     Eye eye;
     int picture = 0;  // of the room's
 };
-// By eye; the room's picture that is made next, which no frame under way reads; and whose turn it is to be rendered in full (kAlternate).
+// By eye; the room's picture that is made next, which no frame under way reads; and which eye is rendered in full next (kAlternate).
 struct Pasts {
     std::array<std::optional<Past>, 2> of_eyes = {};
     int spare = 2;
@@ -53,24 +53,24 @@ struct TargetPlan {
     TileChoice choice = TileChoice::kAll;  // of the tiles that are rendered
     std::optional<Warp> warp = {};
     std::optional<Past> past = {};  // what it is made from instead: its eye's last picture, or the other eye's of this frame
-    std::optional<Gaze> gaze = {};  // of the choice among what the past has left
-    int picture = 0;                // of the room's, that it becomes
-    std::optional<int> feeds = {};  // the target that is made from this one, whose picture lends its memory until then
+    std::optional<Gaze> gaze = {};  // for the choice among what the past has left
+    int picture = 0;                // the room's picture that it becomes
+    std::optional<int> feeds = {};  // the target that is made from this one, and whose picture lends its memory until then
     bool keeps_classes = false;
-    bool from_past_later = false;  // frames after this one make it from a past: what that takes stays
+    bool from_past_later = false;  // frames after this one make it from a past: what that takes is kept
     std::optional<int> half = {};  // kSharp: the target of half the size that the other tiles are filled from
 };
 
 struct Step {
     enum class Kind {
         kList,       // makes FramePlan::lists[index]
-        kWarp,       // moves pixels into FramePlan::targets[index] and chooses its tiles
+        kWarp,       // warps pixels into FramePlan::targets[index] and chooses its tiles
         kPast,       // makes FramePlan::targets[index] from its past
-        kHalfTiles,  // of the half-size picture of FramePlan::targets[index] chooses those that are needed
-        kOwnTiles,   // likewise of the target itself, once that picture is there
-        kFill,       // and makes the rest of it
+        kHalfTiles,  // chooses the tiles that are needed of the half-size picture of FramePlan::targets[index]
+        kOwnTiles,   // chooses those of the target itself, once that picture is there
+        kFill,       // and fills the rest of it
         kChoose,     // chooses the tiles of all targets that have one
-        kRender,     // renders these
+        kRender,     // renders the chosen tiles
         kRenderAll,  // renders the chosen tiles of all targets at the same time; their list and pairs need room for each
     };
     Kind kind;
@@ -82,29 +82,29 @@ struct FramePlan {
     std::vector<TargetPlan> targets = {};  // one for each eye, in the eyes' order; then those of half the size
     std::size_t eyes = 0;
     std::vector<Step> steps = {};
-    bool shares_order = false;  // one order of the splats is that of all eyes
+    bool shares_order = false;  // one order of the splats serves all eyes
     double near = 0.2;
     glm::dvec3 background{0.0};
     bool square_boxes = true;
     double budget = 0.0;                    // of the choice among what pasts have left: a share of the work of the targets that have one
     int dominant = 0;                       // of the targets
     bool keeps_past = false;                // later frames are made from this one
-    std::optional<int> spare_picture = {};  // of the room's, for the frame after this one
-    int shares_ahead = 1;                   // how many pictures that one renders at the same time
+    std::optional<int> spare_picture = {};  // the room's picture for the frame after this one
+    int shares_ahead = 1;                   // how many pictures that frame renders at the same time
 
-    // The one that others are made from, or the one whose turn is first.
+    // The target that others are made from, or the one that is rendered in full.
     [[nodiscard]] int firstTarget() const;
     // How many pictures are rendered at the same time.
     [[nodiscard]] int shares() const;
-    // The first that is made from another.
+    // The first target that is made from another.
     [[nodiscard]] std::optional<int> warpedTarget() const;
 };
 
-// Whether each eye has two pictures: it is wanted, and known where all of them look. The references are always in full.
+// True if each eye has two pictures: that is wanted, and it is known where all of them look. The references are always in full.
 [[nodiscard]] bool isInTwo(const FrameSettings& settings, std::size_t eyes);
 
-// Nobody else asks a mode what it does. Throws Error if eyes that are made from one another have different sizes. `may_move`: moving
-// pixels paid in the frame before, or nobody knows. `pasts`: what is left of the frames before; their pictures may have other sizes.
+// The only place that knows what a mode does. Throws Error if eyes that are made from one another have different sizes. `may_move`: warping
+// paid in the frame before, or nobody knows. `pasts`: what the frames before have left; their pictures may have other sizes.
 FramePlan planFrame(const FrameSettings& settings, std::span<const Eye> eyes, bool may_move, const Pasts& pasts = {});
 // What such a frame leaves to the next one.
 Pasts pastsAfter(const FramePlan& plan, const Pasts& before);

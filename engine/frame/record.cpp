@@ -280,7 +280,7 @@ Target FrameRecorder::targetOf(const FramePlan& plan, int index) const {
         if (!movesRows(relation.rectified, room.warp(*warped))) { target.arrivals = words.arrivals; }
         target.row_words = words.row_words;
     }
-    // Until this one is blended nothing is in the other one's picture.
+    // Until this target is blended, the other one's picture is empty.
     if (pairs.lentCapacity() > pairs.capacity()) { target.pairs = pairs.arraysWith(fed.colours, tileBits(target.size_tiles)); }
     return target;
 }

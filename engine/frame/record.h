@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-// The kernels of frames, in their groups.
+// The kernels of frames, by groups.
 struct FrameKernels {
     FrameKernels(const Context& context, std::uint32_t threads_per_cell);
     // See StereoFrame.
@@ -20,7 +20,7 @@ struct FrameKernels {
     PeripheryPasses periphery_passes;
 };
 
-// What recording works with.
+// Everything that recording works with.
 struct FrameRecorder {
     Passes& passes;
     WarpPasses& warp_passes;
@@ -28,14 +28,14 @@ struct FrameRecorder {
     PeripheryPasses& periphery_passes;
     const GpuScene& scene;
     FrameRoom& room;
-    // Where what is recorded is going to be submitted, and so brings the scene's changes: which of these the pasts know, see GpuScene.
+    // If the recording is going to be submitted, and so brings the scene's changes: those that the pasts know, see GpuScene.
     std::optional<std::uint64_t> changes_known;
 
     // The whole frame, from Commands::begin on.
     void record(Commands& commands, const FramePlan& plan) const;
-    // How many splats its lists need, alone.
+    // Only the culling: how many splats the lists need.
     void recordCulling(Commands& commands, const FramePlan& plan) const;
-    // Likewise how it ends: what the device reports goes to `readback`.
+    // The end of that: what the device reports is copied to `readback`.
     void recordReport(Commands& commands, const Buffer& readback) const { commands.copy(room.lists().state, readback, sizeof(FrameState)); }
 
 private:

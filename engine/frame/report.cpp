@@ -98,7 +98,7 @@ void countPeriphery(const FrameFacts& frame, std::size_t eye, FrameResult& resul
 bool seesNothing(const FrameCounters& counters) {
     if (std::ranges::any_of(counters.targets, [](const TargetCounters& target) { return target.tile_pairs > 0; })) { return false; }
     if (counters.periphery && counters.periphery->tile_pairs > 0) { return false; }
-    // Pictures that are made from their pasts may need no splat: then their tiles know what they were made of. An empty one counts for
+    // Pictures that are made from their pasts may need no splat: then their tiles know the cost of making them. An empty tile counts for
     // kTilePairs.
     std::uint64_t tiles = 0;
     for (const TargetCounters& target : counters.targets) { tiles += target.tiles; }

@@ -1,4 +1,4 @@
-// What a frame says of itself: counters, and what it left out.
+// A frame's report: its counters, and what it left out.
 #pragma once
 
 #include "engine/frame/room.h"

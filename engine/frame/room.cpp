@@ -76,7 +76,7 @@ void FrameRoom::forgetUploads() {
 void FrameRoom::fitWarps(const FramePlan& plan) {
     std::array<WarpBufferNeeds, kMostTargets> needs;
     for (std::size_t t = 0; t < needs.size() && t < plan.targets.size(); ++t) { needs[t] = needsOf(plan.targets[t]); }
-    // Where eyes have changed their roles, what one had serves the other; what nobody needs any more goes before anything is made.
+    // If eyes have changed their roles, one's buffers serve the other; those that nobody needs any more go before anything is made.
     for (std::size_t t = 0; t < needs.size(); ++t) {
         for (std::size_t other = 0; other < needs.size() && warps_[t].needs() != needs[t]; ++other) {
             if (warps_[other].needs() == needs[t] && needs[other] != needs[t]) { std::swap(warps_[t], warps_[other]); }
@@ -127,7 +127,7 @@ void FrameRoom::fitPictures(const FramePlan& plan, const std::array<std::span<co
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
         if (!is_used[p]) { fitPicture(pictures_[p], {0, 0}, {}); }
     }
-    // A past of both eyes has room for what either leaves, since they change places.
+    // The pasts of both eyes have room for what either leaves, since they change places.
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const TargetPlan& target = plan.targets[t];
         Kept kept = target.kept;
@@ -169,7 +169,7 @@ void FrameRoom::fitLists(const FramePlan& plan) {
     if (capacity == FrameCapacity{}) {
         capacity = {std::min(first_capacity_.visible, std::max(scene_->splatCount(), 1u)), first_capacity_.pairs, 0, 0};
         if (plan.targets[static_cast<std::size_t>(plan.firstTarget())].feeds) {
-            // What is rendered again has far fewer pairs.
+            // Patches have far fewer pairs.
             capacity.lent_pairs = capacity.pairs;
             capacity.pairs = (capacity.pairs + 3) / 4;
         }
@@ -203,8 +203,8 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     };
     const FrameCapacity now = lists_.capacity();
     FrameCapacity wanted = now;
-    // Each picture that is rendered at the same time as others has its own part of the lists, also in the next frame, whose pictures meet
-    // no more splats than these.
+    // Each picture that is rendered at the same time as others has its own part of the lists; so it will in the next frame, whose pictures
+    // meet no more splats than these.
     const auto ofAll = [](std::uint32_t needed, int shares) {
         return std::min(needed, UINT32_MAX / static_cast<std::uint32_t>(shares)) * static_cast<std::uint32_t>(shares);
     };
@@ -216,7 +216,7 @@ FrameCapacity FrameRoom::roomFor(const FramePlan& plan, const FrameState& state,
     for (std::size_t t = 0; t < plan.targets.size(); ++t) {
         const std::uint32_t pairs = state.targets[t].pairs.needed;
         check(pairs != UINT32_MAX, "an eye sees more than {} pairs of tile and splat, fewer splats or pixels are needed", gpu::kMaxItems);
-        // Without the source's pairs every tile seems cheap to render: how many the target needs shows in the next try.
+        // Without the source's pairs every tile seems cheap to render: how many the target needs turns out in the next try.
         if (plan.targets[t].warp && isSourceVoid(plan, state)) { continue; }
         if (!plan.targets[t].feeds || pairs > mostLentPairs(plan)) {
             wanted.pairs = std::max(wanted.pairs, enough(ofAll(pairs, plan.shares()), now.pairs));
@@ -262,7 +262,7 @@ bool FrameRoom::growIfItFits(const FramePlan& plan, const FrameState& state) {
 }
 
 void FrameRoom::makeRoomForChosen(const FramePlan& plan, const FrameState& state) {
-    // Of the target's work: all, or the share that is cheap to render and the budget.
+    // Of the target's work: all of it, or the share that is cheap to render and the budget.
     const bool moves = plan.targets[static_cast<std::size_t>(plan.warpedTarget().value())].warp->may_move;
     const double share = moves ? 0.5 : 1.0;
     const std::uint32_t pairs = state.targets[static_cast<std::size_t>(plan.firstTarget())].pairs.needed;

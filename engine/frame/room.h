@@ -1,4 +1,4 @@
-// The device memory of frames: pictures, lists, and what warps work on. As much as the eyes need, found out by the frames themselves.
+// The device memory of frames: pictures, lists, and what warps work on. As much as the eyes need, which the frames themselves find out.
 #pragma once
 
 #include "engine/frame/plan.h"
@@ -15,13 +15,13 @@ namespace binosplat {
 
 class FrameRoom {
 public:
-    // Lists of frames that are not waited for have so many times the room that the last known frame needed.
+    // Lists of frames that nobody waits for have this much more room than the last known frame needed.
     static constexpr double kRoomAhead = 1.15;
 
-    // `wait_for_frames`: returns once no frame is under way that uses this room; called before any of it goes.
+    // `wait_for_frames`: returns once no frame under way uses this room; called before any of it is freed.
     FrameRoom(const Context& context, const FrameCapacity& first_capacity, std::function<void()> wait_for_frames);
 
-    // Lists are of `scene` from now on.
+    // From now on lists hold splats of `scene`.
     void show(const GpuScene& scene);
     // As if no frame had been drawn yet.
     void forgetFrames() { first_frame_ = true; }
@@ -30,24 +30,24 @@ public:
     // Pictures as the plan wants them. `hidden_tiles`: see FrameSettings. Throws Error if the device lacks the memory: then no picture is
     // left.
     void fitPictures(const FramePlan& plan, const std::array<std::span<const std::uint8_t>, 2>& hidden_tiles);
-    // Lists, as far as anything is known of what it needs.
+    // Lists, as far as it is known what the plan needs.
     void fitLists(const FramePlan& plan);
 
-    // The next ones are about what a frame reported that was drawn by `plan`.
+    // The following are about what a frame drawn by `plan` reported.
 
-    // Whether a list had no room at all.
+    // True if a list had no room at all.
     [[nodiscard]] static bool isCutShort(const FrameState& state);
-    // Whether the lists of the target that others are made from had no room, so that its picture shows nothing.
+    // True if the lists of the target that others are made from had no room, so that its picture shows nothing.
     [[nodiscard]] static bool isSourceVoid(const FramePlan& plan, const FrameState& state);
-    // Of the lists, for `ahead` times what was needed.
+    // True if the lists have room for `ahead` times what was needed.
     [[nodiscard]] bool hasRoom(const FramePlan& plan, const FrameState& state, double ahead) const;
-    // Whether the lists had room; if not, makes room.
+    // True if the lists had room; if not, makes room.
     bool growIfNeeded(const FramePlan& plan, const FrameState& state);
-    // Whether it made room: with some to spare, or as much as is needed where that does not fit.
+    // True if it made room: with some to spare, or if that does not fit, just as much as is needed.
     bool growIfItFits(const FramePlan& plan, const FrameState& state);
-    // Where the source's pairs had no room, which those of the target depend on: a guess.
+    // Where the source's pairs had no room: a guess, since those of the target depend on them.
     void makeRoomForChosen(const FramePlan& plan, const FrameState& state);
-    // For kRoomAhead times what was needed; goes without where that does not fit, as long as the lists themselves do.
+    // For kRoomAhead times what was needed; does without if that does not fit, as long as the lists themselves do.
     void makeRoomAhead(const FramePlan& plan, const FrameState& state);
     [[nodiscard]] bool fitsAhead() const { return room_ahead_fits_; }
     // The frame had room.
@@ -59,13 +59,13 @@ public:
     [[nodiscard]] const Buffer& moments() const { return moments_; }  // I and J of the target that keeps them
     [[nodiscard]] const WarpBuffers& warp(int target) const { return warps_[static_cast<std::size_t>(target)]; }
     [[nodiscard]] const ShownTiles& shown(int target) const { return shown_[static_cast<std::size_t>(target)]; }
-    // Of the eye's two pictures.
+    // For the eye's two pictures.
     [[nodiscard]] const PeripheryBuffers& periphery(int eye) const { return peripheries_[static_cast<std::size_t>(eye)]; }
-    // Of what the scene changed, of all pictures of a frame: made when it is first wanted.
+    // For the scene's changes, of all pictures of a frame: made when it is first needed.
     [[nodiscard]] const Buffer& changedRects();
-    // Before the passes of a frame.
+    // To be called before the passes of a frame.
     void recordShown(Commands& commands);
-    // Once what was recorded has run.
+    // To be called once what was recorded has run.
     void forgetUploads();
 
 private:
@@ -73,12 +73,12 @@ private:
     void growLists(const FrameCapacity& capacity);
     void fitPicture(Picture& picture, glm::uvec2 size_px, const Kept& kept);
     void fitWarps(const FramePlan& plan);
-    // Pairs that the source's sort finds room for in the picture that is made from it, while nothing is in it.
+    // Pairs that the source's sort finds room for in the picture that is made from it, while that is still empty.
     [[nodiscard]] std::uint32_t mostLentPairs(const FramePlan& plan) const;
     [[nodiscard]] FrameCapacity lendWhatFits(const FramePlan& plan, FrameCapacity capacity) const;
-    // False, and the lists as they were, where the device has not that much memory.
+    // False, with the lists as they were, if the device lacks the memory.
     bool tryToGrow(const FrameCapacity& wanted);
-    // Those that must grow have room for `spare` times what was needed.
+    // Room for `spare` times what was needed, in the lists that must grow.
     [[nodiscard]] FrameCapacity roomFor(const FramePlan& plan, const FrameState& state, double ahead, double spare) const;
     [[nodiscard]] double spareFor(double ahead) const;
 

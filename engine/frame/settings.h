@@ -1,4 +1,4 @@
-// What a frame is asked for, and what it says of itself.
+// What a frame is asked for, and what it returns.
 #pragma once
 
 #include "engine/frame/counters.h"
@@ -21,49 +21,49 @@ struct FrameSettings {
     Mode mode = Mode::kPredicted;
     Side dominant = kLeft;
     double near = 0.2;             // scene units
-    double units_per_metre = 1.0;  // scene units in a metre of the wearer: says what a jump of the eyes is
+    double units_per_metre = 1.0;  // scene units in a metre of the wearer: for telling a jump of the eyes
     glm::dvec3 background{0.0};
-    Order order = Order::kDepth;  // of all modes; a frame of two eyes has one middle, also where nothing is shared
+    Order order = Order::kDepth;  // in all modes; a frame of two eyes has one middle, even if nothing is shared
     StereoSettings stereo;        // how one eye is made from the other; its `choice` follows from the mode
     // kPaper: each eye is culled, ordered and projected by itself, as in kTwoPass. The two sequential strategies that the paper compares
     // differ only in the second eye's picture (section 4.3), and it mentions no work that the eyes share.
     bool per_eye = false;
-    bool half_floats = false;       // pictures of four half floats a pixel: for showing them, half the bytes of what files want
+    bool half_floats = false;       // pictures of four half floats a pixel: for display, with half the bytes of those for files
     bool keep_depth = true;         // D of the dominant eye, for readDominantDepth
-    bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over the inverse depth it was found by
+    bool keep_both_depths = false;  // D of the affiliated eye, too; where it is not rendered, alpha over its inverse depth
     bool keep_moments = false;      // I and J of the dominant eye, for readInverseDepthMoments
-    bool keep_classes = false;      // what made each pixel of the affiliated eye, for readPixelClasses and the report's counters
-    bool square_boxes = true;       // the report says how many pairs the customary square bound would make
-    // By eye, tiles that nobody will see: a byte a tile, row-major, 1 where it is hidden; empty: none is. They become background, cost no
-    // pairs and take no part in the budget, which is a share of the others.
+    bool keep_classes = false;      // how each pixel of the affiliated eye came about, for readPixelClasses and the report's counters
+    bool square_boxes = true;       // the report says how many pairs the usual square bound would make
+    // By eye, tiles that nobody will see: a byte a tile, row-major, 1 if it is hidden; empty: none is. They become background, cost no
+    // pairs and are left out of the budget, which is a share of the others.
     std::array<std::span<const std::uint8_t>, 2> hidden_tiles = {};
-    // kPredicted, by eye: where it looks; empty: nobody knows. Of the affiliated eye's errors only what it sees there counts.
+    // kPredicted, by eye: where it looks; empty: nobody knows. Only what it sees of the affiliated eye's errors counts.
     std::array<std::optional<Gaze>, 2> gazes = {};
-    // kMono, kPredicted, kAlternate, kTemporal: where it is known where the eyes look (`gazes`), each has a picture of half the size for
-    // the rest, and tiles of its own size only where it would see that. Not where moments are kept.
+    // kMono, kPredicted, kAlternate, kTemporal: if it is known where the eyes look (`gazes`), each has a picture of half the size for
+    // the rest, and tiles of its own size only where it would see the difference. Not if moments are kept.
     bool half_periphery = false;
-    // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, where that was asked for
-    // likewise.
+    // kAlternate, kTemporal: more frames follow, which are made from this one; it may be made from the one before, if that was asked for
+    // with keep_past, too.
     bool keep_past = false;
-    std::uint64_t mark = 0;  // of whoever asks; comes back with the result
+    std::uint64_t mark = 0;  // the caller's own; comes back with the result
 };
 
-// Its `stereo`, with what the mode says of the choice of tiles.
+// Its `stereo`, with the choice of tiles that follows from the mode.
 StereoSettings stereoSettingsOf(const FrameSettings& settings);
 
 struct FrameResult {
     PassTimes gpu_ms;
     double gpu_total_ms = 0.0;  // from the first pass to the last
     FrameCounters counters;
-    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, where the mode has any
+    Traffic stereo_bytes_per_pixel;                    // of the passes that make one eye from the other, if the mode has any
     double tiles_rendered = 1.0, work_rendered = 1.0;  // shares of the affiliated eye's tiles, and of its work if the mode weighs it
-    std::uint64_t peak_gpu_bytes = 0;                  // of the device memory this program ever held at a time
+    std::uint64_t peak_gpu_bytes = 0;                  // the most device memory that this program ever held at a time
     std::vector<std::string> left_out;                 // what this scene and mode did not need
     std::uint64_t mark = 0;                            // of the settings it was asked with
-    bool sees_nothing = false;                         // no splat touches any of its pictures, nor did any their pasts
+    bool sees_nothing = false;                         // no splat touches any of its pictures, nor did any touch their pasts
 };
 
-// What a frame starts with; the defaults suit every device.
+// Initial values of a frame; the defaults suit every device.
 struct FrameOptions {
     FrameCapacity first_capacity{65536, 262144};
     std::uint32_t threads_per_cell = 0;  // see Passes

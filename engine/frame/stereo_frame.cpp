@@ -10,11 +10,11 @@
 namespace binosplat {
 namespace {
 
-// Where the scene changed, tiles are rendered beside the budget, of which this share is left to the others: so many in these parts of the
-// picture as in the rest, and a little more. Where more than the last figure changed, a past would cost more than the other eye does.
+// Where the scene changed, tiles are rendered on top of the budget, of which this share is left to the others: as many in these parts of
+// the picture as in the rest, and a few more. If more than the last figure changed, a past would cost more than the other eye does.
 constexpr double kBudgetBesideChanges = 0.5, kMoreWhereChanged = 1.2, kMostChanged = 0.4;
 
-// What a past must have in common with a frame.
+// The traits that a past must share with a frame.
 FrameShape askedApartFromSizes(const FrameSettings& settings) { return shapeOf({}, settings); }
 
 }  // namespace
@@ -64,7 +64,7 @@ void StereoFrame::makeKernels(std::span<const Eye> eyes, const FrameSettings& se
     pasts_ = {};
     prepare(eyes, settings);
     Commands& commands = flight().commands;
-    // `predicted` may find that moving does not pay.
+    // `predicted` may find that warping does not pay.
     if (choiceOf(settings.mode) == TileChoice::kPredicted) {
         recorder(true).record(commands, planFrame(settings, eyes, false));
         commands.drop();
@@ -108,7 +108,7 @@ std::optional<FrameResult> StereoFrame::renderAhead(std::span<const Eye> eyes, c
     // Lists have room for patches while there is a past, and for whole pictures after it.
     const bool loses_past = pasts_.of_eyes[0] && settings.keep_past && !pastsFor(eyes, settings).of_eyes[0];
     bool waits = room_.isFirstFrame() || loses_past || isUnlikeLast(eyes, settings) || FrameRoom::isCutShort(state_);
-    // What they need grows towards what there is: room is made before it is short, while nothing uses the lists.
+    // Lists fill up gradually: room is made before it runs short, while nothing uses them.
     const bool is_short = result && room_.fitsAhead() && !room_.hasRoom(plan_, stateAhead(), kRoomAhead);
     if (waits || is_short) {
         if (auto newer = land(last)) { result = std::move(newer); }
@@ -150,7 +150,7 @@ std::optional<FrameResult> StereoFrame::land(Flight& flight) {
     splats_known_ = flight.splats_held;
     if (FrameRoom::isCutShort(state_)) {
         ++cut_short_;
-        // Where tiles have no room, what a past or another picture made stays; one that is made from neither has nothing else.
+        // Where tiles have no room, the picture made from a past or another picture stays; one that is made from neither has nothing else.
         const auto isMade = [](const TargetPlan& target) { return target.past.has_value() || target.warp.has_value(); };
         if (!std::ranges::all_of(flight.plan.targets, isMade)) { pasts_ = {}; }
     }
@@ -187,7 +187,7 @@ std::uint64_t StereoFrame::renderAtMostTwice(const FrameSettings& settings, cons
     if (guesses) { room_.makeRoomForChosen(plan_, state_); }
     planAnew(settings);
     renderOnce(settings, append);
-    // What is still short has room the next time.
+    // Lists that are still short get room the next time.
     if (!room_.growIfItFits(plan_, state_)) { room_.haveFrame(); }
     return 1;
 }
@@ -210,7 +210,7 @@ FrameState StereoFrame::stateAhead() const {
         visible = std::max<std::uint64_t>(visible, state_.visible[l].needed);
         ahead.visible[l].needed = std::min(state_.visible[l].needed, gpu::kMaxItems - more) + more;
     }
-    // Each meets about as many tiles as those that are there, of which nobody may have seen any yet.
+    // Each of them meets about as many tiles as the present ones, of which nobody may have seen any yet.
     constexpr std::uint64_t kLeastTiles = 2;
     for (std::size_t t = 0; t < plan_.targets.size(); ++t) {
         const std::uint64_t pairs = state_.targets[t].pairs.needed, of_more = more * std::max(pairs / visible, kLeastTiles);
@@ -224,7 +224,7 @@ void StereoFrame::makeRoomForVisible() {
     recorder().recordReport(flight().commands, flight().readback);
     flight().commands.submitAndWait();
     state_ = flight().readback.mapped<FrameState>()[0];
-    room_.growIfItFits(plan_, state_);  // of pairs nothing is known yet
+    room_.growIfItFits(plan_, state_);  // nothing is known of pairs yet
 }
 
 Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const {
@@ -237,7 +237,7 @@ Pasts StereoFrame::pastsFor(std::span<const Eye> eyes, const FrameSettings& sett
         if (settings.mode == Mode::kAlternate && static_cast<int>(e) == pasts_.turn) { continue; }  // rendered anyway
         const Past& past = *pasts_.of_eyes[e];
         if (!canComeFrom(past.eye, eyes[e], farthest)) { return {}; }
-        // What a lens hides is hidden at any size.
+        // A lens hides the same parts at any size.
         const auto& hidden = settings.hidden_tiles[e];
         const bool same_size = past.eye.size_px == eyes[e].size_px;
         if (same_size ? !std::ranges::equal(hidden, past_hidden_[e]) : hidden.empty() != past_hidden_[e].empty()) { return {}; }
@@ -254,7 +254,7 @@ double StereoFrame::changedShare(std::span<const Eye> eyes, const FrameSettings&
 
 void StereoFrame::planAnew(const FrameSettings& settings) {
     if (std::ranges::none_of(plan_.targets, [](const TargetPlan& target) { return target.past.has_value(); })) { return; }
-    // What the past was made of is written over already.
+    // The memory that the past was made from is overwritten already.
     plan_ = planFrame(settings, eyes_, true);
     room_.fitPictures(plan_, settings.hidden_tiles);
 }

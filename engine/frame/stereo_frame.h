@@ -22,8 +22,8 @@ public:
     StereoFrame(const StereoFrame&) = delete;
     StereoFrame& operator=(const StereoFrame&) = delete;
     ~StereoFrame();
-    // Another frame of the scene that `other` shows, with pictures and pasts of its own. Kernels that either makes are there for both, and
-    // one thread has both.
+    // Another frame of the scene that `other` shows, with pictures and pasts of its own. Both share the kernels that either makes, and
+    // must be used by one thread.
     static std::unique_ptr<StereoFrame> beside(const StereoFrame& other);
 
     // From now on frames are of `scene`, on the same device. Kernels stay compiled. Waits for frames under way. Throws Error if the device
@@ -32,69 +32,69 @@ public:
 
     // Renders one eye (Mode::kMono) or two, [kLeft] and [kRight]. Where a buffer is too small for what the eyes see, it grows and the
     // frame is done again: the result is never that of a truncated list. Throws Error if the device lacks the memory.
-    // `append` records what becomes of the pictures, in the same submission; it is called again where the frame is done again.
+    // `append` records what becomes of the pictures, in the same submission; it is called again if the frame is done again.
     FrameResult render(std::span<const Eye> eyes, const FrameSettings& settings, const std::function<void(Commands&)>& append = {});
     // For showing frame after frame: returns once the frame is on its way to the device, and waits only for the one before the last, whose
-    // result it returns (empty where there is none). So the device draws one frame while the next is prepared. Lists have room for more
-    // than the last frame needed. A frame that still finds too little room shows background for once and is counted ("frames_cut_short"),
+    // result it returns (empty if there is none). So the device draws one frame while the next is prepared. Lists have room for more
+    // than the last frame needed. A frame that still finds too little room shows background once and is counted ("frames_cut_short"),
     // and the frame after it is waited for. So is a frame that has little in common with the one before: the first one, one of another
-    // size or mode, and one after a jump of the eyes. Where a list has no room in a frame that is waited for, the frame is done again,
-    // once, before anybody sees it ("frames_done_again"). What it needs is counted or, where that is not possible, guessed, so that even
+    // size or mode, and one after a jump of the eyes. If a list has no room in a frame that is waited for, the frame is done again,
+    // once, before anybody sees it ("frames_done_again"). What it needs is counted or, if that is not possible, guessed, so that even
     // then it is seldom cut short.
-    // `signals`, where given, is signalled when the frame is done.
+    // `signals`, if given, is signalled when the frame is done.
     std::optional<FrameResult> renderAhead(std::span<const Eye> eyes, const FrameSettings& settings,
                                            const std::function<void(Commands&)>& append = {}, vk::Semaphore signals = {});
-    // Makes the images that renderAhead needs for such frames, where they are others than those of the frame before, for which it waits.
+    // Makes the images that renderAhead needs for such frames, if they differ from those of the frame before, for which it waits.
     // Throws Error if the device lacks the memory: then no picture is left, and frames as they were before may still be rendered.
     void makeRoom(std::span<const Eye> eyes, const FrameSettings& settings);
     // Waits for all frames under way: after this nothing that they use is in use. The last one's result.
     std::optional<FrameResult> finish();
-    // Makes all kernels anew, see Context::replacedShaders. Throws Error where one cannot be made; then some are new and some old.
+    // Makes all kernels anew, see Context::replacedShaders. Throws Error if one cannot be made; then some are new and some old.
     void rebuildKernels();
-    // Goes on with the kernels of a frame of the same device and options, and with its own that the other lacks: what was made for one
-    // scene need not be made again for the next. The other makes anew what it lacks if it goes on.
+    // Takes over the kernels of a frame of the same device and options, and keeps those of its own that the other lacks: what was made for
+    // one scene need not be made again for the next. If the other goes on, it makes what it lacks anew.
     void takeKernels(StereoFrame& from);
-    // How many it has, but those of sorting.
+    // The number of its kernels, without those of sorting.
     [[nodiscard]] std::size_t kernelCount() const { return kernels_->count(); }
-    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, and has nothing drawn.
+    // Makes the kernels of such frames, so that none of these waits for a driver's compiler: records them, but draws nothing.
     void makeKernels(std::span<const Eye> eyes, const FrameSettings& settings);
 
     // Pictures of the last frame. RGBA as blended (rgb = sum w c + T background, a = sum w).
     [[nodiscard]] Image readPicture(int eye);
     // D = sum w z of the dominant eye, one channel.
     [[nodiscard]] Image readDominantDepth() { return readDepth(plan_.dominant); }
-    // The same of any eye, where it was kept.
+    // The same for any eye, if it was kept.
     [[nodiscard]] Image readDepth(int eye);
-    // How far away along the eye's axis that lies which a pixel shows, D over alpha, and nothing else is read; empty where less than half
-    // of it is covered, or where the depth was not kept.
+    // The depth, along the eye's axis, of what a pixel shows, D over alpha; reads nothing else. Empty if less than half of the pixel
+    // is covered, or if the depth was not kept.
     [[nodiscard]] std::optional<double> depthAt(int eye, glm::uvec2 pixel);
-    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; where they were kept.
+    // I = sum w/z and J = sum w/z^2 of the dominant eye, two channels; if they were kept.
     [[nodiscard]] Image readInverseDepthMoments();
-    // What made each tile of the affiliated picture (kTileEdge ...; 0: reprojection), row-major; empty where no mode chose.
+    // How each tile of the affiliated picture came about (kTileEdge ...; 0: reprojection), row-major; empty if no mode chose.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds();
-    // The same of any eye's picture, also of one that is made from its own past.
+    // The same for any eye's picture, including one that is made from its own past.
     [[nodiscard]] std::vector<std::uint32_t> readTileKinds(int eye);
-    // What made each pixel of the affiliated picture that lies in no such tile (kCovered, kGap, kHole), row-major; where they
+    // How each pixel of the affiliated picture outside such tiles came about (kCovered, kGap, kHole), row-major; if they
     // were kept.
     [[nodiscard]] std::vector<std::uint8_t> readPixelClasses();
 
-    // The same in device memory, for whoever shows them.
+    // The same in device memory, for display.
     [[nodiscard]] const Picture& picture(int eye) const { return room_.picture(plan_.targets[static_cast<std::size_t>(eye)].picture); }
-    // Where the last frame keeps what made the tiles of an eye's picture; null where it was rendered in full.
+    // The buffers with the kinds of an eye's tiles in the last frame; null if it was rendered in full.
     [[nodiscard]] const WarpBuffers* chosenTiles(int eye) const;
-    // Of the target that is made from another; without memory where there is none.
+    // Of the target that is made from another; without memory if there is none.
     [[nodiscard]] const WarpBuffers& warpBuffers() const { return room_.warp(plan_.warpedTarget().value_or(0)); }
 
 private:
     using Append = std::function<void(Commands&)>;
-    // A frame on the device, and what must be remembered to understand what it says. Two take turns; what only the device touches they
-    // share, since every command waits for those before it, also those of the frame before.
+    // A frame on the device, and what must be remembered to interpret its report. Two take turns. What only the device touches they
+    // share, since every command waits for those before it, even those of the frame before.
     struct Flight {
         explicit Flight(const Context& context)
             : readback(context, "frame state read-back", sizeof(FrameState), MemoryKind::kReadback), commands(context) {}
 
         Buffer readback;
-        Commands commands;  // after what it writes: it waits before that goes
+        Commands commands;  // last, after the buffer that it writes: it waits before that is freed
         FramePlan plan;
         FrameSettings settings;
         MovingPays::Asked asked;
@@ -102,7 +102,7 @@ private:
     };
 
     [[nodiscard]] Flight& flight() { return flights_[turn_]; }
-    // `drops`: what is recorded is dropped, and so must leave the scene's changes to the next.
+    // `drops`: the recording is dropped, and so must leave the scene's changes to the next.
     [[nodiscard]] FrameRecorder recorder(bool drops = false) {
         return {kernels_->passes,
                 kernels_->warp_passes,
@@ -112,31 +112,31 @@ private:
                 room_,
                 drops ? std::nullopt : std::optional(changes_known_)};
     }
-    // What the frames before leave to one of these.
+    // The pasts that the frames before leave to such a frame.
     [[nodiscard]] Pasts pastsFor(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    // Of both eyes' tiles, the share in which the scene is another than the last frame shows; both eyes.
+    // The share of both eyes' tiles in which the scene differs from what the last frame shows.
     [[nodiscard]] double changedShare(std::span<const Eye> eyes, const FrameSettings& settings) const;
-    // Plans it without a past, whatever there is.
+    // Plans the frame without a past, even if there is one.
     void planAnew(const FrameSettings& settings);
-    // Plans it, and has room for it as far as anything is known.
+    // Plans the frame, and makes room for it as far as its needs are known.
     void prepare(std::span<const Eye> eyes, const FrameSettings& settings);
-    // What was prepared, into the flight whose turn it is.
+    // Records what was prepared, into the flight whose turn it is.
     void record(const FrameSettings& settings, const Append& append);
-    // Waits for it; its result, if it was under way.
+    // Waits for it; returns its result, if it was under way.
     std::optional<FrameResult> land(Flight& flight);
-    // Reads what it reported, and learns from it.
+    // Reads the frame's report, and learns from it.
     FrameResult take(const Flight& flight);
     void renderOnce(const FrameSettings& settings, const Append& append);
     // Until the lists had room.
     void renderUntilComplete(const FrameSettings& settings, const Append& append);
-    // The same for who shows frames: once more at most; how often it was done again. What has no room even then shows background, and has
+    // The same for display: once more at most; returns how often it was done again. What has no room even then shows background, and has
     // room the next time if the device has that much memory.
     std::uint64_t renderAtMostTwice(const FrameSettings& settings, const Append& append);
     // What the last known frame would have reported if it had seen all splats that come with the next changes.
     [[nodiscard]] FrameState stateAhead() const;
     // Counts the splats that the eyes see, which costs little: without room for them nothing is known of what follows.
     void makeRoomForVisible();
-    // Whether the frame has little in common with the one before.
+    // True if the frame has little in common with the one before.
     [[nodiscard]] bool isUnlikeLast(std::span<const Eye> eyes, const FrameSettings& settings) const;
     template <typename T>
     [[nodiscard]] std::vector<T> readBuffer(const Buffer& buffer, std::uint64_t most_bytes = UINT64_MAX, std::uint64_t from_byte = 0);
@@ -146,18 +146,18 @@ private:
     std::shared_ptr<FrameKernels> kernels_;
     FrameRoom room_;
     FramePlan plan_;                                        // of the last frame
-    Pasts pasts_;                                           // that it leaves
-    FrameShape past_shape_;                                 // of these, apart from sizes
-    std::array<std::vector<std::uint8_t>, 2> past_hidden_;  // FrameSettings::hidden_tiles of these
-    FrameState state_{};                                    // what the last one known reported
-    std::uint32_t splats_known_ = 0;                        // that the scene held then
+    Pasts pasts_;                                           // that the last frame leaves
+    FrameShape past_shape_;                                 // of these pasts, apart from sizes
+    std::array<std::vector<std::uint8_t>, 2> past_hidden_;  // FrameSettings::hidden_tiles of the pasts
+    FrameState state_{};                                    // the report of the last known frame
+    std::uint32_t splats_known_ = 0;                        // how many the scene held then
     MovingPays moving_pays_;
-    std::uint64_t changes_known_ = 0;  // of the scene, see GpuScene::changesSince: what the last frame shows
+    std::uint64_t changes_known_ = 0;  // the scene's changes that the last frame shows, see GpuScene::changesSince
     FrameShape shape_;
     std::vector<Eye> eyes_;
     std::uint64_t cut_short_ = 0, done_again_ = 0;
     std::size_t turn_ = 0;
-    std::array<Flight, 2> flights_;  // last: they wait before anything goes that they use
+    std::array<Flight, 2> flights_;  // last: they wait before anything that they use is freed
 };
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// Device memory: one allocation a buffer, known by its address.
+// Device memory: one allocation per buffer, known by its address.
 #pragma once
 
 #include "engine/gpu/context.h"
@@ -21,7 +21,7 @@ enum class MemoryKind {
 class Buffer {
 public:
     Buffer() = default;
-    // Throws Error if the device lacks that much memory; `name` says for what.
+    // Throws Error if the device lacks that much memory; the message calls it `name`.
     Buffer(const Context& context, const std::string& name, std::uint64_t bytes, MemoryKind kind = MemoryKind::kDevice);
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;

@@ -31,7 +31,7 @@ Commands::Commands(const Context& context) : context_(context) {
 
 Commands::~Commands() {
     if (!under_way_) { return; }
-    // A device that is lost has nothing under way any more.
+    // A lost device has nothing under way any more.
     const vk::Fence fence = *fence_;
     (void)context_.device().getDispatcher()->vkWaitForFences(*context_.device(), 1, reinterpret_cast<const VkFence*>(&fence), VK_TRUE,
                                                              UINT64_MAX);

@@ -14,10 +14,10 @@
 
 namespace binosplat {
 
-// Whom a pass is for.
+// The eye or eyes that a pass is for.
 enum class Role { kNone, kBoth, kDominant, kAffiliated };
 
-// What a pass is called in reports and in captures of a frame.
+// The name of a pass in reports and in captures of a frame.
 struct PassLabel {
     Role role = Role::kNone;
     FrameStage stage = FrameStage::kSplat;
@@ -50,7 +50,7 @@ public:
     void beginPass(const PassLabel& label);
     void endPass();
 
-    // Each waits for all that was recorded before it, unless it is said of it that it runs beside the one before: then neither may write
+    // Each waits for everything recorded before it, unless this call says that it runs beside the one before: then neither may write
     // what the other touches.
     void beside() { beside_ = true; }
     template <typename Pass>
@@ -58,13 +58,13 @@ public:
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatch(groups_x, groups_y, 1);
     }
-    // As many workgroups as `size_bytes_offset` into `sizes` says.
+    // As many workgroups as the size at `offset_bytes` into `sizes` says.
     template <typename Pass>
     void dispatchIndirect(const Kernel& kernel, const Pass& pass, const Buffer& sizes, std::uint64_t offset_bytes) {
         recordKernel(kernel, &pass, sizeof(Pass));
         command_buffer_.dispatchIndirect(sizes.handle(), offset_bytes);
     }
-    // A workgroup for every `group_items` of `items`, folded into rows (see groupIndex in the shaders).
+    // One workgroup for every `group_items` of `items`, folded into rows (see groupIndex in the shaders).
     template <typename Pass>
     void dispatchOver(const Kernel& kernel, const Pass& pass, std::uint64_t items, gpu::uint group_items = gpu::kGroupSize) {
         const auto groups = static_cast<std::uint32_t>((items + group_items - 1) / group_items);
@@ -75,32 +75,32 @@ public:
     // At most 64 KiB, carried by the command buffer itself.
     void update(const Buffer& buffer, const void* data, std::uint64_t bytes);
     void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes, std::uint64_t from_offset = 0, std::uint64_t to_offset = 0);
-    // Likewise several parts, of which none may lie over another.
+    // The same for several parts, none of which may overlap.
     void copy(const Buffer& from, const Buffer& to, std::span<const vk::BufferCopy> parts);
-    // Memory for copies of this recording to read, of at least so many bytes: the host's to write until submit, and there until begin is
-    // called again. Once a recording. Throws Error if there is not that much.
+    // Memory for copies of this recording to read, of at least this many bytes: the host may write to it until submit, and it lives until
+    // begin is called again. Once per recording. Throws Error if there is not that much.
     [[nodiscard]] const Buffer& staging(std::uint64_t bytes);
 
-    // A whole image out of tightly packed rows, or in one colour. It comes with anything in it and leaves as an attachment.
+    // A whole image from tightly packed rows, or in one colour. Its contents before do not matter; it is left as an attachment.
     void copyToImage(const Buffer& from, vk::Image image, glm::uvec2 size_px, vk::ImageAspectFlagBits aspect);
     // From an image that a copy may read (eTransferSrcOptimal).
     void copyImage(vk::Image from, vk::Image to, glm::uvec2 size_px);
-    // Likewise, as light: what `from` holds is sRGB. On the way it lies in `encoded`, an image of the sRGB format with its bytes.
+    // The same for display-encoded pixels (sRGB), as light. On the way they lie in `encoded`, an image of the sRGB format with their bytes.
     void decodeImage(vk::Image from, vk::Image encoded, vk::Image to, glm::uvec2 size_px);
-    // Smaller copies of what is in level 0 into the others of `levels`, each of the one before. All are attachments before and after.
+    // Fills the other `levels` with smaller copies of level 0, each from the one before. All are attachments before and after.
     void makeMips(vk::Image image, glm::uvec2 size_px, std::uint32_t levels);
-    // Whether the device can do that with images of this format.
+    // True if the device can do that with images of this format.
     [[nodiscard]] static bool canMakeMips(const Context& context, vk::Format format);
     void clearImage(vk::Image image, const glm::vec4& colour);
 
-    // Instead of submit: nothing of what was recorded is done.
+    // Instead of submit: nothing of what was recorded is executed.
     void drop();
 
-    // The device begins; `signals`, where given, is signalled once it is done.
+    // The device starts; `signals`, if given, is signalled once it is done.
     void submit(vk::Semaphore signals = {});
-    // Until the device is done, if anything is under way.
+    // Waits until the device is done, if anything is under way.
     void wait();
-    // The same for who only wants memory back: what was measured is there after wait().
+    // The same for callers that only want to free memory: the measurements are there after wait().
     void waitForDevice() const;
     void submitAndWait() {
         submit();
@@ -108,8 +108,8 @@ public:
     }
     [[nodiscard]] bool isUnderWay() const { return under_way_; }
 
-    // What the kernel recorded next leaves in memory, or finds there, that serves other purposes before and after. Both give the address
-    // back; where asserts are compiled in, one fails if something else came to lie there in between.
+    // Content that the next recorded kernel leaves in aliased memory, or expects there. Both return the address; in builds with asserts,
+    // one fails if something else was put there in between.
     template <typename T>
     gpu::DeviceAddress<T> fills(gpu::DeviceAddress<T> array, std::uint64_t count, Content content) {
 #ifndef NDEBUG
@@ -127,10 +127,10 @@ public:
         return array;
     }
 
-    // For what is not a pass: pictures that leave for a headset or a window. Between begin and submit.
+    // For anything that is not a pass: pictures that leave for a headset or a window. Between begin and submit.
     [[nodiscard]] const vk::raii::CommandBuffer& buffer() const { return command_buffer_; }
 
-    // Of the frame that wait() finished; empty where the device has no timestamps.
+    // Of the frame that wait() finished; empty if the device has no timestamps.
     [[nodiscard]] const PassTimes& times() const { return times_; }
     [[nodiscard]] double totalMs() const { return total_ms_; }
     // Kernels, fills, updates and copies of buffers since begin.
@@ -138,7 +138,7 @@ public:
 
 private:
     void recordKernel(const Kernel& kernel, const void* pass, std::uint32_t bytes);
-    // Before each of them.
+    // Called before each of them.
     void waitForAll();
     void changeLayout(vk::Image image, vk::ImageAspectFlagBits aspect, vk::ImageLayout from, vk::ImageLayout to);
     void writeTimestamp();

@@ -10,7 +10,7 @@ void Contents::fill(std::uint64_t begin, std::uint64_t bytes, Content content) {
     const std::uint64_t end = begin + bytes;
     auto part = parts_.lower_bound(begin);
     if (part != parts_.begin()) {
-        // The one that begins before is cut off, and goes on behind where it is longer.
+        // The part that begins before is cut off, and continues behind if it is longer.
         Part& before = std::prev(part)->second;
         if (before.end > end) { part = parts_.emplace(end, before).first; }
         if (before.end > begin) { before.end = begin; }

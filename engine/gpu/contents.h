@@ -1,4 +1,4 @@
-// What memory holds that serves one purpose after another within a frame, followed while the frame is recorded.
+// Tracks which content aliased memory holds while a frame is recorded.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,19 @@
 namespace binosplat {
 
 enum class Content {
-    kDepthKeys,  // of visible splats, then the counts of tiles in their place
+    kDepthKeys,  // of visible splats, later replaced by their counts of tiles
     kOrder,      // visible splats front to back
     kSorting,    // the other half of a sort
-    kTileSets,   // in its place, once that is done
+    kTileSets,   // in place of kSorting, once that is done
     kTileCounts,
     kGroupSums,  // of tiles, before the sort's histograms
     kHistograms,
     kPairs,        // of tile and splat, unsorted
-    kLargeSplats,  // and where they begin, until the pairs are sorted
+    kLargeSplats,  // and where their pairs begin, until the pairs are sorted
     kSortedPairs,
     kMovingPixels,  // and where they arrive, in rows that become the target's colours
     kPicture,
-    kTileDepths,  // then prices in their place, then the tiles with pairs
+    kTileDepths,  // later replaced by prices, and then by the tiles with pairs
     kTilePrices,
     kTilesWithPairs,
     kDepthBins,
@@ -28,9 +28,9 @@ enum class Content {
 
 class Contents {
 public:
-    // From now on the bytes hold this, whatever was there.
+    // From now on the bytes hold this, whatever was there before.
     void fill(std::uint64_t begin, std::uint64_t bytes, Content content);
-    // Whether none of them was given to anything else since.
+    // True if all of them still hold it.
     [[nodiscard]] bool hold(std::uint64_t begin, std::uint64_t bytes, Content content) const;
     void forget() { parts_.clear(); }
 

@@ -17,7 +17,7 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    // NVIDIA's driver asks for an instance's function by this, too: nothing that the program could do otherwise.
+    // NVIDIA's driver queries a function of the instance in this way, too: the program cannot prevent it.
     if (data->pMessageIdName != nullptr && std::strcmp(data->pMessageIdName, "WARNING-vkGetDeviceProcAddr-device") == 0) {
         return VK_FALSE;
     }
@@ -39,11 +39,11 @@ std::optional<std::uint32_t> queueFamilyOf(const vk::raii::PhysicalDevice& devic
     return found;
 }
 
-// What the passes need and `device` lacks, as words; empty if it will do.
+// What the passes need and `device` lacks, in words; empty if the device will do.
 std::string missingFeatures(const vk::raii::PhysicalDevice& device) {
     if (device.getProperties().apiVersion < kApiVersion) { return "Vulkan 1.2"; }
     if (!queueFamilyOf(device)) { return "a compute queue"; }
-    // What Vulkan promises.
+    // Vulkan's guaranteed limits.
     const auto limits = device.getProperties().limits;
     if (limits.maxComputeWorkGroupInvocations < 128 || limits.maxComputeWorkGroupSize[0] < 128) { return "workgroups of 128 invocations"; }
     if (limits.maxComputeSharedMemorySize < 16384) { return "16 KiB of shared memory"; }
@@ -126,11 +126,11 @@ void Context::createInstance(const ContextOptions& options, bool validation) {
         check(found, "BINOSPLAT_VALIDATION: {} is not installed (package vulkan-validationlayers)", kValidationLayer);
         layers.push_back(kValidationLayer);
     }
-    // Newer layers have not got it any more: there a settings file or the environment says what is checked.
+    // Newer layers no longer have it: there a settings file or the environment says what is checked.
     const bool chooses_checks = validation && offersExtension(loader_->enumerateInstanceExtensionProperties(std::string(kValidationLayer)),
                                                               VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
     if (chooses_checks) { extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME); }
-    // The validation layer has it, too, where no driver does.
+    // The validation layer has it, too, if no driver does.
     labels_ = validation || offersExtension(loader_->enumerateInstanceExtensionProperties(), VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (labels_) { extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME); }
     const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;

@@ -18,7 +18,7 @@
 
 namespace binosplat {
 
-// Somebody else who creates the instance and the device and says which GPU it is: an OpenXR runtime. All three or none.
+// Somebody else who creates the instance and the device and chooses the GPU: an OpenXR runtime. All three or none.
 struct DeviceMaker {
     std::function<VkInstance(PFN_vkGetInstanceProcAddr, const VkInstanceCreateInfo&)> create_instance;
     std::function<VkPhysicalDevice(VkInstance)> choose_device;
@@ -28,18 +28,18 @@ struct DeviceMaker {
 struct ContextOptions {
     std::string device;       // index, or part of a name; empty: the first discrete GPU, or else the first device that will do
     bool validation = false;  // Khronos validation with synchronization checks; also BINOSPLAT_VALIDATION=1 in the environment
-    std::uint64_t max_allocation_bytes = 0;             // not more in one allocation; 0: what the device allows
-    std::uint64_t memory_limit_bytes = 0;               // not more in all buffers together; 0: what the device has
+    std::uint64_t max_allocation_bytes = 0;             // at most so many in one allocation; 0: what the device allows
+    std::uint64_t memory_limit_bytes = 0;               // at most so many in all buffers together; 0: what the device has
     DeviceMaker maker = {};                             // instead of Vulkan itself; `device` is then without effect
-    std::vector<const char*> instance_extensions = {};  // beside those that the passes need; literals
-    std::vector<const char*> device_extensions = {};    // likewise, where the device has them
-    void* device_features = nullptr;                    // likewise: structs of features, chained
+    std::vector<const char*> instance_extensions = {};  // in addition to those that the passes need; literals
+    std::vector<const char*> device_extensions = {};    // the same, but only those that the device has
+    void* device_features = nullptr;                    // more of these, too: a chain of feature structs
 };
 
 // Shaders by name, as SPIR-V.
 using ShaderWords = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
 
-// Bytes of device memory in use and the most there ever were.
+// Bytes of device memory in use, and the most there ever were.
 struct MemoryUse {
     // Any thread may make and free buffers.
     std::atomic<std::uint64_t> current_bytes = 0, peak_bytes = 0;
@@ -51,7 +51,7 @@ public:
     explicit Context(const ContextOptions& options = {});
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
-    // Says on stderr what the validation layers find only now, things left over above all.
+    // Prints on stderr what the validation layers find only now, above all leaks.
     ~Context();
 
     [[nodiscard]] const vk::raii::Instance& instance() const { return instance_; }
@@ -59,38 +59,38 @@ public:
     [[nodiscard]] const vk::raii::PhysicalDevice& physicalDevice() const { return physical_device_; }
     [[nodiscard]] const vk::raii::Queue& queue() const { return queue_; }
     [[nodiscard]] std::uint32_t queueFamily() const { return queue_family_; }
-    // Whoever uses the queue, itself or through OpenXR, holds this: a scene may be on its way up from a second thread.
+    // To be held by whoever uses the queue, directly or through OpenXR: a second thread may be uploading a scene.
     [[nodiscard]] std::mutex& queueMutex() const { return queue_mutex_; }
     [[nodiscard]] const std::string& deviceName() const { return device_name_; }
-    // A processor's program, not a GPU.
+    // True for a CPU implementation, not a GPU.
     [[nodiscard]] bool isSoftware() const { return is_software_; }
     [[nodiscard]] std::uint64_t maxAllocationBytes() const { return max_allocation_bytes_; }
-    // Of its own, in its largest heap.
+    // The device's own, in its largest heap.
     [[nodiscard]] std::uint64_t deviceMemoryBytes() const;
-    // Of memoryUse(); 0: none.
+    // For memoryUse(); 0: none.
     [[nodiscard]] std::uint64_t memoryLimitBytes() const { return memory_limit_bytes_; }
-    // Nanoseconds of a timestamp's step; 0 if the queue has none.
+    // Nanoseconds per step of a timestamp; 0 if the queue has none.
     [[nodiscard]] double timestampPeriodNs() const { return timestamp_period_ns_; }
-    // The bits of a timestamp that count.
+    // The valid bits of a timestamp.
     [[nodiscard]] std::uint64_t timestampMask() const { return timestamp_mask_; }
     [[nodiscard]] std::uint32_t subgroupSize() const { return subgroup_size_; }
     [[nodiscard]] std::uint32_t minSubgroupSize() const { return min_subgroup_size_; }
     [[nodiscard]] std::uint32_t maxSubgroupSize() const { return max_subgroup_size_; }
-    // Of a workgroup that lies along x.
+    // For a workgroup that lies along x.
     [[nodiscard]] std::uint32_t maxGroupInvocations() const { return max_group_invocations_; }
-    // Of a workgroup, in bytes.
+    // Per workgroup, in bytes.
     [[nodiscard]] std::uint32_t sharedMemory() const { return shared_memory_; }
     [[nodiscard]] bool validates() const { return validates_; }
-    // Whether names and labels go into captures and messages: VK_EXT_debug_utils.
+    // True if names and labels go into captures and messages: VK_EXT_debug_utils.
     [[nodiscard]] bool hasLabels() const { return labels_; }
     // Throws Error if the validation layers said anything so far.
     void requireNoValidationMessages() const;
-    // What they said; empty is good.
+    // The layers' messages so far; empty is good.
     [[nodiscard]] std::vector<std::string> validationMessages() const;
 
-    // The words of shaders/NAME.comp for kernels that are made from now on: those put in their place, or those the program carries.
+    // The words of shaders/NAME.comp for kernels that are made from now on: its replacement, or those the program carries.
     [[nodiscard]] std::span<const std::uint32_t> shaderWords(std::string_view name) const;
-    // For whoever works on the shaders while the program runs; empty otherwise. Kernels that are there stay as they are.
+    // For work on the shaders while the program runs; empty otherwise. Existing kernels stay as they are.
     [[nodiscard]] ShaderWords& replacedShaders() const { return replaced_shaders_; }
 
     [[nodiscard]] const vk::raii::PipelineCache& pipelineCache() const { return pipeline_cache_.handle(); }
@@ -99,10 +99,10 @@ public:
     [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_types, vk::MemoryPropertyFlags wanted,
                                            vk::MemoryPropertyFlags preferred) const;
 
-    // Whether a device extension was asked for and is there.
+    // True if a device extension was asked for and is there.
     [[nodiscard]] bool hasDeviceExtension(const std::string& extension) const { return device_extensions_.contains(extension); }
 
-    // Whether the driver tells what it makes of kernels; only where VK_KHR_pipeline_executable_properties was asked for.
+    // True if the driver reports statistics of kernels; only if VK_KHR_pipeline_executable_properties was asked for.
     [[nodiscard]] bool hasKernelStatistics() const { return kernel_statistics_; }
 
     // Gives a Vulkan object its name in validation messages and captures.

@@ -1,4 +1,4 @@
-// What Vulkan says when it fails, as an error of ours.
+// A failure of Vulkan as an Error.
 #pragma once
 
 #include "engine/error.h"
@@ -8,7 +8,7 @@
 
 namespace binosplat {
 
-// Memory that is not there is the input's fault (exit code 1), all else the device's (3). `device` is its name.
+// A lack of memory is the input's fault (exit code 1), anything else the device's (3). `device` is its name.
 Error deviceError(const std::string& device, const vk::SystemError& error);
 
 }  // namespace binosplat

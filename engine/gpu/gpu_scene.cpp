@@ -1,4 +1,4 @@
-// Bringing a scene to the device.
+// Uploading a scene to the device.
 #include "engine/gpu/gpu_scene.h"
 
 #include "engine/error.h"

@@ -22,41 +22,40 @@ struct SceneChange {
 // themselves, and not beyond 65504). A splat with an attribute that is not finite, or a rotation of length zero, is never seen.
 class GpuScene {
 public:
-    // All of it, as it stays. Splits the scene into chunks of a power of two splats where one allocation cannot hold it.
+    // All of a scene that stays as it is. Splits it into chunks of a power of two splats if one allocation cannot hold it.
     GpuScene(const Context& context, const Scene& scene, const Progress& progress = {});
 
-    // Places for splats; those of a scene in pages need not all be taken.
+    // Places for splats; in a scene of pages some may be free.
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     // Splats that are there.
     [[nodiscard]] std::uint32_t splatsHeld() const { return splats_held_; }
-    // Likewise pages, where it is in these.
+    // Pages that are there, if the scene is in pages.
     [[nodiscard]] std::uint32_t pagesHeld() const { return pages_held_; }
-    // Splats that will be there once all changes that wait are recorded.
+    // Splats that will be there once all pending changes are recorded.
     [[nodiscard]] std::uint32_t splatsComing() const { return splats_coming_; }
     [[nodiscard]] int shDegree() const { return traits_.sh_degree; }
     // kDiscs, kGaussians or kAntialiasedGaussians.
     [[nodiscard]] std::uint32_t splatKind() const { return traits_.splat_kind; }
-    // Likewise for passes that dimming does not matter to: kDiscs or kGaussians.
+    // For passes in which dimming makes no difference: kDiscs or kGaussians.
     [[nodiscard]] std::uint32_t splatShape() const { return traits_.isGaussian3d() ? gpu::kGaussians : gpu::kDiscs; }
     // As the scene asks for it.
     [[nodiscard]] Order usualOrder() const { return traits_.usual_order; }
-    // Whether its colours are light, to be encoded once they are blended.
+    // True if its colours are light, to be encoded after blending.
     [[nodiscard]] bool isLight() const { return traits_.is_light; }
     // Splat i lies in chunk i >> chunkBits().
     [[nodiscard]] std::uint32_t chunkBits() const { return chunk_bits_; }
     [[nodiscard]] std::size_t chunkCount() const { return chunk_count_; }
     [[nodiscard]] gpu::DeviceAddress<gpu::SceneChunk> chunks() const { return chunks_; }
-    // Whether chunks come and go: each is a page then, and these are what is known of it.
+    // True if chunks come and go: each is a page then, and pages() are their bounds.
     [[nodiscard]] bool isInPages() const { return pages_.value != 0; }
     [[nodiscard]] gpu::DeviceAddress<gpu::ScenePage> pages() const { return pages_; }
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-    // What changes from one frame to the next, before any pass of the next; nothing of a scene that stays as it is.
+    // Records what changes from one frame to the next, before any pass of the next; nothing for a scene that stays as it is.
     void recordChanges(Commands& commands) const {
         if (record_changes_) { record_changes_(commands); }
     }
-    // Where that was, all that was ever recorded, counted; and what came after the first `known` of it, until the next recordChanges().
-    // Empty where so old ones are forgotten.
-    // Those to come with the next one are known before that, as far as they were noted.
+    // Where something changed: what is noted for the next recordChanges(); the number of all changes that were ever recorded; and those
+    // after the first `known` of them, until the next recordChanges(), or none if changes that old are forgotten.
     [[nodiscard]] std::span<const SceneChange> changesNoted() const { return changes_noted_; }
     [[nodiscard]] std::uint64_t changesRecorded() const { return changes_forgotten_ + changes_.size(); }
     [[nodiscard]] std::optional<std::span<const SceneChange>> changesSince(std::uint64_t known) const {
@@ -78,7 +77,7 @@ private:
     std::vector<Buffer> buffers_;
     Buffer chunk_table_;
     std::function<void(Commands&)> record_changes_;
-    std::vector<SceneChange> changes_noted_, changes_;  // of these the latest
+    std::vector<SceneChange> changes_noted_, changes_;  // changes_: only the latest
     std::uint64_t changes_forgotten_ = 0;
 };
 

@@ -29,8 +29,8 @@ void append(KernelTable& table, const KernelTable& more) { table.insert(table.en
 
 namespace {
 
-// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Drivers are told so instead of by VkSpecializationInfo, since
-// not all leave out what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then.
+// A shader with these values of constant_id 0, 1, 2 ..., as plain constants. Not through VkSpecializationInfo, since not all drivers
+// remove what a value rules out before they do their slow work: SwiftShader takes a minute for a variant of resample then.
 std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> words, const std::vector<std::uint32_t>& values) {
     constexpr std::uint32_t kConstantTrue = 41, kConstantFalse = 42, kConstant = 43, kSpecConstantTrue = 48, kSpecConstantFalse = 49,
                             kSpecConstant = 50, kDecorate = 71, kSpecId = 1;
@@ -81,7 +81,7 @@ Kernel::Kernel(const Context& context, const std::string& shader, std::uint32_t 
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
     const auto flags =
         keep == Keep::kStatistics ? vk::PipelineCreateFlags(vk::PipelineCreateFlagBits::eCaptureStatisticsKHR) : vk::PipelineCreateFlags();
-    // A driver may have no statistics of what it did not compile just now.
+    // A driver may have no statistics of a kernel that it did not compile just now.
     const vk::raii::PipelineCache* cache = keep == Keep::kNothing ? &context.pipelineCache() : nullptr;
     try {
         pipeline_ = vk::raii::Pipeline(context.device(), cache, vk::ComputePipelineCreateInfo(flags, stage, *layout_));

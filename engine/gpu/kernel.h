@@ -13,7 +13,7 @@
 
 namespace binosplat {
 
-// What a driver says of a kernel, by its own names; see VK_KHR_pipeline_executable_properties.
+// A driver's statistics of a kernel, by its own names; see VK_KHR_pipeline_executable_properties.
 using KernelStatistics = std::vector<std::pair<std::string, std::variant<bool, std::int64_t, std::uint64_t, double>>>;
 
 class Kernel {
@@ -21,7 +21,7 @@ public:
     enum class Keep { kNothing, kStatistics };  // kStatistics only where Context::hasKernelStatistics
 
     Kernel() = default;
-    // Throws Error (ExitCode::kNoDevice) where the driver does not take it.
+    // Throws Error (ExitCode::kNoDevice) if the driver rejects it.
     Kernel(const Context& context, const KernelVariant& variant, Keep keep = Keep::kNothing)
         : Kernel(context, variant.shader, variant.push_bytes, variant.values(), keep) {}
     // `constants` are the values of constant_id 0, 1, 2 ...
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] vk::Pipeline pipeline() const { return *pipeline_; }
     [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
     [[nodiscard]] std::uint32_t pushBytes() const { return push_bytes_; }
-    // Of a kernel that kept them.
+    // Of a kernel that keeps them.
     [[nodiscard]] KernelStatistics statistics(const Context& context) const;
 
 private:
@@ -40,7 +40,7 @@ private:
     std::uint32_t push_bytes_ = 0;
 };
 
-// Kernels, made when they are first wanted: a mode does not pay for another's.
+// Kernels, made when they are first needed: no mode pays for another's.
 class KernelCache {
 public:
     // `table`: all that will ever be asked for.
@@ -51,9 +51,9 @@ public:
         return find(K::kShader, sizeof(typename K::Pass), valuesOf(kernel));
     }
     [[nodiscard]] std::size_t size() const { return kernels_.size(); }
-    // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and keeps the old ones then.
+    // Makes all of them anew, see Context::replacedShaders. Throws as Kernel does, and then keeps the old ones.
     void rebuild();
-    // Those that another cache of the same device has made, and of its own those that the other lacks. The rest is left to the other.
+    // Takes the kernels of another cache of the same device, and keeps those of its own that the other lacks. The rest goes to the other.
     void take(KernelCache& from) {
         from.kernels_.merge(kernels_);
         kernels_.swap(from.kernels_);

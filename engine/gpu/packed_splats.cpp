@@ -16,7 +16,7 @@ namespace {
 
 std::uint64_t shWords(int sh_degree) { return static_cast<std::uint64_t>(3 * (shCoefficientCount(sh_degree) - 1) + 1) / 2; }
 
-// Half floats end at 65504; what lies beyond stays finite.
+// Half floats end at 65504; larger values are clamped to stay finite.
 std::uint32_t packHalves(float low, float high) {
     return glm::packHalf2x16(glm::clamp(glm::vec2(low, high), glm::vec2(-65504.0f), glm::vec2(65504.0f)));
 }

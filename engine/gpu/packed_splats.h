@@ -13,7 +13,7 @@
 
 namespace binosplat {
 
-// What a scene's splats have in common.
+// Traits that a scene's splats share.
 struct SceneTraits {
     int sh_degree = 0;
     std::uint32_t splat_kind = gpu::kDiscs;  // or kGaussians, kAntialiasedGaussians
@@ -28,22 +28,22 @@ SceneTraits traitsOf(const Scene& scene);
 // Device bytes of one splat.
 std::uint64_t deviceBytesPerSplat(int sh_degree, bool gaussian_3d);
 
-// Where the arrays of `capacity` splats that lie together begin, in bytes; each at a multiple of 16, as their end.
+// Where the arrays of `capacity` splats begin within their chunk, in bytes; each at a multiple of 16, and so is the end.
 struct ChunkLayout {
     ChunkLayout(std::uint64_t capacity, const SceneTraits& traits);
-    // Of such splats that begin so far into a buffer.
+    // For such splats that begin this far into a buffer.
     [[nodiscard]] gpu::SceneChunk chunkAt(const Buffer& buffer, std::uint64_t offset_bytes, float fade) const;
 
     std::uint64_t positions = 0, rotations = 0, scales = 0, thicknesses = 0, opacities = 0, base_colours = 0, sh = 0, bytes = 0;
     std::uint64_t sh_bytes_per_splat = 0;
 };
 
-// Half the size of the box in the world's axes around all of a splat that is not fainter than kMinAlpha, and a hair for what the device
-// rounds. `scales` are along the axes of `rotation`, which is of unit length (a disc's third is 0); nothing is seen of an opacity below
-// kMinAlpha.
+// Half the size of the axis-aligned box, in the world, around all of a splat that is not fainter than kMinAlpha, and a hair for what the
+// device rounds. `scales` are along the axes of `rotation`, which has unit length (a disc's third is 0); a splat with an opacity below
+// kMinAlpha is not visible at all.
 glm::dvec3 halfExtentOf(const glm::quat& rotation, const glm::vec3& scales, float opacity);
 
-// What the device is told of a page: the box around these, and how many can be seen.
+// What the device must know of a page: the box around its visible splats, and how many these are.
 class PageBounds {
 public:
     void add(const glm::vec3& centre, const glm::quat& rotation, const glm::vec3& scales, float opacity);
@@ -56,19 +56,19 @@ private:
 };
 
 // Writes splats [first, first + count) of `scene`, which is of the same kind, to `to`, laid out as `layout` (of at least `count` splats).
-// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out. What of them can be seen goes into
-// `bounds`.
+// Bands of colours that the scene lacks are zeros, those beyond the traits' degree are left out. `bounds` takes in those that can be
+// seen.
 void packSplats(const Scene& scene, std::uint64_t first, std::uint64_t count, const SceneTraits& traits, const ChunkLayout& layout,
                 std::uint8_t* to, PageBounds* bounds = nullptr);
 
-// Some splats in pages of kPageSplats, each laid out by itself, with the bounds of each; the last is filled up with splats that are never
+// Splats in pages of kPageSplats, each with its own layout and bounds; the last one is padded with splats that are never
 // seen. Made on any thread.
 class PackedPages {
 public:
-    // Splats [first, first + count) of `scene`. Throws Error where these are discs and the traits' 3D Gaussians, or the other way round.
+    // Splats [first, first + count) of `scene`. Throws Error if these are discs and the traits' 3D Gaussians, or the other way round.
     PackedPages(const Scene& scene, std::size_t first, std::size_t count, const SceneTraits& traits);
     PackedPages(const Scene& scene, const SceneTraits& traits) : PackedPages(scene, 0, scene.size(), traits) {}
-    // One page that was packed before, as it was.
+    // One page that was packed before, unchanged.
     PackedPages(std::uint32_t splats, const gpu::ScenePage& page, std::span<const std::uint8_t> bytes)
         : splat_count_(splats), pages_{page}, bytes_(bytes.begin(), bytes.end()) {}
     PackedPages() = default;
@@ -76,7 +76,7 @@ public:
     [[nodiscard]] std::uint32_t splatCount() const { return splat_count_; }
     [[nodiscard]] std::uint32_t pageCount() const { return static_cast<std::uint32_t>(pages_.size()); }
     [[nodiscard]] const std::vector<gpu::ScenePage>& pages() const { return pages_; }
-    // As many bytes a page as a ChunkLayout of kPageSplats.
+    // As many bytes per page as a ChunkLayout of kPageSplats has.
     [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
 
 private:

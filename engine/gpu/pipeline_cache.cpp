@@ -1,4 +1,4 @@
-// Reading and writing the file. Drivers need not survive wrong bytes, so that they are checked first.
+// Reading and writing the file. Drivers need not survive wrong bytes, so these are checked first.
 #include "engine/gpu/pipeline_cache.h"
 
 #include "engine/platform.h"

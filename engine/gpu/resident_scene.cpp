@@ -1,4 +1,4 @@
-// Places for pages, and what the device is told of them.
+// Places for pages, and their entries in the device's tables.
 #include "engine/gpu/resident_scene.h"
 
 #include "engine/error.h"
@@ -14,12 +14,12 @@
 namespace binosplat {
 namespace {
 
-// What the device's tables say of a page.
+// The bytes of a page's entries in the device's tables.
 constexpr std::uint64_t kEntryBytes = sizeof(gpu::SceneChunk) + sizeof(gpu::ScenePage);
-// Of some seconds, while a scene is loaded: a picture that is older than these has no more to give.
+// For some seconds, while a scene is loaded: pictures older than these are of no more use.
 constexpr std::size_t kMostChangesKept = 65536;
 
-// Parts of one copy, put together where they lie one after another on both sides.
+// Parts of one copy, merged if they follow one another on both sides.
 class CopyParts {
 public:
     void add(std::uint64_t from, std::uint64_t to, std::uint64_t bytes) {
@@ -75,7 +75,7 @@ ResidentScene::ResidentScene(const Context& context, const SceneTraits& traits, 
     scene_.pages_ = page_table_.address<gpu::ScenePage>();
     scene_.bytes_ += scene_.chunk_table_.bytes() + page_table_.bytes();
     scene_.record_changes_ = [this](Commands& commands) { recordChanges(commands); };
-    // The first recording tells the device of all of them.
+    // The first recording uploads the entries of all of them.
     for (std::uint32_t page = 0; page < capacity; ++page) {
         free_.push(page);
         change(page, {}, 0.0f);
@@ -90,7 +90,7 @@ void ResidentScene::change(std::uint32_t page, const gpu::ScenePage& bounds, flo
     changed_.push_back(page);
 }
 
-// A page that nobody would see is one without splats.
+// A page that nobody would see is an empty one.
 void ResidentScene::show(const PartState& part) {
     for (std::size_t i = 0; i < part.pages.size(); ++i) {
         change(part.pages[i], part.fade > 0.0f ? part.bounds[i] : gpu::ScenePage{}, part.fade);

@@ -1,4 +1,4 @@
-// A scene of which parts come and go between frames: pages of splats in memory of a fixed size.
+// A scene whose parts come and go between frames: pages of splats in memory of a fixed size.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -10,23 +10,23 @@
 
 namespace binosplat {
 
-// Nothing here waits for the device. What a frame under way still reads is written over by a copy in a later submission of the same queue,
-// which every command of the earlier one comes before (Commands); and what copies read belongs to the recording that they are in.
+// Nothing here waits for the device. Memory that a frame under way still reads is overwritten by a copy in a later submission to the same
+// queue, which every command of the earlier one precedes (Commands); and the memory that copies read belongs to their recording.
 class ResidentScene {
 public:
-    // A part that was added, until it is removed; numbers are used again.
+    // A part that was added, until it is removed; numbers are reused.
     using Part = std::uint32_t;
 
     struct Options {
         std::uint32_t capacity_pages = 0;                            // of kPageSplats
-        std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;  // of splats that a frame brings to the device; at least one page
+        std::uint64_t most_bytes_a_frame = std::uint64_t{16} << 20;  // of splats that a frame uploads; at least one page
     };
     // Takes all of its device memory. Throws Error if there is not that much.
     ResidentScene(const Context& context, const SceneTraits& traits, const Options& options);
     ResidentScene(const ResidentScene&) = delete;
     ResidentScene& operator=(const ResidentScene&) = delete;
 
-    // What frames render: they ask it for changes.
+    // The scene that frames render: they ask it for changes.
     [[nodiscard]] const GpuScene& scene() const { return scene_; }
     [[nodiscard]] const SceneTraits& traits() const { return scene_.traits_; }
     [[nodiscard]] std::uint32_t capacityPages() const { return static_cast<std::uint32_t>(pages_.size()); }
@@ -35,26 +35,26 @@ public:
     [[nodiscard]] std::uint32_t splatsAdded() const { return scene_.splats_coming_; }
     [[nodiscard]] std::uint32_t splatsShown() const { return scene_.splats_held_; }
 
-    // The next ones are for the thread that records frames, between them. A page that was free takes the lowest place there is.
+    // The following are for the thread that records frames, between them. A new page takes the lowest free place.
 
-    // What pictures from before are told of a part that comes or goes: that all about it is other than it was, or nothing, where whoever
-    // calls knows better and notes it.
+    // What a part that comes or goes notes as changed for pictures from before: all around it, or nothing, if the caller knows better and
+    // notes it.
     enum class Note { kAll, kNone };
 
-    // Splats that are copied by the next frames, in the order in which they were added, and seen from the first on that has all of the
-    // part. Nothing where there are not enough free pages: then `pages` is as it was. `fade`: see setFade.
+    // Splats that the next frames copy, in the order in which they were added, and that are seen from the first frame on that has all of
+    // the part. Nothing if there are not enough free pages: then `pages` is unchanged. `fade`: see setFade.
     std::optional<Part> add(PackedPages&& pages, float fade = 1.0f, Note note = Note::kAll);
-    // Not seen from the next frame on; its pages are free at once.
+    // Invisible from the next frame on; its pages are free at once.
     void remove(Part part, Note note = Note::kAll);
-    // Something is other than it was from the next frame on.
+    // Something differs from the next frame on.
     void note(const SceneChange& change) { scene_.changes_noted_.push_back(change); }
-    // What the opacity of its splats is multiplied with from the next frame on, 0 to 1. At 0 it costs nothing.
+    // Multiplies the opacity of its splats from the next frame on, 0 to 1. At 0 it costs nothing.
     void setFade(Part part, float fade);
-    // Whether the frames that are recorded from now on find all of it in place.
+    // True if frames that are recorded from now on find all of it in place.
     [[nodiscard]] bool isInPlace(Part part) const { return parts_[part].pages_to_copy == 0; }
     [[nodiscard]] bool hasChanges() const { return !waiting_.empty() || !changed_.empty(); }
 
-    // Into a recording, before what reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
+    // Into a recording, before anything reads the scene; GpuScene::recordChanges. The recording must be submitted, and before the next one.
     void recordChanges(Commands& commands);
 
 private:
@@ -80,7 +80,7 @@ private:
     std::uint32_t pages_per_buffer_ = 1;
     GpuScene scene_;  // its buffers hold the pages
     Buffer page_table_;
-    // As on the device once `changed_` is there.
+    // As on the device once the pages in `changed_` are copied.
     std::vector<gpu::SceneChunk> chunks_;
     std::vector<gpu::ScenePage> pages_;
     std::vector<std::uint32_t> changed_;
@@ -89,7 +89,7 @@ private:
     std::vector<PartState> parts_;
     std::vector<Part> free_parts_;
     std::deque<Part> waiting_;         // to be copied, the first one perhaps in part
-    std::vector<PackedPages> copied_;  // that the next recording reads
+    std::vector<PackedPages> copied_;  // read by the next recording
 };
 
 }  // namespace binosplat

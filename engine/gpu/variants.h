@@ -25,13 +25,13 @@ constexpr FrameStage stageOfFolder(std::string_view folder) {
     return static_cast<FrameStage>(stage);
 }
 
-// A constant that a shader is compiled for, and how many values it has, from 0 up; 0: the device says.
+// A constant that a shader is specialized for, and how many values it has, from 0 up; 0: up to the device.
 struct ShaderConstant {
     const char* field;
     std::uint32_t count;
 };
 
-// Of a PASS line: one field a constant, in the order of their ids, and nothing else.
+// For a PASS line: one field per constant, in the order of their ids, and nothing else.
 #define CONSTANT(field, count) std::uint32_t field = 0;
 #define PASS(folder, shader, Name, Struct, ...)                      \
     struct Name##Kernel {                                            \
@@ -76,7 +76,7 @@ struct KernelVariant {
     [[nodiscard]] std::vector<std::uint32_t> values() const;
 };
 
-// What the shader calls the constant of a field: kDepthChoice of depth_choice.
+// The shader's name for the constant of a field: kDepthChoice for depth_choice.
 std::string nameInShader(std::string_view field);
 
 template <typename K>
@@ -87,12 +87,12 @@ KernelVariant variantOf(const K& kernel) {
     return variant;
 }
 
-// All kernels that somebody takes in any mode: each group of passes states its own, and `binosplat kernels` makes all of them.
+// All kernels used in any mode: each group of passes states its own, and `binosplat kernels` makes all of them.
 using KernelTable = std::vector<KernelVariant>;
 
 void append(KernelTable& table, const KernelTable& more);
 
-// A shader in every combination of its constants that `is_used` wants, none of which may be the device's; the last changes first.
+// A shader in every combination of its constants that `is_used` accepts, none of which may be up to the device; the last changes first.
 template <typename K>
 KernelTable everyVariant(const std::function<bool(const K&)>& is_used = [](const K&) { return true; }) {
     constexpr auto kConstants = K::constants();

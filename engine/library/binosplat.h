@@ -69,7 +69,7 @@ public:
     Renderer& operator=(Renderer&&) noexcept;
 
     // Loads a scene in place of the one before: a file of any format that the README lists, a folder, builtin:NAME, or an address on the
-    // web of such a file (docs/web.md: what is sent and what is kept; needs libcurl). Where it fails, the scene before stays.
+    // web of such a file (docs/web.md: what is sent and what is kept; needs libcurl). If it fails, the scene before stays.
     void load(const std::string& scene);
 
     [[nodiscard]] std::string deviceName() const;
@@ -79,9 +79,9 @@ public:
 
     // Renders a pair of the loaded scene and waits for it. For kTemporal call it frame after frame, with views that move little.
     void render(const Views& views, const Settings& settings = {});
-    // Of the pair rendered last; `eye` is 0 or 1.
+    // From the last rendered pair; `eye` is 0 or 1.
     [[nodiscard]] Picture read(int eye);
-    // Milliseconds that the device took for that pair; 0 where it has no timestamps.
+    // Milliseconds that the device took for that pair; 0 if it has no timestamps.
     [[nodiscard]] double gpuMs() const;
 
 private:

@@ -1,4 +1,4 @@
-// How two eyes stand to each other: what the passes may share between them, and how pixels of one move into the other.
+// How two eyes relate: what the passes may share between them, and how pixels of one move into the other.
 #pragma once
 
 #include "engine/geometry.h"
@@ -6,11 +6,11 @@
 
 namespace binosplat {
 
-// Computed once a frame, of the eyes as they are; everything that asks whether two eyes are alike asks here. Eyes that are rectified have
+// Computed once per frame, from the actual eyes; everything that asks whether two eyes are alike asks here. Rectified eyes have
 // the same depths.
 struct EyeRelation {
     gpu::PixelMap target_from_source, source_from_target;
-    // Every point is as deep for one eye as for the other: one depth order serves both. Canted eyes differ.
+    // Every point has the same depth for both eyes: one depth order serves both. Canted eyes differ.
     bool same_depths = false;
     // Pixels keep their row as well: the eyes stand side by side and share fy and cy.
     bool rectified = false;

@@ -1,4 +1,4 @@
-// Eyes in the numbers that the device has.
+// Eyes in the device's numbers.
 #include "engine/passes/eye_view.h"
 
 #include "engine/passes/frame_buffers.h"
@@ -6,8 +6,8 @@
 namespace binosplat {
 namespace {
 
-// Splits what the device holds in two floats. Through memory: g++ 12 vectorizes two components and takes a double that was rounded to a
-// float for the double itself, which leaves nothing of the rest.
+// Splits a value into the two floats that the device holds. Through memory: g++ 12 vectorizes two components and takes a double that was
+// rounded to a float for the double itself, which leaves nothing of the remainder.
 template <typename Wide, typename Narrow>
 void split(const Wide& value, Narrow& high, Narrow& low) {
     for (glm::length_t i = 0; i < value.length(); ++i) {

@@ -6,9 +6,9 @@
 
 namespace binosplat {
 
-// float32, and what is left of each value beside that; `near` in scene units.
+// In float32, with the remainder of each value beside it; `near` in scene units.
 gpu::EyeView viewOf(const Eye& eye, double near);
-// Likewise.
+// The same for a place.
 gpu::Place placeOf(const glm::dvec3& position);
 
 }  // namespace binosplat

@@ -12,30 +12,30 @@
 
 namespace binosplat {
 
-// Pictures of a frame at most, and lists of visible splats: two eyes, and room for a second picture of each.
+// The most pictures and lists of visible splats in a frame: two eyes, and room for a second picture of each.
 inline constexpr std::size_t kMostTargets = 4;
 
 // Pictures whose splats are projected, binned and blended at the same time, each with its share of the lists' room.
 inline constexpr int kMostAtOnce = 2;
 
-// A picture on its way.
+// A picture in progress.
 struct TargetState {
     gpu::ListState pairs;
     gpu::EyeCounters counters;
-    gpu::WarpView warp;  // where it is made from another
+    gpu::WarpView warp;  // if it is made from another
     gpu::WarpCounters warp_counters;
-    gpu::PastView past;  // where it is made from its own past
+    gpu::PastView past;  // if it is made from its own past
     gpu::PastBlockList past_blocks;
-    gpu::ListState chosen_tiles;    // likewise: those that are rendered
+    gpu::ListState chosen_tiles;    // if it is made from either: those that are rendered
     gpu::ListState chosen_visible;  // its visible splats, or none if there is no such tile
     gpu::ListState wanted_tiles;    // of one of an eye's two pictures from their pasts: those that are not made from the other
 };
 
-// What the device is given at the start of a frame, and what it reports at the end.
+// What the device gets at the start of a frame, and what it reports at the end.
 struct FrameState {
-    std::array<gpu::EyeView, kMostTargets> views;            // a target's has its index
-    std::array<gpu::ListState, kMostTargets> visible;        // [0] is both eyes' where they share it
-    std::array<gpu::ListState, kMostTargets> visible_pages;  // likewise, of a scene in pages
+    std::array<gpu::EyeView, kMostTargets> views;            // a target's view has its index
+    std::array<gpu::ListState, kMostTargets> visible;        // [0] is both eyes' if they share it
+    std::array<gpu::ListState, kMostTargets> visible_pages;  // the same for the pages of a scene in pages
     std::array<TargetState, kMostTargets> targets;
 };
 
@@ -44,17 +44,17 @@ glm::uvec2 tilesOf(glm::uvec2 size_px);
 struct FrameCapacity {
     std::uint32_t visible = 0;
     std::uint32_t pairs = 0;
-    std::uint32_t lent_pairs = 0;  // of an eye that sorts with lent memory, see PairBuffers
-    std::uint32_t lent_words = 0;  // of each of these
+    std::uint32_t lent_pairs = 0;  // of an eye that sorts with borrowed memory, see PairBuffers
+    std::uint32_t lent_words = 0;  // per pair of these
     bool operator==(const FrameCapacity&) const = default;
 };
 
-// What a target leaves in device memory, rows top to bottom.
+// A target's result in device memory, rows top to bottom.
 struct Picture {
     Buffer colours;            // four floats a pixel, or four half floats
     bool half_floats = false;  // which
-    Buffer depths = {};        // D, a float a pixel, where it is wanted and no words tell it
-    // Where later pictures are made from this one:
+    Buffer depths = {};        // D, a float a pixel, if it is wanted and no words tell it
+    // If later pictures are made from this one:
     Buffer words = {};  // a word a pixel, lib/moving_pixel.glsl
     Buffer tiles = {};  // gpu::PastTile
     glm::uvec2 size_px{0, 0};
@@ -67,8 +67,8 @@ public:
     VisibleBuffers(const Context& context, std::uint32_t capacity);
 
     [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
-    // Depth keys and splat indices; sorting needs `spare`. Once they are sorted, the counts of tiles take the keys' place, and the
-    // sets of tiles that of `spare`.
+    // Depth keys and splat indices; sorting needs `spare`. Once they are sorted, the counts of tiles replace the keys, and the
+    // sets of tiles replace `spare`.
     [[nodiscard]] KeyValues order() const { return {at<gpu::uint>(0), at<gpu::uint>(4)}; }
     [[nodiscard]] KeyValues spare() const { return {at<gpu::uint>(8), at<gpu::uint>(12)}; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uvec2> tileSets() const { return at<gpu::uvec2>(8); }
@@ -90,13 +90,13 @@ private:
     Buffer buffer_;
 };
 
-// Where the (tile, splat) pairs of an eye lie: a sort goes from one to the other and back, and what is left is in either.
+// Where the (tile, splat) pairs of an eye lie: a sort goes from one to the other and back, and its result is in either.
 struct PairArrays {
     KeyValues pairs, spare;
     std::uint32_t capacity = 0;
 };
 
-// Four words a pair. Of these one alone outlives the sort, the splats by tile; where memory lies idle meanwhile, up to three are lent.
+// Four words a pair. Only one of them outlives the sort, the splats by tile; up to three are borrowed where memory is idle meanwhile.
 class PairBuffers {
 public:
     static constexpr std::uint64_t kBytesPerPair = 4 * sizeof(gpu::uint);
@@ -110,7 +110,7 @@ public:
     [[nodiscard]] std::uint32_t lentWords() const { return lent_words_; }
     // The `share`th of `shares` equal parts.
     [[nodiscard]] PairArrays arrays(int share = 0, int shares = 1) const;
-    // With lentWords() words of each pair in `idle`; the one word that remains after a sort by `key_bits` is none of these.
+    // With lentWords() words of each pair in `idle`; the word that remains after a sort by `key_bits` is not among these.
     [[nodiscard]] PairArrays arraysWith(const Buffer& idle, unsigned key_bits) const;
     [[nodiscard]] std::uint64_t bytes() const { return buffer_.bytes(); }
     [[nodiscard]] const Buffer& buffer() const { return buffer_; }
@@ -120,12 +120,12 @@ private:
     Buffer buffer_;
 };
 
-// All that the passes of one frame work on, except the pictures.
+// Everything the passes of one frame work on, except the pictures.
 struct FrameBuffers {
     std::uint32_t splat_count = 0;
     Buffer state;       // FrameState
-    Buffer visibility;  // a bit a splat, then a count a workgroup
-    Buffer pages;       // of a scene in pages: the list, then a bit a page, then a count a word of these
+    Buffer visibility;  // one bit per splat, then one count per workgroup
+    Buffer pages;       // of a scene in pages: the list, then one bit per page, then one count per word of these
     VisibleBuffers visible;
     PairBuffers pairs;
     Buffer scratch;      // sums of workgroups or histograms of the list at hand
@@ -156,7 +156,7 @@ struct FrameBuffers {
 };
 
 FrameBuffers makeFrameBuffers(const Context& context, std::uint32_t splat_count, bool in_pages = false);
-// Makes room; what was in the lists before is lost, and no more than the new is held at any time.
+// Makes room; the lists' contents are lost, and never more than the new size is held.
 void growFrameBuffers(const Context& context, FrameBuffers& buffers, FrameCapacity capacity);
 
 }  // namespace binosplat

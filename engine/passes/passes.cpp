@@ -13,7 +13,7 @@ unsigned tileBits(glm::uvec2 size_tiles) { return static_cast<unsigned>(std::bit
 
 namespace {
 
-// A cell is one subgroup's where a subgroup has 8 to 64 invocations and four fit into a workgroup.
+// A cell gets one subgroup if subgroups have 8 to 64 invocations and four of them fit into a workgroup.
 std::uint32_t threadsPerCell(const Context& context, std::uint32_t wanted) {
     const std::uint32_t most = std::min(64u, std::bit_floor(context.maxGroupInvocations() / gpu::kCellsPerTile));
     return std::clamp(wanted != 0 ? wanted : context.subgroupSize(), 8u, most);
@@ -205,7 +205,7 @@ struct Passes::EyePart {
     [[nodiscard]] auto scratch() const {
         return buffers.scratch.address<gpu::uint>().at(scratchWords() * static_cast<std::uint64_t>(target.share));
     }
-    // The words of the target's colours, or of the rows that it moves.
+    // The words of the target's colours, or of the rows that are warped.
     void fillPicture() const;
 };
 
@@ -295,7 +295,7 @@ void Passes::recordProjected(const EyePart& part) {
                                    project, part.buffers.state, part.visibleList() + offsetof(gpu::ListState, per_block));
 }
 
-// Of bin and bin_large.
+// For bin and bin_large.
 gpu::BinPass Passes::EyePart::binPass() const {
     return {.splats = splats(),
             .tile_sets = commands.reads(tileSets(), splatCapacity(), Content::kTileSets),

@@ -1,14 +1,14 @@
 // The passes of a frame: those of shaders/sort and shaders/splat, as functions that record them.
 //
-//   cull_pages  which pages of a scene whose chunks come and go may hold such splats as cull keeps
+//   cull_pages  which pages of a scene whose chunks come and go may hold splats that cull keeps
 //   cull        which splats may touch a pixel of any eye
-//   compact     those in the scene's order, with the depth or the distance of their centres
+//   compact     these in the scene's order, with the depth or the distance of their centres
 //   sort_depth  front to back
 //   project     as one eye sees them, and how many tiles each meets
 //   bin         a (tile, splat) pair for each tile a splat meets
 //   sort_tiles  the pairs by tile, front to back within
 //   rasterize   blending: colour, alpha and depth
-// What makes the other eye from this one is in warp_passes.h.
+// The passes that make the other eye from this one are in warp_passes.h.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -23,16 +23,16 @@ namespace binosplat {
 struct Kept {
     bool depth = false;                           // D, to Picture::depths
     bool moments = false;                         // I and J
-    bool moving = false;                          // the picture is going to be moved into the other eye
-    bool spread = false;                          // and how far its pixels' depths spread
-    bool even_rows = false;                       // only its even rows are; needs kDepthInverse, and no moments kept
-    gpu::uint depth_choice = gpu::kDepthInverse;  // of a moving pixel
-    bool half_floats = false;                     // colours are kept as these
-    bool past = false;  // later pictures are going to be made from this one: its words and tiles are kept; it moves with its spread
+    bool moving = false;                          // the picture is going to be warped into the other eye
+    bool spread = false;                          // and needs to know how far its pixels' depths spread
+    bool even_rows = false;                       // only its even rows are warped; needs kDepthInverse, and no moments kept
+    gpu::uint depth_choice = gpu::kDepthInverse;  // of a warped pixel
+    bool half_floats = false;                     // colours are stored as half floats
+    bool past = false;  // later pictures are going to be made from this one: its words and tiles are kept; it is warped with its spread
 };
 
-// The tiles that are rendered (shaders/lib/tile_mask.glsl). `list` is there only where the device alone knows how many they are; `full` is
-// then as long, and has room for those of them that have pairs.
+// The tiles to render (shaders/lib/tile_mask.glsl). `list` is there only if the device alone knows how many they are; `full` is
+// then as long, for those of them that have pairs.
 struct TileMask {
     gpu::DeviceAddress<gpu::uint> mask, list, full;
 };
@@ -46,21 +46,21 @@ struct Target {
     const Picture* picture = nullptr;
     glm::vec3 background{0.0f};
     Kept kept;
-    bool is_made = false;                                      // by a past: tiles of which lists have no room stay
-    bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, where all tiles are shown
-    gpu::DeviceAddress<gpu::vec2> moments = {};                // where they are kept
-    gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // likewise
-    gpu::uint row_words = 0;                                   // of these two
-    int share = 0, shares = 1;                                 // of the lists' room: `pairs` is of this share
+    bool is_made = false;                                      // from a past: tiles whose lists have no room stay
+    bool square_boxes = false;                                 // EyeCounters::square_box_pairs are counted, if all tiles are shown
+    gpu::DeviceAddress<gpu::vec2> moments = {};                // if they are kept
+    gpu::DeviceAddress<gpu::uint> moving = {}, arrivals = {};  // if the picture is warped
+    gpu::uint row_words = 0;                                   // of `moving` and `arrivals`
+    int share = 0, shares = 1;                                 // of the lists' room: `pairs` belongs to this share
     float low_pass = gpu::kLowPass;                            // EyeView
-    bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and has no one of its own for these
-    gpu::DeviceAddress<gpu::uint> shown = {};  // what the lens shows, as a mask, if it hides anything; the other tiles become background
+    bool lists_chosen = false;                 // the list holds what touches its chosen tiles, and there is no other one for these
+    gpu::DeviceAddress<gpu::uint> shown = {};  // the lens's visibility mask, if it hides anything; the other tiles become background
 };
 
-// How many bits tell the tiles of a picture and no tile apart.
+// How many bits distinguish the tiles of a picture, and no tile.
 unsigned tileBits(glm::uvec2 size_tiles);
 
-// Whose splats a list of visible ones holds: those that any of the eyes [first, first + count) sees, by the distance from the middle
+// The eyes of a list of visible splats: it holds what any of the eyes [first, first + count) sees, ordered by the distance from the middle
 // between the eyes, or without one by the depths of `order_eye`.
 struct EyesOfList {
     int first = 0;
@@ -68,8 +68,8 @@ struct EyesOfList {
     int order_eye = 0;
     int list = 0;
     std::optional<gpu::Place> middle = {};
-    int shares = 1;                                                 // as many pictures are rendered from it at the same time
-    gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // where only the chosen tiles of each eye count
+    int shares = 1;                                                 // how many pictures are rendered from it at the same time
+    gpu::DeviceAddress<gpu::uint> first_mask = {}, last_mask = {};  // if only the chosen tiles of each eye count
 };
 
 // All kernels of cull to rasterize, sorting included. `threads_per_cell`: see Passes.
@@ -78,23 +78,23 @@ KernelTable passKernels(const Context& context, std::uint32_t threads_per_cell =
 class Passes {
 public:
     // `threads_per_cell`: 8, 16, 32 or 64 invocations blend 8x8 pixels; 0: as wide as the device's
-    // subgroups. Fewer where its workgroups are too small.
+    // subgroups. Fewer if its workgroups are too small.
     explicit Passes(const Context& context, std::uint32_t threads_per_cell = 0);
-    // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    // See Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
     void rebuildKernels();
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Goes on with the kernels of others on the same device, with as many threads per cell, whose work is over, and with its own that
-    // those lack.
+    // Takes over the kernels of others on the same device, with as many threads per cell, whose work is done, and keeps those of its own
+    // that the others lack.
     void takeKernels(Passes& from);
 
-    // How many splats are visible: cull alone.
+    // How many splats are visible: only cull.
     void recordCull(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
-    // The list of these, front to back: compact and sort_depth; also once more by the depths of another eye, and which eyes see the splats
-    // is not asked again.
+    // The list of these, front to back: compact and sort_depth. Also again by the depths of another eye; visibility is then not determined
+    // anew.
     void recordOrder(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const EyesOfList& eyes, Role role);
     // The picture of an eye: project to rasterize.
     void recordEye(Commands& commands, const GpuScene& scene, const FrameBuffers& buffers, const Target& target, Role role);
-    // The same for some tiles alone: the others stay as they are. Of several pictures with equal tiles beside each other, each with its
+    // The same for some tiles only: the others stay as they are. Several pictures with equal tiles run beside each other, each with its
     // share of the lists.
     struct Patch {
         Target target;
@@ -115,7 +115,7 @@ private:
 
     const Context& context_;
     std::uint32_t threads_per_cell_;
-    std::optional<Sort> sort_;  // once it is wanted
+    std::optional<Sort> sort_;  // made when it is first needed
     KernelCache kernels_;
 };
 

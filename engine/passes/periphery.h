@@ -1,7 +1,7 @@
-// An eye's picture where it does not look: rendered at half of its size, except where the eye would see that.
+// An eye's picture away from its gaze: rendered at half its size, except where the eye would see the difference.
 //
-//   periphery       which tiles of the half-size picture are needed; and once it is there, which of the eye's own are rendered
-//   fill_periphery  the other ones from the half-size picture
+//   periphery       which tiles of the half-size picture are needed; and once it exists, which of the eye's own are rendered
+//   fill_periphery  fills the others from the half-size picture
 #pragma once
 
 #include "engine/gpu/kernel.h"
@@ -11,21 +11,21 @@
 
 namespace binosplat {
 
-// The same view in half as many rows and columns, with the low-pass of the eye's own: a pixel of it is two by two of these, and the last
+// The same view in half as many rows and columns, with the low-pass of the eye's own: each pixel covers two by two of these, and the last
 // one may reach beyond.
 Eye halfOf(const Eye& eye);
 
-// Which tiles are rendered of both pictures of an eye.
+// The tiles to render of both pictures of an eye.
 class PeripheryBuffers {
 public:
     PeripheryBuffers() = default;
-    // Of a picture of `size_px`; 0: none.
+    // For a picture of `size_px`; 0: none.
     PeripheryBuffers(const Context& context, glm::uvec2 size_px);
 
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
     [[nodiscard]] TileMask own() const { return tilesAt(0, size_px_); }
     [[nodiscard]] TileMask ofHalf() const;
-    // Of the eye's own tiles, what half the size is expected to lose.
+    // For the eye's own tiles, the loss expected at half the size.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> losses() const;
     [[nodiscard]] const Buffer& buffer() const { return words_; }
 
@@ -36,7 +36,7 @@ private:
     Buffer words_;
 };
 
-// What the passes of an eye work on.
+// The inputs of one eye's passes.
 struct PeripheryInputs {
     const FrameBuffers& buffers;
     const PeripheryBuffers& tiles;
@@ -48,7 +48,7 @@ struct PeripheryInputs {
     glm::vec3 background;
     const Intrinsics& lens;
     const Gaze& gaze;
-    // Where both pictures are made from their pasts, and of the tiles here some are chosen later: by tile, what kTileHidden stands for.
+    // If both pictures are made from their pasts, and some of the tiles here are chosen later: kinds by tile, kTileHidden if not needed.
     gpu::DeviceAddress<gpu::uint> kinds = {}, half_kinds = {};
     [[nodiscard]] bool fromPasts() const { return kinds.value != 0; }
 };
@@ -58,12 +58,12 @@ KernelTable peripheryKernels();
 class PeripheryPasses {
 public:
     explicit PeripheryPasses(const Context& context) : kernels_(context, peripheryKernels()) {}
-    // As of WarpPasses.
+    // As in WarpPasses.
     void rebuildKernels() { kernels_.rebuild(); }
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
     void takeKernels(PeripheryPasses& from) { kernels_.take(from.kernels_); }
 
-    // In this order, with the half-size picture made after the first and the other one after the second.
+    // In this order; the half-size picture is made after the first, and the other one after the second.
     void recordHalfChoice(Commands& commands, const PeripheryInputs& in);
     void recordChoice(Commands& commands, const PeripheryInputs& in);
     void recordFill(Commands& commands, const PeripheryInputs& in);

@@ -6,14 +6,14 @@
 
 namespace binosplat {
 
-// An eye's picture and what else goes with it.
+// An eye's picture and what is shown along with it.
 struct PresentedEye {
     const Picture* picture = nullptr;
     glm::uvec2 size_px{0, 0};
-    const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to show what made it; or null
+    const WarpBuffers* tinted_by = nullptr;  // of the affiliated eye, to tint its pixels by how they came about; or null
     vk::Image colour;                        // where the picture goes; 8-bit RGBA or BGRA
-    vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where nothing is; or null
-    bool see_through = false;                // its alpha goes along, multiplied in as headsets blend: as light
+    vk::Image depth;                         // where its depth goes, D32: near / depth, 0 where there is nothing; or null
+    bool see_through = false;                // its alpha is output, too, multiplied in as headsets blend: as light
 };
 
 // All kernels of `present`.
@@ -21,20 +21,20 @@ KernelTable presentKernels();
 
 class Presenter {
 public:
-    // Of images of `colour_format`. Throws Error if it does not have four channels of 8 bits.
+    // For images of `colour_format`. Throws Error if it does not have four channels of 8 bits.
     Presenter(const Context& context, vk::Format colour_format);
 
     [[nodiscard]] static bool takes(vk::Format colour_format);
 
-    // Those that half floats want, before they are asked for: with and without a tint.
+    // Makes those for half floats before they are needed: with and without a tint.
     void makeKernels(bool with_depth, bool can_see_through);
     // For pictures of that size, while nothing that was recorded is under way. Throws Error if there is no memory for it.
     void makeRoom(glm::uvec2 size_px, bool with_depth);
     // Records it, making room first. `near` in scene units.
     void record(Commands& commands, const PresentedEye& eye, double near);
-    // Makes its kernels anew, see Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    // Makes its kernels anew, see Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
     void rebuildKernels() { kernels_.rebuild(); }
-    // The bytes of the eye that was recorded last, rows top to bottom, for whoever shows them elsewhere.
+    // The bytes of the eye that was recorded last, rows top to bottom, for showing them elsewhere.
     [[nodiscard]] const Buffer& pixels() const { return pixels_; }
 
 private:

@@ -1,4 +1,4 @@
-// Bringing the mask to the device when it changes.
+// Uploading the mask when it changes.
 #include "engine/passes/shown_tiles.h"
 
 #include <algorithm>

@@ -11,8 +11,8 @@ namespace binosplat {
 
 namespace {
 
-// A GPU has many subgroups under way to hide how long memory takes: sixteen, or eight where shared memory, of which each has 1 KiB for its
-// digits, is as small as Vulkan allows. Narrow subgroups are a processor's vectors, which run one after the other: four of these.
+// A GPU has many subgroups under way to hide the latency of memory: sixteen, or eight if shared memory, of which each takes 1 KiB for its
+// digits, is as small as Vulkan allows. Narrow subgroups are a CPU's vectors, which run one after the other: four of these.
 gpu::uint threadsOf(const Context& context) {
     constexpr gpu::uint kWide = 32;
     if (context.subgroupSize() < kWide) {

@@ -1,5 +1,5 @@
 // A stable radix sort of 32-bit keys with 32-bit values (shaders/sort/sort_*.comp): reduce then scan, 8 bits and two
-// commands a round.
+// commands per round.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -14,7 +14,7 @@ struct KeyValues {
     gpu::DeviceAddress<gpu::uint> keys, values;
 };
 
-// How lanes find those of equal digits. By ballots a subgroup of any width can; comparing with each lane in turn is cheaper where there
+// How lanes find equal digits. Ballots work for any subgroup width; comparing with each lane in turn is cheaper if there
 // are at most eight.
 enum class DigitMatch { kAuto, kBallots, kComparisons };
 
@@ -31,10 +31,10 @@ public:
     // Bytes of `histograms` for lists of up to `items`: half a byte a key and 17 KiB, 273 KiB at most.
     static std::uint64_t histogramBytes(std::uint64_t items);
 
-    // Whether the result of `record` lies in `spare`.
+    // True if the result of `record` lies in `spare`.
     static bool endsInSpare(unsigned key_bits) { return roundsOf(key_bits) % 2 == 1; }
 
-    // A list to be sorted: its pairs, as much room again, room for histograms, and where in the buffer of lists it stands.
+    // A list to sort: its pairs, as much spare room, room for histograms, and its place in the buffer of lists.
     struct Job {
         KeyValues in, spare;
         gpu::DeviceAddress<gpu::uint> histograms;

@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-// What warping a tile costs in pairs of tile and splat, where nobody has measured it: docs/tried.md, *One eye from the other*.
+// The cost of warping a tile, in pairs of tile and splat, if nobody has measured it: docs/tried.md, *One eye from the other*.
 inline constexpr gpu::uint kDefaultMoveCost = 32;
 
 struct StereoSettings {

@@ -1,4 +1,4 @@
-// Allocating what the passes of warp and choose work on.
+// Allocating the buffers of the passes of warp and choose.
 #include "engine/passes/warp_buffers.h"
 
 #include <algorithm>

@@ -5,10 +5,10 @@
 
 namespace binosplat {
 
-// Of the rows that resample keeps in shared memory, in kArrivalsStep.
+// The most that resample keeps of a row in shared memory, in kArrivalsStep.
 std::uint32_t mostRowSteps(const Context& context);
 
-// What a frame wants of them.
+// A frame's requirements.
 struct WarpBufferNeeds {
     glm::uvec2 size_px{0, 0};  // of both eyes; 0: no mode that reprojects
     bool classes = false;      // of the target's pixels
@@ -18,8 +18,8 @@ struct WarpBufferNeeds {
     bool operator==(const WarpBufferNeeds&) const = default;
 };
 
-// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals lie where the target
-// eye's colours come to lie, row by row, as long as resample can keep a row of arrivals in shared memory; otherwise here.
+// Arrays over the tiles and the price list lie in one buffer, one after the other. Moving pixels and arrivals are aliased with the target
+// eye's colours, row by row, as long as resample can keep a row of arrivals in shared memory; otherwise they lie here.
 class WarpBuffers {
 public:
     WarpBuffers() = default;
@@ -35,26 +35,26 @@ public:
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileErrors() const { return tileArray(1); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileCosts() const { return tileArray(2); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilePrices() const { return tileArray(3); }
-    // What the source sees in the middle of each, until prices come.
+    // The source's depth in the middle of each tile, until the prices replace it.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileDepths() const { return tilePrices(); }
-    // Once tiles are chosen: of those in the list.
+    // Once tiles are chosen: those of the list that have pairs.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tilesWithPairs() const { return tilePrices(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileList() const { return tileArray(4); }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> tileMask() const { return tileArray(5); }
     // The price list, or the counts of depths.
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> bins() const { return tileMask().at(maskWords(needs_.size_px)); }
     [[nodiscard]] static std::uint64_t tileKindsOffset() { return 0; }
-    // Words of a mask of tiles: a bit each, rows begin a word.
+    // Words of a mask of tiles: one bit each, each row begins a new word.
     static std::uint64_t maskWords(glm::uvec2 size_px);
 
-    // Of those that are made pixel by pixel.
+    // The blocks that are made pixel by pixel.
     [[nodiscard]] gpu::DeviceAddress<gpu::PastBlock> pastBlocks() const { return past_blocks_.address<gpu::PastBlock>(); }
     [[nodiscard]] gpu::DeviceAddress<gpu::PixelBox> boxes() const { return boxes_.address<gpu::PixelBox>(); }
     // Two bits a pixel, sixteen pixels a word, rows padded to whole tiles.
     [[nodiscard]] const Buffer& classesBuffer() const { return classes_; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> pixelClasses() const { return classes_.address<gpu::uint>(); }
 
-    // Moving pixels and arrivals: where the first rows begin, and the words from a row to the next.
+    // Moving pixels and arrivals: where the first rows begin, and the number of words from a row to the next.
     [[nodiscard]] bool sharesRows() const { return needs_.size_px.x <= longest_shared_row_; }
     [[nodiscard]] gpu::uint rowWords() const { return (!sharesRows() ? 1 : needs_.half_floats ? 2 : 4) * needs_.size_px.x; }
     [[nodiscard]] gpu::DeviceAddress<gpu::uint> arrivals(const Picture& target) const;

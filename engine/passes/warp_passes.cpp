@@ -7,7 +7,7 @@
 namespace binosplat {
 namespace {
 
-// Boxes of holes are strided over by so many workgroups.
+// This many workgroups stride over the boxes of holes.
 constexpr gpu::uint kMarkGroups = 64;
 
 }  // namespace
@@ -53,8 +53,8 @@ KernelTable warpKernels(const Context& context) {
     append(table, everyVariant<EdgeRoisKernel>());
     append(table, everyVariant<ReprojectKernel>());
     append(table, everyVariant<ResampleKernel>([most_steps = mostRowSteps(context)](const ResampleKernel& k) {
-               // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved where they
-               // can be, and odd ones of predicted are moved like even ones.
+               // Only the paper's holes are grouped, and by their classes. Errors are those of sampling. Whole rows are moved if they
+               // can be, and odd rows of predicted are warped like even ones.
                if (k.row_steps > most_steps || (k.components && (k.predict_errors || !k.classes)) || (k.predict_errors && k.forward)) {
                    return false;
                }
@@ -73,7 +73,7 @@ KernelTable warpKernels(const Context& context) {
 
 namespace {
 
-// Those of one frame, one function each, and what several of them want to know.
+// The passes of one frame, one function each, and what several of them need.
 class WarpRecorder {
 public:
     WarpRecorder(KernelCache& kernels, Commands& commands, const WarpInputs& in) : kernels_(kernels), commands_(commands), in_(in) {}
@@ -88,7 +88,7 @@ public:
     void findDepthBounds();
     void findEdgeRois();
     void reproject();
-    // Of every row or, where errors are predicted, of the even ones; resampleOdd: of the others.
+    // Every row or, if errors are predicted, the even ones; resampleOdd: the odd ones.
     void resample();
     void resampleOdd();
     void findNewcomers();
@@ -127,7 +127,7 @@ private:
     }
     [[nodiscard]] bool hidesSource() const { return in_.source_shown.hideAny(); }
     [[nodiscard]] bool halfFloats() const { return in_.source.half_floats; }
-    // Whether resample moves the source's pixels itself.
+    // True if resample moves the source's pixels itself.
     [[nodiscard]] bool movesRows() const { return binosplat::movesRows(in_.rectified, in_.warp); }
     [[nodiscard]] bool copiesColours() const { return in_.settings.forward && !predicts(); }
     [[nodiscard]] gpu::uint tileGroups() const { return (in_.warp.tileCount() + gpu::kWarpGroup - 1) / gpu::kWarpGroup; }
@@ -159,7 +159,7 @@ void WarpRecorder::weigh() {
         pass, tileGroups());
 }
 
-// Timed with the pass that comes next.
+// Timed with the next pass.
 void WarpRecorder::clearTiles() {
     if (followsPaper()) {
         begin<DepthBoundsKernel>();

@@ -1,14 +1,14 @@
 // One eye from the other: reprojection, and the tiles that must be rendered.
 //
-//   weigh         predicted: which tiles are cheaper to render than to move, and whether moving pays
+//   weigh         predicted: which tiles are cheaper to render than to warp, and whether warping pays
 //   depth_bounds  paper: how deep the picture is
 //   edge_rois     paper: the borders that the source does not see
-//   reproject     the source's pixels go to where the target sees them; resample does so itself where that is in their row
+//   reproject     the source's pixels go to where the target sees them; resample does this itself if they stay in their rows
 //   resample      every pixel's place in the source, its colour, and the error to expect
 //   newcomers     predicted: splats that only the target sees, nearer than the middle of their tile
 //   components    paper, on request: connected holes inside the picture
 //   price         predicted: what it costs to mend each tile's error
-//   select        the tiles that are rendered
+//   select        the tiles to render
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -23,31 +23,31 @@
 
 namespace binosplat {
 
-// Where an eye looks, for TileChoice::kPredicted: what it does not see there is not worth rendering again.
+// Where an eye looks, for TileChoice::kPredicted: errors that it does not see are not worth rendering again.
 struct Gaze {
     glm::dvec3 direction{0.0, 0.0, 1.0};  // in the eye's axes, of any length
-    double clear_rad = 0.0;               // how far about it everything counts in full: the eye may look there, too
+    double clear_rad = 0.0;               // how far around it everything counts in full: the eye may look there, too
 };
 
-// How `settings` and the eyes look to the device. `row_words`: of a row of moving pixels, see WarpBuffers.
+// `settings` and the eyes, for the device. `row_words`: of a row of moving pixels, see WarpBuffers.
 gpu::WarpView warpViewOf(const EyeRelation& relation, glm::uvec2 size_px, gpu::uint row_words, const StereoSettings& settings);
-// What the counters start a frame with: modes that do not weigh move everything.
+// Initial counters of a frame: modes that do not weigh warp everything.
 gpu::WarpCounters firstCountersOf(const StereoSettings& settings, glm::uvec2 size_px);
 
-// Where the source leaves its pixels to be moved, and where they arrive: a word each, and the words from a row to the next.
+// Where the source leaves its pixels to be warped, and where they arrive: one word each; and the number of words from a row to the next.
 struct MovingWords {
     gpu::DeviceAddress<gpu::uint> moving, arrivals;
     gpu::uint row_words;
 };
 
-// What the passes of one frame work on.
+// The inputs of one frame's passes.
 struct WarpInputs {
     const GpuScene& scene;
     const FrameBuffers& buffers;
     const WarpBuffers& warp;
     const StereoSettings& settings;
     bool rectified;
-    bool may_move;  // otherwise only weigh runs, for the next frame's sake
+    bool may_move;  // otherwise only weigh runs, for the next frame
     int list;       // of visible splats, the target's
     int index;      // of FrameState::targets and views
     Role role;
@@ -59,29 +59,29 @@ struct WarpInputs {
     bool leaves_past;  // later pictures are made from the target
     glm::vec3 background;
     const Intrinsics& target_lens;
-    std::optional<Gaze> target_gaze;  // empty: all tiles are seen alike
+    std::optional<Gaze> target_gaze;  // empty: all tiles count alike
 };
 
-// Whether resample moves the source's pixels itself, row by row: then there is no reproject, and no arrivals in memory.
+// True if resample moves the source's pixels itself, row by row: then reproject does not run, and no arrivals lie in memory.
 inline bool movesRows(bool rectified, const WarpBuffers& warp) { return rectified && warp.sharesRows(); }
 
-// How `gaze` looks to the device.
+// `gaze` for the device.
 gpu::EyeGaze eyeGazeOf(const Gaze& gaze, const Intrinsics& lens);
 
-// Their kernels.
+// The kernels of these passes.
 KernelTable warpKernels(const Context& context);
 
 class WarpPasses {
 public:
     explicit WarpPasses(const Context& context) : kernels_(context, warpKernels(context)) {}
-    // See Context::replacedShaders. Throws Error where one cannot be made, and keeps the old ones then.
+    // See Context::replacedShaders. Throws Error if one cannot be made, and then keeps the old ones.
     void rebuildKernels() { kernels_.rebuild(); }
     [[nodiscard]] std::size_t kernelCount() const { return kernels_.size(); }
-    // Goes on with the kernels of others on the same device, whose work is over, and with its own that those lack.
+    // Takes over the kernels of others on the same device, whose work is done, and keeps those of its own that the others lack.
     void takeKernels(WarpPasses& from) { kernels_.take(from.kernels_); }
 
-    // All of them: the target's colours, except in the tiles that are listed in the end; its depths, too, where it has room
-    // for them. Tiles that are hidden become background.
+    // Runs all of them: writes the target's colours, except in the tiles that are finally listed, and its depths, if it has room
+    // for them. Hidden tiles become background.
     void record(Commands& commands, const WarpInputs& in);
 
 private:

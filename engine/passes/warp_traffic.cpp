@@ -16,10 +16,10 @@ Traffic warpTraffic(const WarpFacts& facts) {
     const bool components = paper && facts.settings.center_rois;
     const double pixels = double{1} * facts.size_px.x * facts.size_px.y, tiles = pixels / kPixelsOfTile;
     const double colour = facts.half_floats ? sizeof(gpu::uvec2) : sizeof(gpu::vec4);
-    // Of odd rows that are moved like even ones nothing is read or written before they are resampled.
+    // Of odd rows that are warped like even ones, nothing is read or written before they are resampled.
     const double rows = facts.even_rows ? 0.5 : 1.0, moving = rows * kWord, arrival = rows * kWord;
     const double depth = facts.target_depth ? sizeof(float) : 0.0, pixel_class = 0.25;
-    // Only predicted leaves tiles out before it moves anything.
+    // Only predicted leaves tiles out before it warps anything.
     const double moved = !predict ? 1.0 : facts.counters.moves == 0 ? 0.0 : facts.counters.moved_tiles / tiles;
     const double any_moved = moved > 0.0 ? 1.0 : 0.0;
 
@@ -36,12 +36,12 @@ Traffic warpTraffic(const WarpFacts& facts) {
     if (!facts.moves_rows) { traffic.emplace_back("reproject", any_moved * (moving + 2 * arrival)); }
     // A row of pixels reads its tiles' kinds; every other row adds to their errors.
     const double of_rows = perTile(gpu::kTileSize * (predict ? 2 : 1));
-    // What even rows leave for odd ones is written and read.
+    // Places that even rows leave for odd ones are written and read.
     const double place = facts.even_rows ? kWord + (depth > 0.0 ? kWord : 0.0) : 0.0;
     traffic.emplace_back("resample", any_moved * (arrival + of_rows + (facts.classes || components ? pixel_class : 0.0)) +
                                          moved * (2 * colour + depth + place + (facts.leaves_past ? kWord : 0.0)));
     if (predict) {
-        // counts of tiles; what newcomers read besides is nothing beside it
+        // counts of tiles; the rest of what newcomers reads is negligible
         traffic.emplace_back("newcomers", any_moved * kWord * facts.visible / pixels);
     }
     if (components) { traffic.emplace_back("components", 3 * pixel_class); }

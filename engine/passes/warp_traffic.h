@@ -1,4 +1,4 @@
-// What the target costs in memory traffic in addition to the tiles that are rendered for it.
+// The memory traffic of making the target, beyond that of the tiles that are rendered for it.
 #pragma once
 
 #include "engine/passes/warp_passes.h"
@@ -9,17 +9,17 @@
 
 namespace binosplat {
 
-// Bytes that a pass reads and writes, by pixel of an eye, in frame order. What several threads read counts once, since neighbours read it
+// Bytes that a pass reads and writes, per pixel of an eye, in frame order. What several threads read counts once, since neighbours read it
 // from a cache; what is read and written back counts twice.
 using Traffic = std::vector<std::pair<std::string, double>>;
 
-// What a frame was like that traffic depends on.
+// The facts about a frame that its traffic depends on.
 struct WarpFacts {
     StereoSettings settings;
-    bool may_move = true;          // the source came with what moving needs
-    bool moves_rows = false;       // resample does what reproject does otherwise
-    bool even_rows = false;        // odd rows are moved like even ones
-    bool sums_even_rows = false;   // and so the source writes nothing for these
+    bool may_move = true;          // the source came with what warping needs
+    bool moves_rows = false;       // resample also does what reproject does otherwise
+    bool even_rows = false;        // odd rows are warped like even ones
+    bool sums_even_rows = false;   // and so the source writes nothing for odd rows
     bool half_floats = false;      // what pictures consist of
     bool target_depth = false;     // its D is kept
     bool leaves_past = false;      // and its words and tiles

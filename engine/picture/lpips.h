@@ -27,7 +27,7 @@ public:
     // Values in a file of weights: those of SqueezeNet, then a head for each of its stages, one weight a channel.
     static constexpr std::size_t kValues = 724'736;
 
-    // `file`: kValues float32, little endian. Throws Error naming the file where it cannot be read, has another size, or holds a
+    // `file`: kValues float32, little endian. Throws Error naming the file if it cannot be read, has another size, or holds a
     // value that is not finite or a negative head.
     explicit Lpips(const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-// What two eyes notice of tiles that were made at different times, and PSNR does not.
+// Differences between tiles made at different times that two eyes notice and PSNR does not.
 #pragma once
 
 #include "engine/picture/image.h"
@@ -11,9 +11,9 @@ namespace binosplat {
 // of kTileSize than within them: mean |difference| of neighbours, in values of 0 to 1. 0: nothing shows where tiles end.
 double tileSteps(const Image& error);
 
-// By how much a surface is sharper in one eye than in the other: of the full renders' textured tiles that are found again in the other eye
+// By how much a surface is sharper in one eye than in the other: over the full renders' textured tiles that are found in the other eye
 // in the same rows, the mean difference of the eyes' sharpness, which is the sum of a tile's gradients over those of its full render.
-// 0 to about 1; 0 as well where no tile is found, as between canted eyes.
+// 0 to about 1; also 0 if no tile is found, as between canted eyes.
 double sharpnessGap(const std::array<Image, 2>& pictures, const std::array<Image, 2>& full);
 
 }  // namespace binosplat

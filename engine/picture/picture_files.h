@@ -12,7 +12,7 @@ namespace binosplat {
 // The largest number of values of a picture: a broken file must not exhaust memory.
 inline constexpr std::uint64_t kMostPictureValues = std::uint64_t{1} << 30;
 
-// Without, neither of the next two is called.
+// If not, neither of the next two is called.
 bool hasPngAndExr();
 // float32. Throws Error; the file is gone then.
 void writeExr(const std::filesystem::path& path, const Image& image);

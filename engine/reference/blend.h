@@ -1,4 +1,4 @@
-// What a pixel gathers while splats are blended, and the pixels of a tile.
+// A pixel's sums while splats are blended, and the pixels of a tile.
 #pragma once
 
 #include "engine/reference/splat.h"
@@ -51,7 +51,7 @@ inline Picture makePicture(glm::uvec2 size_px, const Settings& settings) {
     return picture;
 }
 
-// The tile of that index, row-major.
+// The tile with this index, row-major.
 struct Tile {
     Tile(std::size_t index, glm::uvec2 size_px) {
         const int columns = static_cast<int>(tileGrid(size_px).x);

@@ -1,7 +1,7 @@
 // cull_pages: a box has a corner on the inner side of each plane of the view, or nothing in it is seen. The low-pass makes the view wider
-// by what it reaches on the screen, 2 ln 255 being the greatest cut there is. A 3D Gaussian on the screen is as wide as its ellipsoid along
-// f (1, 0, -slope), with the slope held within 0.3 of half the picture beside it (splat.h): for one beside the picture its reach along the
-// plane's own normal and as much of its reach in depth.
+// by its reach on the screen, 2 ln 255 being the greatest cut there is. A 3D Gaussian on the screen is as wide as its ellipsoid along
+// f (1, 0, -slope), with the slope held within 0.3 of half the picture beside it (splat.h): if it is beside the picture, its reach along
+// the plane's own normal and as much of its reach in depth.
 #include "engine/reference/splat.h"
 
 #include <array>
@@ -28,7 +28,7 @@ bool mayShow(const Page& page, bool gaussians, const EyeFrame& frame, double nea
     const Corners corners = cornersOf(page, frame);
     double farthest = 0.0;
     for (const glm::dvec3& c : corners) { farthest = std::max(farthest, glm::length(c)); }
-    // Whether all of it lies beyond a plane through the eye; `more`: by so much.
+    // True if all of it lies beyond a plane through the eye, by at least `more`.
     const auto isBeyond = [&](const glm::dvec3& normal, double more) {
         return std::ranges::all_of(
             corners, [&](const glm::dvec3& c) { return glm::dot(normal, c) + more + slack * farthest * glm::length(normal) < 0.0; });

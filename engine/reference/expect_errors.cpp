@@ -1,4 +1,4 @@
-// resample: the error to expect of a tile whose pixels are moved.
+// resample: the error to expect of a tile whose pixels are warped.
 #include "engine/reference/eye_change.h"
 #include "engine/reference/splat.h"
 
@@ -16,14 +16,14 @@ glm::dvec3 colourAt(const Picture& picture, const glm::ivec2& pixel) {
     return glm::dvec3(picture.rgba[static_cast<std::size_t>(at.y * (last.x + 1) + at.x)]);
 }
 
-// How much the picture changes from `source` to `distance_px` beside it, squared: as much as what a hole hides may differ from what it
-// repeats.
+// How much the picture changes from `source` to `distance_px` beside it, squared: the hidden content is assumed to differ as much from the
+// repeated one.
 double holeError(const Picture& dominant, const glm::ivec2& source, int distance_px, double weight) {
     const glm::dvec3 change = weight * (colourAt(dominant, source + glm::ivec2(distance_px, 0)) - colourAt(dominant, source));
     return glm::dot(change, change) + kLeastHoleError;
 }
 
-// Variance of the inverse depth of the pixel in column x of `row`: half the spread of what it blends, and the greatest step from it to
+// Variance of the inverse depth of the pixel in column x of `row`: half the spread of what it blends, and the greatest step to
 // what arrived beside it.
 double uncertainty(std::span<const Arrival> row, int x, const Resolved& pixel) {
     double step = 0.0;
@@ -48,8 +48,8 @@ double uncertainDepthError(const Picture& dominant, const EyeChange& target_from
     return variance_px2 * glm::dot(change, change) / 3.0;
 }
 
-// What alternates from pixel to pixel along `step` with an amplitude d has third differences of 8 d, and is lost by d halfway between two
-// pixels, not at all on one: squared, a mean over the channels. `at`: the pixel before the place, `t`: how far it lies beyond.
+// What alternates in sign from pixel to pixel along `step` with an amplitude d has third differences of 8 d. All of it is lost halfway
+// between two pixels, nothing on one: squared, a mean over the channels. `at`: the pixel before the place, `t`: how far it lies beyond.
 double lostBetween(const Picture& dominant, const glm::ivec2& at, const glm::ivec2& step, double t) {
     const glm::dvec3 before = colourAt(dominant, at - step), first = colourAt(dominant, at);
     const glm::dvec3 second = colourAt(dominant, at + step), after = colourAt(dominant, at + 2 * step);

@@ -30,11 +30,11 @@ public:
                 inverse_depth / point.z,
                 point.z > 0.0};
     }
-    // How a place moves in the target for a unit of the source's inverse depth, where both depths are about the same.
+    // How far a place moves in the target per unit of the source's inverse depth, where both depths are about the same.
     [[nodiscard]] glm::dvec2 disparity(const glm::dvec2& place_px) const {
         return {target_.fx * move_.x + (target_.cx - place_px.x) * move_.z, target_.fy * move_.y + (target_.cy - place_px.y) * move_.z};
     }
-    // Whether every point keeps its row and its depth, up to what poses are rounded by: far from the origin that is more.
+    // True if every point keeps its row and its depth, up to the rounding of poses, which is greater far from the origin.
     [[nodiscard]] bool keepsRows() const {
         const double rounding = 1e-12 * away_ + 1e-9 * std::abs(move_.x);
         return glm::length(turn_[0] - glm::dvec3(1, 0, 0)) + glm::length(turn_[1] - glm::dvec3(0, 1, 0)) < 1e-9 &&

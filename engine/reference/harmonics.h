@@ -10,7 +10,7 @@
 
 namespace binosplat::reference {
 
-// The device holds coefficients and colours as half floats, which end here: what lies beyond counts as this.
+// The device holds coefficients and colours as half floats, which end here: anything beyond counts as this.
 inline constexpr double kMaxHalf = 65504.0;
 
 // Sum of the bands up to `degree` in the unit direction d; `sh` holds three channels per coefficient. Not finite if one of them is not.

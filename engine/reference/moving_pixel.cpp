@@ -1,4 +1,4 @@
-// rasterize: what the source's picture says of a pixel that is going to be moved: how deep it is, and how sure that is.
+// rasterize: what the source's picture tells about a pixel that is going to be warped: its depth, and how certain that is.
 #include "engine/reference/stereo.h"
 
 #include <algorithm>

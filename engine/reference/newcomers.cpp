@@ -10,8 +10,8 @@ namespace binosplat::reference {
 namespace {
 
 constexpr double kTilePixels = kTileSize * kTileSize;
-constexpr double kMostTileError = 2048.0 - 0x1p-20;  // whatever has so much is rendered anyway: more than a fixed-point sum holds
-constexpr double kInFrontRatio = 1.01;               // a wall that goes on beyond the border does not stand in front of itself
+constexpr double kMostTileError = 2048.0 - 0x1p-20;  // a tile with this much is rendered anyway: more than a fixed-point sum holds
+constexpr double kInFrontRatio = 1.01;               // a wall that continues beyond the border does not stand in front of itself
 
 // The integral of exp(-rho) over the image, i.e. of alpha^2 / o^2: the disc's, pi sigma_u sigma_v, and the low-pass's.
 double squareCoverage(const ProjectedSplat& splat) {
@@ -34,7 +34,7 @@ std::size_t addNewcomers(std::vector<double>& errors, std::span<const ProjectedS
                          std::span<const TilePair> source_pairs, const Picture& dominant, std::span<const TileKind> kinds,
                          const StereoSettings& settings) {
     const glm::uvec2 size_px = dominant.size_px;
-    // Whether the centre, held to the image, is nearer than the middle of its tile; where nothing is moved, it is.
+    // True if the centre, clamped to the image, is nearer than the middle of its tile; always if the tile is not warped.
     const auto standsInFront = [&](const ProjectedSplat& splat) {
         const glm::uvec2 at(glm::clamp(splat.reference_px, glm::dvec2(0.0), glm::dvec2(size_px) - 1.0));
         const std::size_t tile = at.y / kTileSize * ((size_px.x + kTileSize - 1) / kTileSize) + at.x / kTileSize;

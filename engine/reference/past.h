@@ -1,4 +1,4 @@
-// The float64 twins of reuse over time: an eye's picture from its own last one, what that is expected to have lost, and the tiles that are
+// The float64 twins of reuse over time: an eye's picture from its own last one, the error to expect of it, and the tiles that are
 // rendered again for it. Places are pixels of a picture, (0.5, 0.5) the centre of the first; pixels, blocks and tiles are listed by rows.
 // Squared errors are sums over three channels, amplitudes of errors the root of a mean over pixels and channels.
 #pragma once
@@ -13,11 +13,11 @@
 
 namespace binosplat::reference {
 
-// What is known of a tile of a picture that later ones are made from.
+// What later pictures must know of a tile of the one they are made from.
 struct PastTile {
     std::uint64_t cost = 0;             // in pairs, when it was last rendered
     std::uint32_t age = 0;              // frames since then
-    double growth = 0.0;                // of its error's amplitude in a frame, as it had turned out then; 0: nothing is known
+    double growth = 0.0;                // of its error's amplitude per frame, as measured then; 0: nothing is known
     std::array<double, 4> errors = {};  // by quarters, row by row: amplitudes of the expected error
     std::array<double, 4> grown = {};   // squared errors that this frame's warp is expected to add to a quarter, summed over its pixels
 };
@@ -40,43 +40,43 @@ Past pastOf(const Eye& eye, const StereoPictures& moved);
 // frequency comes out stronger than it went in, at any t, so that a picture may be resampled again and again.
 std::array<double, 6> lagrangeWeights(double t);
 
-// warp_past and warp_pixels: the past as `eye` sees it; of its tiles what they will have lost.
+// warp_past and warp_pixels: the past as `eye` sees it, and the expected errors of its tiles.
 //
 // A block of 4x8 pixels comes from a block of the past whole, if its pixels lie there as in a picture that is shifted and a little turned:
 // then each has the depth of the pixel as far from that block's corner, and is sampled with six taps each way. The pixels of other blocks
 // are looked for one by one, backwards, by a fixed point from the nearest and from the farthest depth around (Bowles et al. 2012,
 // Iterative Image Warping), and sampled with four. Such a search always finds something, so a place counts only if the past's pixel there,
-// moved forwards, meets the pixel that it is wanted for; of two that count the nearer is it. Where the eyes stand so far apart that what is
-// near may come from beyond a block's neighbours, as where the past is the other eye's picture, the nearest that comes along that way is
+// moved forwards, meets the pixel that it is wanted for; of two that count, the nearer is taken. If the eyes stand so far apart that near
+// content may come from beyond a block's neighbours, as when the past is the other eye's picture, the nearest that comes along that way is
 // looked for first.
 struct WarpedPast {
     Past picture;
     std::vector<std::uint8_t> one_by_one;  // by blocks: 1 if its pixels are made so
     std::vector<std::uint8_t> unseen;      // by pixels: 1 if the past did not see it
 };
-// `hidden`: a byte a tile of the picture that is made, 1 where no lens shows it; empty: all are seen. `near`: nothing is seen before this.
+// `hidden`: a byte a tile of the picture being made, 1 where no lens shows it; empty: all are seen. `near`: nothing is seen before this.
 WarpedPast warpPast(const Past& past, const Eye& eye, std::span<const std::uint8_t> hidden = {},
                     const glm::dvec3& background = glm::dvec3(0.0), double near = 0.2);
 
-// mark_changed: where something changed in the scene since the past was made, the quarters of tiles that have a pixel of the rectangle,
-// half open, are off by that amplitude more, up to what is expected at most.
+// mark_changed: where something changed in the scene since the past was made, the quarters of tiles that the rectangle (half open) meets
+// are off by that much more amplitude, up to a limit.
 struct ChangedRect {
     glm::uvec2 begin_px, end_px;
     double error;
 };
 void markChanged(std::span<PastTile> tiles, glm::uvec2 size_px, std::span<const ChangedRect> rects);
 
-// price: adds what this frame's warp is expected to lose to the errors of tiles. Blur of what is blurred already is blurred more, so that
-// it adds up as an amplitude. Half of it is the growth that was measured, where there is one and most of the quarter was seen.
+// price: adds the error expected of this frame's warp to the errors of tiles. What is blurred already is blurred more, so that
+// it adds up as an amplitude. Half of it is the growth that was measured, if there is one and most of the quarter was seen.
 void growErrors(std::span<PastTile> tiles);
-// Likewise price: what rendering a tile is worth: the squared error of all its pixels, times the frames since it was rendered. With an
+// Also price: the worth of rendering a tile: the squared error of all its pixels, times the frames since it was rendered. For an
 // error that grows by the frame that is the area under its growth, which rendering it saves (Whittle's index).
 double worthOf(const PastTile& tile);
-// Likewise price: what it costs, beside its pairs a workgroup and the writing of its pixels.
+// Also price: the cost of a tile: besides its pairs, a workgroup and the writing of its pixels.
 std::uint64_t costOf(const PastTile& tile);
 
-// select, where the tiles of several pictures have one budget, in their order: from the greatest price down, the first of equals first. The
-// tile that the budget ends in is rendered as well, so that one dearer than all of it has its turn.
+// select, if the tiles of several pictures have one budget, in their order: from the greatest price down, the first of equals first. The
+// tile in which the budget ends is rendered as well, so that one dearer than all of it gets its turn.
 struct PricedTiles {
     std::vector<TileKind>& kinds;
     std::span<const std::optional<std::uint32_t>> prices;
@@ -84,8 +84,8 @@ struct PricedTiles {
 };
 void selectTogether(std::span<const PricedTiles> pictures, std::uint64_t budget_cost);
 
-// rasterize and tile_ranges: puts the tiles of `full` that are rendered over what was warped. What they turn out to have been off by, for
-// each frame since they were last rendered, is measured; of a tile without pairs, and of one that is new, it is not. `costs`: pairs of each
+// rasterize and tile_ranges: puts the tiles of `full` that are rendered over the warped ones. Their error turns out, and is measured for
+// each frame since they were last rendered; not for a tile without pairs, nor for one that is new. `costs`: pairs of each
 // tile.
 void renderTiles(Past& warped, const Picture& full, std::span<const std::uint64_t> costs, std::span<const TileKind> kinds);
 

@@ -1,4 +1,4 @@
-// price and rasterize, where there is a past: what is expected of its tiles, and what they turn out to have been.
+// price and rasterize, with a past: the errors expected of its tiles, and what they turn out to have been.
 #include "engine/reference/past_view.h"
 
 namespace binosplat::reference {

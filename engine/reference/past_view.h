@@ -1,4 +1,4 @@
-// A past as warp_past and warp_pixels look at it.
+// A past as warp_past and warp_pixels see it.
 #pragma once
 
 #include "engine/reference/eye_change.h"
@@ -14,8 +14,8 @@ inline constexpr int kCell = kTileSize / 2;
 inline constexpr glm::ivec2 kPastBlock{4, 8};
 inline constexpr double kMostSpreadPx = 4.0, kOwnSpread = 0.5;
 inline constexpr double kMostPixelError = 4.0;  // squared, of three channels
-inline constexpr double kLeastGrowth = 1.9e-7;  // likewise, of a pixel that is made from another
-inline constexpr double kAgreesPx = 0.51;       // so near to where it is wanted a pixel of the past is what is seen there
+inline constexpr double kLeastGrowth = 1.9e-7;  // squared, of three channels, of a pixel that is made from another
+inline constexpr double kAgreesPx = 0.51;       // a pixel of the past this close to where it is wanted is what is seen there
 
 inline double squareOf(double amplitude) { return std::min(amplitude * amplitude, kMostPixelError); }
 
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] bool isInside(const glm::dvec2& place_px) const {
         return glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) && glm::all(glm::lessThan(place_px, glm::dvec2(last) + 1.0));
     }
-    // Where a pixel lies in the past. What is off a pixel by rounding alone is on it: a head that stands still sees what it saw.
+    // Where a pixel lies in the past. A place off a pixel by rounding alone is that pixel: a head that stands still sees what it saw.
     [[nodiscard]] EyeChange::Moved place(const glm::dvec2& pixel_px, double inverse_depth) const {
         EyeChange::Moved moved = past_from_now.move(pixel_px, inverse_depth);
         for (int axis = 0; axis < 2; ++axis) {
@@ -89,7 +89,7 @@ struct PixelFromPast {
     glm::dvec4 colour;
     MovingPixel pixel;
     bool seen;
-    double error;  // squared, that is expected
+    double error;  // squared, as expected
 };
 PixelFromPast makePixel(const PastView& view, const glm::dvec2& wanted_px, double near, double far);
 

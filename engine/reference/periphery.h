@@ -1,4 +1,4 @@
-// The float64 twins of periphery and fill_periphery: an eye's picture where it does not look, from one of half the size. Tiles and pixels
+// The float64 twins of periphery and fill_periphery: an eye's picture away from its gaze, from one of half the size. Tiles and pixels
 // are listed by rows; `hidden` has a byte a tile, 1 where nobody sees it; empty: all are seen.
 #pragma once
 
@@ -11,32 +11,32 @@ namespace binosplat::reference {
 // The same view with pixels of twice the width and height, as many as cover the picture; splats have the low-pass of the smaller ones.
 Eye halfOf(const Eye& eye);
 
-// periphery: of an error that is spread over all that each tile may show, the share that the eye sees: as findSeenShares, but by the solid
-// angle that a pixel has at the tile's middle. Where it is no more than a quarter, the finest cycle that the eye resolves has four pixels,
+// periphery: of an error that is spread over everything each tile may show, the share that the eye sees: as findSeenShares, but by the
+// solid angle of a pixel at the tile's middle. Where it is at most a quarter, the finest cycle that the eye resolves has four pixels,
 // or two samples of half the size: then the tile lies beyond.
 std::vector<double> findSharesThere(const Eye& eye, const Gaze& gaze);
 std::vector<std::uint8_t> findBeyond(const Eye& eye, const Gaze& gaze);
-// Likewise periphery, first: the tiles of the half-size picture that hold a sample which some tile beyond is made from, if that is seen.
+// Also periphery, first run: the tiles of the half-size picture that hold a sample from which a tile beyond is made, if that is seen.
 std::vector<std::uint8_t> findHalfTiles(const Eye& eye, const Gaze& gaze, std::span<const std::uint8_t> hidden = {});
-// Likewise periphery, second: each tile's loss, as a squared error summed over its pixels and their channels: 0.3 of its samples' second
-// differences along both axes, squared and summed (at most 4 a sample). What the eye is expected to see of it: that times the seen share.
+// Also periphery, second run: each tile's loss, as a squared error summed over its pixels and their channels: 0.3 of its samples' second
+// differences along both axes, squared and summed (at most 4 a sample). The loss that the eye is expected to see: that times its share.
 std::vector<double> expectLosses(std::span<const glm::dvec4> half, const Eye& eye);
 std::vector<double> expectSeenLosses(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze);
-// And so the tiles that are rendered at their own size: those not beyond, and those in which a hundredth would be seen in each pixel.
+// And hence the tiles that are rendered at their own size: those not beyond, and those in which a hundredth would be seen in each pixel.
 std::vector<std::uint8_t> findOwnTiles(std::span<const glm::dvec4> half, const Eye& eye, const Gaze& gaze,
                                        std::span<const std::uint8_t> hidden = {});
 
 // fill_periphery: all tiles but `own_tiles`, colours by Catmull and Rom's cubic (1974), not below 0, and alpha not above 1; D as alpha
-// times the depth D/A of the half-size picture between four samples, linearly of both. Hidden ones become background.
+// times the depth D/A of the half-size picture between four samples, both linearly. Hidden tiles become background.
 void fillPeriphery(Picture& picture, const Picture& half, std::span<const std::uint8_t> own_tiles,
                    std::span<const std::uint8_t> hidden = {}, const glm::dvec3& background = glm::dvec3(0.0));
 
-// Likewise fill_periphery, of a picture that later ones are made from: a pixel is as far away as its sample. Rendering a tile takes 0.6 of
-// what the half-size picture's tile takes where it lies; it lacks what that lacks there, and its own loss. `losses`: of expectLosses.
+// Also fill_periphery, for a picture that later ones are made from: a pixel has its sample's depth. Rendering a tile costs 0.6 of what
+// the half-size tile it lies in costs; its error is that tile's error there plus its own loss. `losses`: from expectLosses.
 void fillPast(Past& picture, const Past& half, std::span<const double> losses, std::span<const std::uint8_t> own_tiles,
               std::span<const std::uint8_t> hidden = {});
 
-// Both pictures and what becomes of them.
+// Both pictures, and the tiles chosen of each.
 struct PeripheryPictures {
     Picture picture, half;
     std::vector<std::uint8_t> own_tiles;

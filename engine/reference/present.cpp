@@ -15,7 +15,7 @@ std::uint32_t byteOf(double value, bool linear) {
     return static_cast<std::uint32_t>(std::floor((linear ? lightOf(shown) : shown) * 255.0 + 0.5));
 }
 
-// Of a value that was blended, encoded, with this share: the light of the colour itself, multiplied by the share.
+// For a blended, encoded value with this share: the light of the colour itself, multiplied by the share.
 std::uint32_t seenThrough(double value, double share, bool linear) {
     if (!(value > 0.0) || share == 0.0) { return 0; }
     const double light = share * lightOf(std::min(value / share, 1.0));

@@ -1,4 +1,4 @@
-// The float64 twin of present: an eye's picture as the headset takes it.
+// The float64 twin of present: an eye's picture in the format that the headset takes.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,7 @@ struct Presentation {
     bool blue_first = false;  // BGRA in place of RGBA
     bool linear = false;      // bytes that count as light, of a display-encoded value (IEC 61966-2-1)
     double near = 0.2;
-    bool see_through = false;  // alpha goes along, and the bytes' light is multiplied by it
+    bool see_through = false;  // alpha is output, too, and the bytes' light is multiplied by it
 };
 
 // A word a pixel, the first channel lowest: nearest of 0 to 255, NaN as 0; opaque, or with the pixel's own alpha.

@@ -1,4 +1,4 @@
-// price: what a tile's error is worth, for what the tile costs.
+// price: the worth of mending a tile's error, relative to the tile's cost.
 #include "engine/reference/splat.h"
 #include "engine/reference/stereo.h"
 

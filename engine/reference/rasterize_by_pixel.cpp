@@ -1,4 +1,4 @@
-// 7 with each pixel's hits in their own order: what any order of whole splats is only near to.
+// rasterize with each pixel's hits in their own order, which any order of whole splats only approximates.
 #include "engine/parallel.h"
 #include "engine/reference/blend.h"
 #include "engine/reference/reach.h"
@@ -12,7 +12,7 @@ struct GreatestResponse {
     glm::dmat3 deviations_from_camera;
     glm::dvec3 centre;
 
-    // NaN of a Gaussian without a volume.
+    // NaN for a Gaussian without a volume.
     [[nodiscard]] double depthAlong(const glm::dvec3& ray) const {
         const glm::dvec3 r = deviations_from_camera * ray;
         return glm::dot(r, centre) / glm::dot(r, r);
@@ -25,7 +25,7 @@ struct OwnHit {
     Hit hit;
 };
 
-// Hits of one pixel that wait to be blended, the next one last; of equals the one that came first goes first.
+// Hits of one pixel that wait to be blended, the next one last; among equals the one that came first goes first.
 struct Waiting {
     std::vector<OwnHit> hits;
 

@@ -167,7 +167,7 @@ std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& s
 
 std::array<Span, 2> runsOfReach(const RayPlane& plane, int y, int x0, int x1) {
     const Span none{x0, x0};
-    // So few pixels are tried faster than bounded.
+    // So few pixels are tested faster than bounded.
     if (x1 - x0 <= 4) { return {Span{x0, x1}, none}; }
     Span disc = plane.disc ? chordOfDisc(plane, y, x0, x1) : none;
     if (!plane.low_pass) { return {disc, none}; }

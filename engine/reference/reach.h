@@ -8,7 +8,7 @@ namespace binosplat::reference {
 // ProjectedSplat::box_px for a splat whose other fields are set.
 glm::ivec4 boxOfReach(const ProjectedSplat& splat, const Settings& settings, glm::uvec2 size_px);
 
-// ProjectedSplat::square_box_tiles likewise.
+// ProjectedSplat::square_box_tiles for such a splat.
 std::uint64_t countSquareBoxTiles(const ProjectedSplat& splat, const Settings& settings, glm::uvec2 size_px);
 
 // Pixels [begin, end) of a row; empty if begin >= end.

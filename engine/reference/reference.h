@@ -17,7 +17,7 @@ namespace binosplat::reference {
 struct Settings {
     double near = 0.2;           // positive; hits closer than this are skipped, scene units along the camera's z
     glm::dvec3 background{0.0};  // display-encoded
-    bool is_light = false;       // colours are light, to be encoded once they are blended: as the scene says, where one is given
+    bool is_light = false;       // colours are light, to be encoded after blending: taken from the scene, if one is given
     // Front to back is by the distance of centres from here (the middle between the eyes); nothing: by their camera z.
     std::optional<glm::dvec3> order_from = {};
     bool inverse_depth_moments = false;  // also I = sum w/z and J = sum w/z^2
@@ -33,8 +33,8 @@ enum Pass : int { kCull, kCompact, kSortDepth, kProject, kBin, kSortTiles, kRast
 // where the (u, v) frame has been turned within the disc so that v/z does not depend on dx and A >= 0 (rho3 = u^2 + v^2 is
 // unchanged by that). If the centre lies beyond the near plane (`low_pass`), reference_px is the projected centre and
 // plane_offset is zero; otherwise reference_px is the middle of the image (size_px / 2) and there is no low-pass.
-// Of a 3D Gaussian (`gaussian`) u and v themselves stand there for u/z and v/z, 1/z is where it is greatest along the ray, to first order
-// and within kDepthReach of the centre's, and there is no low-pass except the one in its plane_from_pixel. A splat that can show nowhere
+// For a 3D Gaussian (`gaussian`) these are u and v themselves in place of u/z and v/z, 1/z is where it is greatest along the ray, to
+// first order and within kDepthReach of the centre's, and there is no low-pass but that in plane_from_pixel. A splat that can show nowhere
 // (opacity at or below 1/255, an attribute or the colour not finite) is all zeros.
 struct ProjectedSplat {
     glm::dvec2 reference_px;
@@ -48,15 +48,15 @@ struct ProjectedSplat {
     bool disc;            // false: the plane holds the eye, so no ray meets it; only the low-pass is left
     double depth;         // c.z, camera z of the centre
     double cut;           // rho at which alpha falls to 1/255: 2 ln(255 o)
-    double opacity;       // dimmed, where the scene says so
+    double opacity;       // dimmed, if the scene says so
     glm::dvec2 reach_px;  // of a 3D Gaussian: half its box on the screen
     glm::dvec3 colour;    // max(0, 0.5 + SH(d))
-    // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W likewise; the twin's own
+    // Rows of the splat's pixel matrix, U = fx (a.x, b.x, c.x) + cx (a.z, b.z, c.z), V and W accordingly; the twin's own
     // rasterizer uses these and not the reduced form above.
     glm::dvec3 row_u, row_v, row_w;
     // Pixels whose centres the splat can reach, [x0, x1) x [y0, y1), clipped to the image; empty if it reaches none.
     glm::ivec4 box_px;  // x0, y0, x1, y1
-    // The same in tiles for the customary square box of 3 sigma (ceil of three standard deviations of the larger screen
+    // The same in tiles for the usual square box of 3 sigma (ceil of three standard deviations of the larger screen
     // extent about the projected box's centre, as the public 2DGS rasterizer bins), for the report alone. 0 where c.z <= near.
     std::uint64_t square_box_tiles;
 };
@@ -80,24 +80,24 @@ struct TileRange {
     std::uint32_t begin, end;
 };
 
-// A page: splats that come and go together. Those of them that can be seen at all, as far as each reaches until its alpha falls to 1/255,
-// lie between two corners, in the world's axes.
+// A page: splats that come and go together. The two corners, along the world's axes, enclose all of its splats that can be seen, as far as
+// each reaches until its alpha falls to 1/255.
 struct Page {
     glm::dvec3 low, high;
-    double reach = 0.0;       // of any one splat from its centre, where it is longest
-    std::uint32_t count = 0;  // of them; 0: there is nothing else
+    double reach = 0.0;       // how far any one splat extends from its centre, at most
+    std::uint32_t count = 0;  // of these splats; 0: the other fields mean nothing
 };
 Page boundPage(const Scene& scene, std::size_t first, std::size_t count);
 
 // cull_pages: which pages may hold splats that cull keeps for any of the eyes (1 or 0 per page): those whose box reaches the inner side of
-// each plane of the view, and the planes are as much farther out as `slack` times how far away it lies.
+// each plane of the view. The planes are moved outwards by `slack` times the box's distance.
 std::vector<std::uint8_t> cullPages(std::span<const Page> pages, bool gaussians, std::span<const Eye> eyes, const Settings& settings,
                                     double slack = 0.0);
 
 // cull: which splats may touch a pixel of any of the eyes (1 or 0 per splat). Never 0 for one that does.
 std::vector<std::uint8_t> cull(const Scene& scene, std::span<const Eye> eyes, const Settings& settings);
 
-// compact: indices of the visible splats, ascending, and what each goes by: the camera z of its centre in `order_eye`, or the square of its
+// compact: indices of the visible splats, ascending, and their sort keys: the camera z of its centre in `order_eye`, or the square of its
 // distance from Settings::order_from.
 struct Visible {
     std::vector<std::uint32_t> splats;
@@ -116,7 +116,7 @@ std::vector<ProjectedSplat> project(const Scene& scene, std::span<const std::uin
 // low-pass is what remains (rho = rho2), if there is one.
 std::vector<TilePair> bin(std::span<const ProjectedSplat> splats, glm::uvec2 size_px, const Settings& settings);
 
-// Likewise bin: takes out the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
+// Also bin: removes the pairs in tiles that nobody sees. `hidden` has a byte a tile, 1 for these; empty: all are seen.
 void hidePairs(std::vector<TilePair>& pairs, std::span<const std::uint8_t> hidden);
 
 // sort_tiles: pairs by tile, depth order kept within; and where each tile's pairs lie.
@@ -132,7 +132,7 @@ Picture render(const Scene& scene, const Eye& eye, const Settings& settings);
 
 // rasterize without an order of splats: each pixel blends its own hits front to back, by where its ray meets each splat: a disc at the hit
 // or, if the low-pass wins, at the centre's depth; a 3D Gaussian where it is densest along the ray. D is summed as in rasterize(). `pairs`
-// and `splats` are of `order`. With a `window`, hits come in that order, so many of them wait, and the nearest of these is blended next
+// and `splats` follow `order`. With a `window`, hits come in that order, this many of them wait, and the nearest of these is blended next
 // (Radl et al. 2024, StopThePop, in its simplest form). A window of 1 is rasterize().
 Picture rasterizeByPixel(const Scene& scene, std::span<const std::uint32_t> order, std::span<const ProjectedSplat> splats,
                          std::span<const TilePair> pairs, std::span<const TileRange> ranges, const Eye& eye, const Settings& settings,

@@ -8,7 +8,7 @@
 namespace binosplat::reference {
 namespace {
 
-// What arrives at each pixel of the target.
+// The arrivals at each pixel of the target.
 struct Arrivals {
     glm::ivec2 size_px;
     std::vector<Arrival> pixels;
@@ -21,7 +21,7 @@ struct Arrivals {
     }
 };
 
-// A pixel of the source where the target sees it.
+// A pixel of the source as the target sees it.
 struct Moved : EyeChange::Moved {
     std::uint32_t spread;
 };
@@ -38,7 +38,7 @@ void putBetween(Arrivals& arrivals, const Moved& here, const Moved& right, int r
     }
 }
 
-// The pixels whose centres lie in the parallelogram of three neighbours that did not part far and kept their sense.
+// The pixels whose centres lie in the parallelogram of three neighbours that did not part far and kept their orientation.
 void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const Moved& below, int gap_px) {
     const glm::dmat2 sides(right.place_px - here.place_px, below.place_px - here.place_px);
     const glm::dvec2 low = glm::min(glm::dvec2(0.0), sides[0]) + glm::min(glm::dvec2(0.0), sides[1]);
@@ -63,7 +63,7 @@ void putWithin(Arrivals& arrivals, const Moved& here, const Moved& right, const 
 // Around a pixel that is sampled: the cubic kernel reads two pixels to each side, and its place is up to one off.
 constexpr int kHiddenMarginPx = 3;
 
-// Whether all that lies about a pixel of the source was rendered.
+// True if everything around a pixel of the source was rendered.
 bool isWellInside(const std::vector<std::uint8_t>& hidden, const glm::ivec2& pixel, const glm::ivec2& size) {
     if (hidden.empty()) { return true; }
     const int columns = (size.x + kTileSize - 1) / kTileSize;
@@ -94,7 +94,7 @@ std::vector<Arrival> reproject(const Picture& dominant, const EyePair& eyes, con
         for (int x = 0; x < size.x; ++x) {
             const auto here = moved(x, y);
             if (!here) { continue; }
-            if (settings.forward) {  // pixels alone move, and each is remembered
+            if (settings.forward) {  // only pixels move, and each is remembered
                 const auto source = static_cast<std::size_t>(y * size.x + x);
                 const std::uint32_t parity = (x % 2 == 1 ? 1u : 0u) + (y % 2 == 1 ? 2u : 0u);
                 arrivals.put(pixelOf(here->place_px), {Arrival::kLanded, here->inverse_depth, parity, source});

@@ -28,7 +28,7 @@ inline glm::uvec2 tileGrid(glm::uvec2 size_px) {
     return {(size_px.x + kTileSize - 1) / kTileSize, (size_px.y + kTileSize - 1) / kTileSize};
 }
 
-// What an eye brings to every splat.
+// An eye's contribution to every splat.
 struct EyeFrame {
     explicit EyeFrame(const Eye& eye)
         : camera_from_world(glm::mat3_cast(glm::conjugate(eye.world_from_camera.orientation))),
@@ -41,7 +41,7 @@ struct EyeFrame {
     glm::dvec3 position_world;
     Intrinsics intrinsics;
     glm::dvec2 size_px;
-    double own_pixel_px;  // whose low-pass splats have
+    double own_pixel_px;  // the pixel whose low-pass splats have
 };
 
 // The disc u a + v b + c in camera space, u^2 + v^2 < cut; or a 3D Gaussian about c with the axes a, b and w.
@@ -99,7 +99,7 @@ inline std::optional<CameraSplat> toCamera(const Scene& scene, std::size_t splat
     return result;
 }
 
-// Pixel rows about an origin: (u, v, 1) . u / (u, v, 1) . w is the pixel x, less origin.x, of a point on the disc; v likewise.
+// Pixel rows about an origin: (u, v, 1) . u / (u, v, 1) . w is the pixel x, less origin.x, of a point on the disc; with v its y.
 struct PixelRows {
     glm::dvec3 u, v, w;
     glm::dvec2 origin_px;

@@ -18,8 +18,8 @@ struct BlockFromPast {
     std::uint32_t spread = 0;  // the greatest code
 };
 
-// The inverse depth of the nearest that comes to lie at a place from beyond its neighbours; 0: nothing that stands in front of `known`.
-// `moves_px`: how far it moves for a unit of inverse depth.
+// The inverse depth of the nearest content that comes to lie at a place from beyond its neighbours; 0: none in front of `known`.
+// `moves_px`: how far it moves per unit of inverse depth.
 double nearestOnTheWay(const PastView& view, const glm::dvec2& wanted_px, double moves_px, double known, double near) {
     const int steps = static_cast<int>(std::min(moves_px / near / kSearchStepPx, double{kMostSearched}));
     double nearest = 0.0;
@@ -66,7 +66,7 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
         }
     }
     const double differ = 0.5 * (block.nearest - block.farthest);
-    // What stands in front of its neighbours may have come before this block.
+    // Content in front of its neighbours may have moved in front of this block.
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             if (x == 0 && y == 0) { continue; }
@@ -77,7 +77,7 @@ BlockFromPast findBlock(const PastView& view, const glm::ivec2& first, double ne
     const glm::dvec2 disparity = glm::abs(view.past_from_now.disparity(middle_px));
     const double moves_px = std::max(disparity.x, disparity.y);
     block.nearest = std::max(block.nearest, nearestOnTheWay(view, middle_px, moves_px, block.nearest, near));
-    // What is found there belongs there: it comes to lie where it was looked for.
+    // What is found there must belong there: it comes to lie where it was looked for.
     double mean = 0.0;
     for (const auto& pixel : block.pixels) { mean += (pixel ? pixel->inverse_depth : 0.0) / double(kPastBlock.x * kPastBlock.y); }
     block.whole = block.whole && moves_px * std::abs(mean - guess) <= kAgreesPx;
@@ -107,8 +107,8 @@ glm::dvec4 sampleSmoothly(const PastView& view, const glm::dvec2& place_px) {
     return glm::max(sum, glm::dvec4(0.0));
 }
 
-// What a pixel of a block is expected to lose, squared: what alternates from pixel to pixel with an amplitude d has fifth differences of
-// 32 d, of which halfway between two pixels all is lost; and how the picture changes over what its place may be off by.
+// The squared error expected of a pixel of a block: what alternates in sign from pixel to pixel with an amplitude d has fifth differences
+// of 32 d, all of which is lost halfway between two pixels; and how the picture changes over what its place may be off by.
 double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& t, const glm::dvec2& off_px) {
     constexpr std::array<double, 6> kFifthDifference{-1, 5, -10, 10, -5, 1};
     const glm::ivec2 at = glm::clamp(wanted, glm::ivec2(0), view.last);
@@ -125,12 +125,12 @@ double lossAt(const PastView& view, const glm::ivec2& wanted, const glm::dvec2& 
                     glm::length(off_px.x * slope_across + off_px.y * slope_down));
 }
 
-// Where anything moves a block does not lose less than this, so that every tile has its turn.
+// If anything moves, a block does not lose less than this, so that every tile gets its turn.
 double leastLossOf(const BlockFromPast& block) {
     return kPastBlock.x * kPastBlock.y * (block.mean_move_px != glm::dvec2(0.0) ? kLeastGrowth : 0.0);
 }
 
-// Of a block that comes whole: of all its pixels, from two of them. What lies between these may be worse.
+// For a block that comes whole: of all its pixels, estimated from two of them. Those between may be worse.
 double lossOf(const PastView& view, const BlockFromPast& block, const glm::ivec2& first) {
     const double spread = kOwnSpread * spreadOf(block.spread) * block.nearest + 0.5 * (block.nearest - block.farthest);
     const glm::dvec2 off_px = view.uncertainMove(glm::dvec2(first), spread), t = block.mean_move_px - glm::floor(block.mean_move_px);
@@ -158,7 +158,7 @@ public:
     }
 
 private:
-    // What rendering a tile takes and how fast it goes wrong are those of where its middle comes from.
+    // The tile's cost and how fast its error grows are those of where its middle comes from.
     [[nodiscard]] PastTile tileBefore(std::size_t tile) const {
         const glm::dvec2 middle_px = glm::min(glm::dvec2(tile % tiles_.x, tile / tiles_.x) * double{kTileSize} + 0.5 * kTileSize,
                                               glm::dvec2(warped_.picture.eye.size_px));
@@ -179,7 +179,7 @@ private:
         const BlockFromPast block = findBlock(view_, first, near_);
         PastTile& tile = warped_.picture.tiles[std::size_t(first.y / kTileSize) * tiles_.x + std::size_t(first.x / kTileSize)];
         const std::size_t quarter = quarterOf(first);
-        // What was wrong comes along as the worst of where its blocks come from.
+        // The past's error carries over as the worst of where the quarter's blocks come from.
         if (view_.isInside(block.source_px)) {
             const double carried = tileOf(past_, block.source_px).errors[quarterOf(glm::ivec2(block.source_px))];
             tile.errors[quarter] = std::max(tile.errors[quarter], carried);

@@ -1,4 +1,4 @@
-// warp_pixels: pixels of an eye's picture that are looked for in the past one by one.
+// warp_pixels: pixels of an eye's picture that are searched for in the past one by one.
 #include "engine/reference/past_view.h"
 
 namespace binosplat::reference {
@@ -39,7 +39,7 @@ struct Sample {
     double lost;                        // squared
 };
 
-// What alternates from pixel to pixel with an amplitude d has third differences of 8 d, and halfway between two pixels all of it is lost.
+// What alternates in sign from pixel to pixel with an amplitude d has third differences of 8 d, and all of it is lost halfway between two.
 Sample sampleAround(const PastView& view, const glm::dvec2& place_px) {
     const glm::dvec2 at = glm::clamp(place_px, glm::dvec2(0.5), glm::dvec2(view.last) + 0.5) - 0.5;
     const glm::ivec2 base(glm::floor(at)), nearest(glm::floor(at + 0.5));

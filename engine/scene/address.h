@@ -1,4 +1,4 @@
-// What is an address on the web and not the name of a file.
+// Distinguishes an address on the web from the name of a file.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace binosplat {
 
-// http:// or https:// and more, in letters of either case. Whether the rest is an address is found out when it is asked for.
+// http:// or https:// and more, in letters of either case. Whether the rest is an address turns out when it is requested.
 inline bool isAddress(std::string_view source) {
     const auto beginsWith = [&](std::string_view scheme) {
         return source.size() >= scheme.size() && std::ranges::equal(source.substr(0, scheme.size()), scheme, [](char a, char b) {

@@ -37,9 +37,8 @@
 //                       z = 2, x from -1.5 to -0.05, y from -1.5 to 1.5 (30 x 61), grey 0.75; and behind it z = 4, x and y from -3 to 3
 //                       (121 x 121), grey 0.25 where (floor(2x) + floor(2y)) is even and 0.4 elsewhere.
 // builtin:fence         9 bars before a wall. Bar i from 0 to 8: x = -0.8 + 0.2 i, z = 1, 81 discs at y = -1 + 0.025 j, j from 0 to 80,
-// scales
-//                       (0.006, 0.02), opacity 0.95, colour (0.5, 0.3, 0.15). Wall: z = 3, x and y from -3 to 3, discs 0.05 apart (121 x
-//                       121), scales (0.04, 0.04), opacity 0.95, colour (0.3 + 0.1 sin(2 x), 0.5, 0.6 + 0.1 sin(3 y)).
+//                       scales (0.006, 0.02), opacity 0.95, colour (0.5, 0.3, 0.15). Wall: z = 3, x and y from -3 to 3, discs 0.05 apart
+//                       (121 x 121), scales (0.04, 0.04), opacity 0.95, colour (0.3 + 0.1 sin(2 x), 0.5, 0.6 + 0.1 sin(3 y)).
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -81,7 +80,7 @@ std::uint64_t builtinFrameCount(const std::string& source);
 // frames. The same on every run, whatever the number of threads. Throws Error for a name or a count it does not have, and for a frame other
 // than 0 of a scene that does not move.
 Scene makeBuiltin(const std::string& source, std::uint64_t splats = 0, const Progress& progress = {}, std::uint64_t frame = 0);
-// Whoever makes many frames of a scene that moves, and holds this, has what they share made once. Null of one that does not move.
+// For making many frames of a scene that moves: while this is held, what they share is made only once. Null for one that does not move.
 std::shared_ptr<const void> keepBuiltin(const std::string& source, std::uint64_t splats = 0);
 
 }  // namespace binosplat

@@ -72,14 +72,14 @@ using Progress = std::function<void(double)>;
 Scene loadScene(const std::string& source, std::uint64_t builtin_splats = 0, LoadNotes* notes = nullptr, const Progress& progress = {},
                 const LevelChoice& level = {});
 
-// What a file is a scene of, by its content: the name of a format, empty where it is none. Throws Error where it cannot be opened.
+// The format of the scene in a file, by its content; empty if it is none. Throws Error if it cannot be opened.
 std::string formatOfFile(const std::string& path);
 
-// The same of a file that is open, wherever its scene's other files are.
+// The same for an open file, wherever its scene's other files are.
 class InputFile;
 Scene loadScene(std::unique_ptr<InputFile> file, LoadNotes& notes, const Progress& progress = {}, const LevelChoice& level = {});
 
-// Leaves out the bands of colours above `sh_degree`, and says so in `notes` if there are any.
+// Removes the bands of colours above `sh_degree`, and says so in `notes` if there are any.
 void limitShDegree(Scene& scene, int sh_degree, LoadNotes& notes);
 
 // Keeps the splats whose centres lie within a sphere, in scene units.

@@ -37,7 +37,7 @@ private:
     ActiveBlock active_;
 };
 
-// Of a file that says that its splats are discs, though it has a third scale for each: the shortest one has no meaning.
+// For a file that says that its splats are discs, though it has a third scale for each: the shortest one has no meaning.
 void takeAsDiscs(Scene& scene, LoadNotes& notes);
 
 }  // namespace binosplat

@@ -1,4 +1,4 @@
-// The files of a scene that does not lie on a disk: whoever knows where it lies brings those that are asked for onto one.
+// The files of a scene that is not on a disk: whoever knows where they are brings those that are asked for onto one.
 #pragma once
 
 #include "engine/scene/input_file.h"
@@ -15,11 +15,11 @@ namespace binosplat {
 class SceneFiles {
 public:
     virtual ~SceneFiles() = default;
-    // Waits until the whole file is there. Throws Error if it cannot be had, and if it is longer than `most_bytes`.
+    // Waits until the whole file is there. Throws Error if it cannot be had, or is longer than `most_bytes`.
     [[nodiscard]] virtual std::unique_ptr<InputFile> open(const std::string& name, std::uint64_t most_bytes = kAnyLength) = 0;
-    // They will be opened soon, and are asked for at once, together.
+    // They will be opened soon; requests all of them at once.
     virtual void expect(const std::vector<std::string>& names, std::uint64_t most_bytes = kAnyLength) = 0;
-    // How messages call a file.
+    // The file's name in messages.
     [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
 
     static constexpr std::uint64_t kAnyLength = ~std::uint64_t{0};

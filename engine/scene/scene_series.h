@@ -10,29 +10,29 @@
 
 namespace binosplat {
 
-// True if `source` is such a scene. A folder that is judged to be something else before that is none: SOG, streamed or not, or a
+// True if `source` is such a scene; false for a folder that is recognized as something else first: SOG, streamed or not, or a
 // training's output.
 bool isMovingScene(const std::string& source);
 
 class SceneSeries {
 public:
-    // Throws Error unless `source` is one, where two groups of numbered files might be meant, and where the folder cannot be read.
+    // Throws Error unless `source` is one, if two groups of numbered files might be meant, and if the folder cannot be read.
     explicit SceneSeries(const std::string& source);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    // Frames. A number that is missing among others at equal distances is one more of them, which shows what the one before it shows.
+    // Frames. A number missing from an otherwise even sequence counts as a frame, too, which shows the same as the one before it.
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
     // Files, or different frames.
     [[nodiscard]] std::size_t sceneCount() const { return scenes_.size(); }
     // Which scene a frame shows.
     [[nodiscard]] std::size_t sceneOf(std::size_t frame) const { return frames_[frame]; }
     [[nodiscard]] const std::string& nameOf(std::size_t scene) const { return scenes_[scene]; }
-    // By how much the largest file is larger than the first, at least 1: what is known of counts before all are read.
+    // The size of the largest file over that of the first, at least 1: all that is known of counts before all are read.
     [[nodiscard]] double growth() const { return growth_; }
     // What a user should know, one sentence each.
     [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
 
-    // On any thread. Throws Error where the file is broken, or of another format than the first.
+    // On any thread. Throws Error if the file is broken, or of another format than the first.
     [[nodiscard]] Scene load(std::size_t scene, LoadNotes& notes, const Progress& progress = {}) const;
 
 private:

@@ -17,13 +17,13 @@ public:
     virtual ~SogFiles() = default;
     // The bytes of `name`, at most `max_bytes`. Throws Error if it is missing, larger, or not a plain file name: no path leads out.
     [[nodiscard]] virtual std::vector<std::byte> read(const std::string& name, std::uint64_t max_bytes) = 0;
-    // Of a file that could be read. Throws Error as `read` does.
+    // For a file that could be read. Throws Error as `read` does.
     [[nodiscard]] virtual std::uint64_t sizeBytes(const std::string& name) const = 0;
     // They will be read soon.
     virtual void expect(const std::vector<std::string>&, std::uint64_t) {}
-    // Gives back what is held open between reads: a scene may have thousands of chunks.
+    // Closes what is held open between reads: a scene may have thousands of chunks.
     virtual void close() {}
-    // How messages call a file: path and name.
+    // The file's name in messages: path and name.
     [[nodiscard]] virtual std::string place(const std::string& name) const = 0;
 };
 

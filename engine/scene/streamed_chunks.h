@@ -16,14 +16,14 @@ namespace binosplat {
 // For one thread at a time.
 class StreamedChunks {
 public:
-    // Of a folder that holds a lod-meta.json, and of an open lod-meta.json, whose SceneFiles outlive this. Throws Error if it is broken.
+    // For a folder that holds a lod-meta.json, or an open lod-meta.json, whose SceneFiles outlive this. Throws Error if it is broken.
     explicit StreamedChunks(const std::string& folder);
     explicit StreamedChunks(InputFile& file);
 
     [[nodiscard]] const LodMeta& meta() const { return meta_; }
-    // What messages call the lod-meta.json.
+    // The name of the lod-meta.json in messages.
     [[nodiscard]] const std::string& place() const { return place_; }
-    // Whether they are had through SceneFiles, which may have to fetch them.
+    // True if they come through SceneFiles, which may have to fetch them.
     [[nodiscard]] bool areElsewhere() const { return elsewhere_ != nullptr; }
     [[nodiscard]] bool hasEnvironment() const { return !meta_.environment.empty(); }
     // The environment's place behind the meta's files.
@@ -32,8 +32,8 @@ public:
 
     // They will be opened soon.
     void expect(std::span<const std::size_t> files) const;
-    // One of the meta's files, or the environment. It lies within the folder, whatever links lead to, and no other is the same one. Throws
-    // Error naming the file. Of one elsewhere it is not known yet whether its count is plausible: SogSplats::requirePlausibleCount waits
+    // One of the meta's files, or the environment. It lies within the folder, wherever links lead, and no other is the same one. Throws
+    // Error naming the file. For one elsewhere it is not known yet whether its count is plausible: SogSplats::requirePlausibleCount waits
     // for its pictures.
     [[nodiscard]] SogSplats open(std::size_t file);
     // Throws Error if that file, open, ends before the range does.
@@ -47,7 +47,7 @@ private:
     std::string place_;
     LodMeta meta_;
     SceneFiles* elsewhere_ = nullptr;                      // not in the folder
-    std::map<std::filesystem::path, std::size_t> opened_;  // where links lead
+    std::map<std::filesystem::path, std::size_t> opened_;  // by the paths that links lead to
 };
 
 }  // namespace binosplat

@@ -1,5 +1,5 @@
-// The stiff and extreme cases of docs/results/stability.md as data: a scene, eyes, and what the device's pictures must keep to beside
-// those of the float64 twin.
+// The stiff and extreme cases of docs/results/stability.md as data: a scene, eyes, and how close the device's pictures must come to those
+// of the float64 twin.
 #pragma once
 
 #include "engine/geometry.h"
@@ -13,16 +13,16 @@
 
 namespace binosplat::stability {
 
-// Over red, green, blue and alpha. A value is off if it differs by more than 2/255 of the peak. Of an eye made from the other, over
+// Over red, green, blue and alpha. A value is off if it differs by more than 2/255 of the peak. For an eye made from the other, over
 // the tiles that both the device and the twin render again, or neither does.
 struct Bound {
     double psnr_db;                                            // at least; the peak is 1, or the twin's brightest value if that is more
     double share_off;                                          // of the values, at most
     double largest = std::numeric_limits<double>::infinity();  // difference, at most; of the peak
-    double other_tiles = 0.0;                                  // share of the tiles that one of them alone renders again, at most
+    double other_tiles = 0.0;                                  // share of the tiles that only one of them renders again, at most
 };
 
-// What is rendered.
+// A scene and its eyes.
 struct Stage {
     Scene scene;
     Eye middle;
@@ -38,7 +38,7 @@ struct Case {
     Bound rendered;  // of an eye rendered in full
     Bound moved;     // of an eye made from the other
     std::string reason;
-    bool beyond = false;  // single precision cannot tell what is asked: the bounds say what is left
+    bool beyond = false;  // single precision cannot resolve the question: the bounds say what is left
     bool large = false;   // takes longer than all others together
 
     [[nodiscard]] std::string name() const;

@@ -7,7 +7,7 @@ namespace binosplat::stability {
 
 // Discs.
 Stage makeEdgeOn(double angle_rad);     // discs whose planes all but hold both eyes
-Stage makeHorizon(double angle_rad);    // likewise, and their planes project onto a row of pixel centres
+Stage makeHorizon(double angle_rad);    // the same, with planes that project onto a row of pixel centres
 Stage makeNeedles(double aspect);       // scales s sqrt(aspect) and s / sqrt(aspect)
 Stage makeScales(double scale);         // from specks to discs that hold the eye
 Stage makeThroughEye(double distance);  // large discs whose planes pass the eye at this distance
@@ -22,10 +22,10 @@ Stage makeHarmonics(double amplitude);     // SH of degree 3
 
 // 3D Gaussians.
 Stage makeNeedlesAlongSight(double aspect);  // scales s sqrt(aspect), s / sqrt(aspect) twice
-Stage makeNeedlesAcross(double aspect);      // likewise, along rows and columns of pixels
-Stage makeNeedlesDiagonal(double aspect);    // likewise, along the diagonals of the screen
+Stage makeNeedlesAcross(double aspect);      // the same, along rows and columns of pixels
+Stage makeNeedlesDiagonal(double aspect);    // the same, along the diagonals of the screen
 Stage makeSheetsEdgeOn(double angle_rad);    // no thickness, all but holding both eyes
-Stage makeLongSheets(double length);         // likewise, at 1e-7 rad, up to so long
+Stage makeLongSheets(double length);         // no thickness, at 1e-7 rad, up to this long
 Stage makeBeyondNear(double share);          // large ones, their centres beyond the near plane by this share of it
 Stage makeBesideEye(double slope);           // centres at this x/z or y/z
 Stage makeGaussianScales(double scale);      // from specks to those that hold the eye
@@ -33,7 +33,7 @@ Stage makeFlatAxes(double count);            // so many of the three scales are 
 Stage makeGaussianOpacity(double opacity);
 Stage makeBrokenGaussians(double value);  // makeBrokenAttributes, and a thickness
 Stage asGaussians(Stage stage);           // discs given thicknesses of 0 to their shorter scale
-Stage asDimmed(Stage stage);              // likewise, unless they have them; antialiased
+Stage asDimmed(Stage stage);              // with these thicknesses unless they have some; antialiased
 
 // Worlds and views.
 Stage makeUnit(double unit);           // all lengths of an ordinary scene, the eyes' distance and the near plane too

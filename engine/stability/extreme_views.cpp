@@ -54,7 +54,7 @@ Stage makeCanting(double degrees) {
 
 Stage makeFieldOfView(double degrees) {
     StageBuilder stage = makeRoom(kSizePx, degrees);
-    // What is behind and beside the eye counts here, too.
+    // Content behind and beside the eye counts here, too.
     Random random(23);
     for (int i = 0; i < 200; ++i) {
         Disc disc;

@@ -1,4 +1,4 @@
-// Eyes on their way, by a millionth of a unit a frame.
+// Moving eyes, by a millionth of a unit per frame.
 #include "engine/stability/stage_builder.h"
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace {
 constexpr double kStep = 1e-6;
 constexpr int kFrames = 61;
 constexpr double kHalfWay = kStep * (kFrames - 1) / 2.0;
-// A hit that falls to 1/255 here a frame before it does there.
+// A hit that falls to 1/255 one frame earlier here than there.
 constexpr double kOneFlip = 1.0 / 255.0 + 1e-3;
 
 // A disc that the eye meets half way, among others; `along` the way there.
@@ -36,7 +36,7 @@ std::vector<Path> makePaths() {
     const auto path = [](const char* name, const Disc& disc, const glm::dvec3& meeting, const glm::dvec3& direction, const char* reason) {
         return Path{name, [=] { return makeMeeting(disc, meeting, direction); }, kStep * direction, kFrames, kOneFlip, reason};
     };
-    // Half a step beyond the near plane, so that roundings, which differ from device to device, decide in no frame what lies before it.
+    // Half a step beyond the near plane, so that rounding, which differs between devices, decides in no frame what lies before it.
     constexpr double kNear = 0.2 + 0.5 * kStep;
     const glm::dvec3 eye(0.0), near_plane(0.0, 0.0, kNear), ahead(0.0, 0.0, 1.5), beside(0.1, 0.15, kNear);
     return {

@@ -1,4 +1,4 @@
-// A picture beside the one that it ought to be.
+// Compares a picture with the one that it ought to be.
 #pragma once
 
 #include "engine/stability/run_case.h"

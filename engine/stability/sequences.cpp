@@ -1,4 +1,4 @@
-// The sequences: heads that stop, oscillate, turn fast, and scenes that are hard to make from what was seen before.
+// The sequences: heads that stop, oscillate, turn fast, and scenes that are hard to make from the frames before.
 #include "engine/stability/sequences.h"
 
 #include "engine/stability/extreme_scenes.h"
@@ -33,13 +33,13 @@ Eyes tremble(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.
 // At 90 frames a second.
 Eyes turnFast(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.0), frame * std::numbers::pi / 90.0); }
 Eyes passByWall(const Stage& stage, int frame) { return headAt(stage, glm::dvec3(0.005 * frame, 0.0, 0.0)); }
-// By less than what drops a past.
+// By less than the change that drops a past.
 Eyes changeAngles(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
     for (Eye& eye : eyes) { eye.intrinsics = intrinsicsFromFovX((60.0 + 0.5 * (frame % 5)) * std::numbers::pi / 180.0, eye.size_px); }
     return eyes;
 }
-// As a runtime may that scales what it shows.
+// As a runtime may that scales its pictures.
 Eyes changeSize(const Stage& stage, int frame) {
     Eyes eyes = walk(stage, frame);
     for (Eye& eye : eyes) {

@@ -1,4 +1,4 @@
-// Frames one after another, each made from the ones before: what their pictures must keep to beside full renders.
+// Frames one after another, each made from the ones before, and the bounds that their pictures must keep to against full renders.
 #pragma once
 
 #include "engine/mode.h"
@@ -16,7 +16,7 @@ struct Sequence {
     int frames = 1;
     double budget = 0.2;
     bool half_floats = false;               // of pictures, as viewers keep them
-    int first_scored = 1, score_every = 1;  // frames that are held against full renders
+    int first_scored = 1, score_every = 1;  // frames that are compared with full renders
     // From this frame on the scene is another one.
     std::optional<int> exchanged_at = {};
     std::function<Stage()> make_other = {};

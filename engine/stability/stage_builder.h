@@ -1,4 +1,4 @@
-// Small scenes said in the axes of an eye that itself stands somewhere, turned: nothing about them is aligned with the world.
+// Small scenes given in the axes of an eye that is itself moved and turned: nothing about them is aligned with the world.
 #pragma once
 
 #include "engine/stability/catalogue.h"

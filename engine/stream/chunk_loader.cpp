@@ -1,4 +1,4 @@
-// One file after the other, of each all that is wished for.
+// One file after the other, with all its parts that are wished for.
 #include "engine/stream/chunk_loader.h"
 
 #include "engine/error.h"
@@ -18,11 +18,11 @@ namespace {
 
 struct Cancelled {};
 
-// So many files are asked for before their turn.
+// This many files are requested before their turn.
 constexpr std::size_t kFilesAhead = 8;
-// After so long a server that does not answer again is news.
+// After this long a server that fails to answer again is news.
 constexpr std::chrono::seconds kForgotten(10);
-// Parts that are read together, before it is looked which of the others are still wished for.
+// Parts that are read together, before checking which of the others are still wished for.
 constexpr std::size_t kPartsAtOnce = 8;
 
 }  // namespace
@@ -248,12 +248,12 @@ const ChunkLoader::Decoded& ChunkLoader::decode(std::size_t file) {
     SogSplats splats = source_->open(file);
     splats.expect();
     splats.requirePlausibleCount();
-    // Room first: what was kept is not needed for what comes.
+    // Room first: the kept files are not needed for the next one.
     while (!decoded_.empty() && decoded_.size() >= settings_.kept_files) { decoded_.pop_back(); }
     SogPictures pictures = splats.decode(settings_.threads);
     decoded_.push_front({file, std::move(splats), std::move(pictures)});
     pause_ = settings_.first_pause;
-    // Files that were asked for ahead may still fail as those before did.
+    // Files that were requested ahead may still fail as those before did.
     if (++came_since_ > kFilesAhead || Clock::now() - failed_at_ > kForgotten) { said_gone_ = false; }
     const std::lock_guard lock(mutex_);
     troubles_[file].is_said = false;

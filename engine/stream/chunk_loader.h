@@ -1,4 +1,4 @@
-// Loads parts of a streamed scene beside the frames: what is wished for, in that order, on threads of its own.
+// Loads parts of a streamed scene beside the frames: what is requested, in that order, on threads of its own.
 #pragma once
 
 #include "engine/gpu/packed_splats.h"
@@ -19,7 +19,7 @@
 
 namespace binosplat {
 
-// A level of a leaf, decoded, with three scales a splat also where these are discs. It may have fewer splats than the tree says: broken
+// A level of a leaf, decoded, with three scales a splat even if these are discs. It may have fewer splats than the tree says: broken
 // ones are skipped.
 struct LoadedPart {
     LeafLevel at;
@@ -30,14 +30,14 @@ struct LoadedPart {
 
 struct LoaderSettings {
     int threads = 2;                              // that decode at a time
-    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: decoding waits for room from there on
+    std::uint64_t waiting_splats = 1 << 20;       // decoded and not taken yet: at this many, decoding waits for room
     std::size_t kept_files = 2;                   // decoded, for whoever wants more of them
-    std::chrono::milliseconds first_pause{1000};  // before a file of the web is tried again, then twice as long each time
+    std::chrono::milliseconds first_pause{1000};  // before a file of the web is tried again, then doubled each time
     std::chrono::milliseconds most_pause{30000};
-    std::function<void(LoadedPart&)> finish = {};  // what else is done to a part, on the loader's threads
+    std::function<void(LoadedPart&)> finish = {};  // further work on a part, on the loader's threads
 };
 
-// What was read, and how long that took: files are fetched and decoded; waiting for room or for wishes does not count.
+// The splats that were read, and how long that took: fetching and decoding files; waiting for room or for requests does not count.
 struct LoaderWork {
     std::uint64_t splats = 0;
     double seconds = 0.0;
@@ -53,25 +53,25 @@ public:
 
     [[nodiscard]] const ChunkSource& source() const { return *source_; }
 
-    // From now on this is wished for, and nothing else; what was taken already is not to be in it. `finer` is begun when nothing of
+    // From now on these are wished for, and nothing else; they must not include what was taken already. `finer` is begun when nothing of
     // `coarsest` is left to load.
     void want(std::vector<LeafLevel> coarsest, std::vector<LeafLevel> finer);
-    // What is there, in the order of the wishes.
+    // The parts that are loaded, in the order of the wishes.
     [[nodiscard]] std::vector<LoadedPart> take();
-    // The same for who must not wait, not even for the moment in which the loader looks through its lists: false and empty, then.
+    // The same for callers that must not wait, not even while the loader looks through its lists: then false and empty.
     [[nodiscard]] bool tryWant(const std::vector<LeafLevel>& coarsest, const std::vector<LeafLevel>& finer);
     [[nodiscard]] std::vector<LoadedPart> tryTake();
     [[nodiscard]] std::optional<std::vector<bool>> tryBrokenFiles() const;
     [[nodiscard]] std::vector<std::string> tryTakeLines();
     [[nodiscard]] bool isSurelyDone() const;
     [[nodiscard]] std::optional<LoaderWork> tryWork() const;
-    // One sentence for each file that is broken or missing, and one for each time that a server does not answer; each once.
+    // One sentence for each file that is broken or missing, and one each time that a server does not answer; each only once.
     [[nodiscard]] std::vector<std::string> takeLines();
-    // By file whether it cannot be had now. Wishes in such files are not loaded.
+    // By file: true if it cannot be had now. Wishes in such files are not loaded.
     [[nodiscard]] std::vector<bool> brokenFiles() const;
-    // Whether everything that was wished for was taken or cannot be had.
+    // True if every wish was taken or cannot be had.
     [[nodiscard]] bool isDone() const;
-    // Until there is something to take, a file is broken, or all is done; false where the time is up before.
+    // Waits until there is something to take, a file is broken, or all is done; false if the time is up first.
     bool waitForNews(std::chrono::milliseconds most) const;
 
 private:
@@ -99,7 +99,7 @@ private:
     [[nodiscard]] std::vector<std::size_t> filesAhead() const;
     [[nodiscard]] bool isWished(LeafLevel at) const;
     void removeWish(LeafLevel at);
-    // Of files whose time has come.
+    // For files whose time has come.
     void forgetTroubles();
     [[nodiscard]] std::optional<Clock::time_point> nextAttempt() const;
     const Decoded& decode(std::size_t file);
@@ -110,10 +110,10 @@ private:
     std::unique_ptr<ChunkSource> source_;
     LoaderSettings settings_;
     std::deque<Decoded> decoded_;  // of the loader's thread; the one used last at the front
-    Clock::duration pause_;        // likewise
-    std::size_t came_since_ = 0;   // likewise: files since one did not come
-    Clock::time_point failed_at_;  // likewise: when that was
-    bool said_gone_ = false;       // likewise: the server does not answer, and that was said
+    Clock::duration pause_;        // of the loader's thread
+    std::size_t came_since_ = 0;   // of the loader's thread: files since one did not come
+    Clock::time_point failed_at_;  // of the loader's thread: when that was
+    bool said_gone_ = false;       // of the loader's thread: the server does not answer, and that was reported
 
     mutable std::mutex mutex_;  // of what follows
     mutable std::condition_variable changed_, news_;

@@ -19,7 +19,7 @@ constexpr float kEverywhere = 1e6f;
 
 bool isStreamedScene(const std::string& source) {
     if (isBuiltin(source)) { return false; }
-    // What an address holds is known when it is fetched; only those that say so are taken for one.
+    // The content of an address is known only once it is fetched; only those that say so are taken for one.
     if (isAddress(source)) { return source.substr(0, source.find_first_of("?#")).ends_with("/lod-meta.json"); }
     std::error_code unreadable;
     if (std::filesystem::is_directory(source, unreadable)) { return isStreamedSogFolder(source); }

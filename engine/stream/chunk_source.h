@@ -1,4 +1,4 @@
-// Where a streamed scene is: a folder, its lod-meta.json, or the address of one. Its tree, and its chunks one by one.
+// The place of a streamed scene: a folder, its lod-meta.json, or the address of one. Its tree, and its chunks one by one.
 #pragma once
 
 #include "engine/scene/streamed_chunks.h"
@@ -19,26 +19,26 @@ bool isStreamedScene(const std::string& source);
 // For one thread at a time.
 class ChunkSource {
 public:
-    // `waiting` is called now and then while an address is waited for, as of WebFiles. Throws Error where lod-meta.json or the environment
+    // `waiting` is called now and then while an address is waited for, as in WebFiles. Throws Error if lod-meta.json or the environment
     // cannot be had or is broken, and in a build that cannot decode WebP.
     ChunkSource(const std::string& source, const WebSettings& web, const Progress& waiting = {});
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    // With an environment one more than the tree's: around everything, of one level, level 0.
+    // With an environment, one more than the tree's: around everything, with one level, level 0.
     [[nodiscard]] std::span<const LodLeaf> leaves() const { return leaves_; }
     [[nodiscard]] const LodMeta& meta() const { return chunks_->meta(); }
     [[nodiscard]] std::uint64_t environmentSplats() const { return environment_splats_; }
     [[nodiscard]] std::size_t fileCount() const { return chunks_->environmentIndex() + 1; }
     [[nodiscard]] bool isFromWeb() const { return web_ != nullptr; }
-    // See WebFiles; 0 and empty of what lies on the disk.
+    // See WebFiles; 0 and empty for what lies on the disk.
     [[nodiscard]] std::uint64_t failedFetches() const { return web_ ? web_->failedCount() : 0; }
     [[nodiscard]] std::string stale() const { return web_ ? web_->stale() : std::string(); }
 
-    // In place of `waiting`, from now on. It may throw.
+    // Replaces `waiting` from now on. It may throw.
     void callWhileWaiting(Progress call) { while_waiting_ = std::move(call); }
-    // LodRange::file of what will be opened soon.
+    // The LodRange::file of each chunk that will be opened soon.
     void expect(std::span<const std::size_t> files) { chunks_->expect(files); }
-    // Throws Error where it cannot be had or is broken.
+    // Throws Error if it cannot be had or is broken.
     [[nodiscard]] SogSplats open(std::size_t file) { return chunks_->open(file); }
     void requireRange(std::size_t file, SplatRange range, const SogSplats& splats) const { chunks_->requireRange(file, range, splats); }
 

@@ -1,4 +1,4 @@
-// Which level of detail each leaf of a streamed scene is to show, by what the eyes see of it.
+// Which level of detail each leaf of a streamed scene is to show, by how the eyes see it.
 //
 // n splats across a leaf that takes a square of s x s pixels lie s / sqrt(n) pixels apart. A step from a level of m splats to the next
 // finer one, of n, is worth s^2 / sqrt(m n): the mean square of that distance in pixels, which is also what its splats gain each if the
@@ -36,12 +36,12 @@ struct LevelChoices {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     // By leaf the place of its level in LodLeaf::levels, kNone where not even the coarsest has room.
     std::vector<std::uint32_t> levels;
-    // What to load, first things first: the coarsest level of every leaf, then what leaves show that are to be finer.
+    // The levels to load, in order: the coarsest level of every leaf, then the finer ones that leaves are to show.
     std::vector<LeafLevel> coarsest, finer;
     std::uint64_t splats = 0, pages = 0;  // of `levels`
 };
 
-// Levels that there are to choose from: all but those in files that cannot be had, unless they are loaded already.
+// The levels to choose from: all but those in files that cannot be had, unless they are loaded already.
 struct LevelsThere {
     std::vector<bool> broken;           // by file; may be shorter than there are files
     std::vector<std::uint64_t> loaded;  // by leaf, a bit for each of LodLeaf::levels; may be shorter than there are leaves
@@ -58,7 +58,7 @@ public:
     // `leaves` outlives this.
     explicit LevelChooser(std::span<const LodLeaf> leaves) : leaves_(leaves) {}
 
-    // For eyes that look from one head. What was chosen the time before is worth a quarter more, and what was not a fifth less, so that
+    // For eyes of one head. A level that was chosen the time before is worth a quarter more, and one that was not a fifth less, so that
     // small motions change nothing. The same for the same calls.
     const LevelChoices& choose(std::span<const Eye> eyes, const ChoiceSettings& settings, const LevelsThere& there = {});
 
@@ -67,7 +67,7 @@ private:
     struct Step {
         double worth = 0.0;
         std::uint32_t leaf = 0, level = 0, order = 0;  // order: its place among those of its leaf
-        std::uint64_t splats = 0, pages = 0;           // beyond those of the step before; whole where order is 0
+        std::uint64_t splats = 0, pages = 0;           // beyond those of the step before; all of the level's if order is 0
     };
     void addSteps(std::uint32_t leaf, double area_px, double weight, const ChoiceSettings& settings, const LevelsThere& there);
 

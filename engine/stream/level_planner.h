@@ -25,7 +25,7 @@ public:
     LevelPlanner& operator=(const LevelPlanner&) = delete;
     ~LevelPlanner();
 
-    // In place of one that was not begun yet. False if the planner is just looking: ask again. Never waits.
+    // Replaces a question that was not begun yet. False if the planner is just looking: ask again. Never waits.
     [[nodiscard]] bool ask(const LevelQuestion& question);
     // The latest answer, once. Never waits.
     [[nodiscard]] std::optional<LevelChoices> take();

@@ -1,4 +1,4 @@
-// A scene of which what is on the device changes between frames: with what the eyes see, or with time.
+// A scene whose content on the device changes between frames: with what the eyes see, or with time.
 #pragma once
 
 #include "engine/geometry.h"
@@ -12,7 +12,7 @@
 namespace binosplat {
 
 struct StreamCounters {
-    std::uint64_t splats_resident = 0, splats_read = 0;  // on the device; of these, those that the next frame goes through
+    std::uint64_t splats_resident = 0, splats_read = 0;  // on the device; of these, those that the next frame reads
     std::uint64_t chunks_resident = 0;                   // levels of leaves, or pages of a scene that moves
     std::uint64_t frames_waited_for_loading = 0;         // update() never waits
     std::uint64_t scene_frames_late = 0;                 // that were not there when their time came
@@ -27,27 +27,27 @@ public:
     virtual ~LiveScene() = default;
 
     [[nodiscard]] virtual const std::string& name() const = 0;
-    // What frames render.
+    // The scene that frames render.
     [[nodiscard]] virtual const GpuScene& scene() const = 0;
     [[nodiscard]] virtual const SceneTraits& traits() const = 0;
 
     // From the next call on: seconds since the first frame of a scene that moves.
     virtual void setTime(double time_s) { static_cast<void>(time_s); }
-    // For whoever shows frame after frame, before each: takes what was loaded, and goes on with exchanges by a frame of `step_seconds`.
+    // For display, before each frame: takes what was loaded, and advances exchanges by a frame of `step_seconds`.
     // Never waits.
     virtual void update(std::span<const Eye> eyes, double step_seconds) = 0;
-    // For whoever renders pictures: returns when all that these eyes ask for is on the device or goes there with the next frame, apart from
+    // For rendering pictures: returns when all that these eyes ask for is on the device or goes there with the next frame, apart from
     // what cannot be had. Always the same splats in the same order for the same calls.
     virtual void settle(std::span<const Eye> eyes, const Progress& progress = {}) = 0;
 
-    // Whether update() has nothing left to do for the eyes and the time that it was told last, apart from what cannot be had.
+    // True if update() has nothing left to do for the eyes and the time that it was told last, apart from what cannot be had.
     [[nodiscard]] virtual bool isSettled() const = 0;
-    // Of what is asked for, the share that is there, 0 to 1.
+    // The share of what is asked for that is there, 0 to 1.
     [[nodiscard]] virtual double share() const = 0;
     [[nodiscard]] virtual StreamCounters counters() const = 0;
-    // What is wrong with files and servers, one sentence each, once.
+    // Problems with files and servers, one sentence each, once.
     [[nodiscard]] virtual std::vector<std::string> takeLines() = 0;
-    // The same for who must not wait: perhaps later.
+    // The same for callers that must not wait: perhaps later.
     [[nodiscard]] virtual std::vector<std::string> tryTakeLines() = 0;
 };
 

@@ -13,11 +13,11 @@
 namespace binosplat {
 namespace {
 
-// A time that should begin a frame may be a little before it.
+// A time that should begin a frame may fall a little before it.
 constexpr double kHairFrames = 1e-4;
-// Time that goes on by more than that, or back, was set.
+// A time that advances by more than that, or goes back, was set.
 constexpr double kMostStepSeconds = 0.5;
-// For frames with more splats than the sizes of files let expect.
+// For frames with more splats than the sizes of files suggest.
 constexpr double kSpareRoom = 1.25;
 constexpr std::uint32_t kSparePages = 8;
 
@@ -47,7 +47,7 @@ MovingScene::MovingScene(const Context& context, SceneSeries series, MovingSetti
     options.capacity_pages = static_cast<std::uint32_t>(
                                  std::min(pages * series_.growth() * kSpareRoom, double{gpu::kMaxItems / gpu::kPageSplats} - kSparePages)) +
                              kSparePages;
-    // A scene frame is seen at once or not yet.
+    // A scene frame is shown as a whole or not yet.
     options.most_bytes_a_frame = options.capacity_pages * ChunkLayout(gpu::kPageSplats, traits_).bytes;
     resident_ = std::make_unique<ResidentScene>(context_, traits_, options);
     for (const auto& page : *shown_) { parts_.push_back(resident_->add(PackedPages(page->splats, page->bounds, page->bytes)).value()); }
@@ -100,7 +100,7 @@ std::optional<MovingScene::Question> MovingScene::questionFor(Moment moment) con
     if (!question.first) { return std::nullopt; }
     if (!isBetween(moment)) { return question; }
     question.second = loader_->tryGet(sceneAfter(moment.frame));
-    // What cannot be had is not waited for.
+    // Frames that cannot be had are not waited for.
     if (!question.second && !loader_->isSurelyBroken(sceneAfter(moment.frame))) { return std::nullopt; }
     return question;
 }
@@ -178,7 +178,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
 
     const auto frames = static_cast<double>(series_.size());
     const auto placeOf = [](Moment moment) { return static_cast<double>(moment.frame) + static_cast<double>(moment.share); };
-    // How far one lies behind another, the shorter way about the loop.
+    // How far one lies behind another, the shorter way around the loop.
     const auto behind = [&](Moment moment, Moment other) {
         const double distance = placeOf(other) - placeOf(moment);
         return distance - frames * std::round(distance / frames);
@@ -195,7 +195,7 @@ void MovingScene::update(std::span<const Eye> /*eyes*/, double /*step_seconds*/)
     if (!settings_.blend && following.frame == now.frame && (moment_.frame == now.frame || is_broken)) {
         following.frame = (now.frame + 1) % series_.size();
     }
-    // What comes later than that was meant for another pace.
+    // A step to later than that was meant for another pace.
     if (next_ && behind(following, next_->moment) > kHairFrames) { next_.reset(); }
     if (!next_ && !is_asked_ && !(following == moment_)) { ask(following); }
 }

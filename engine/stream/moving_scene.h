@@ -1,4 +1,4 @@
-// A scene that moves, as frames see it: the scene frame of the time, or what lies between two.
+// A scene that moves, as frames see it: the scene frame of the time, or an interpolation between two.
 #pragma once
 
 #include "engine/gpu/resident_scene.h"
@@ -21,16 +21,16 @@ namespace binosplat {
 
 struct MovingSettings {
     double rate_hz = 30.0;           // scene frames a second
-    bool blend = false;              // show what lies between two frames, where their splats correspond
+    bool blend = false;              // interpolate between two frames, if their splats correspond
     std::uint64_t memory_bytes = 0;  // of the host, for frames that are read ahead; 0: as SeriesLoader has it
     int threads = 1;                 // that read
-    // As the scene is drawn; on any thread.
+    // How the scene is drawn; on any thread.
     std::function<void(Scene&, LoadNotes&)> draw_as = {};
 };
 
 class MovingScene final : public LiveScene {
 public:
-    // Reads the first frame; see notes(). Throws Error where that cannot be had, or the device has no memory for it.
+    // Reads the first frame; see notes(). Throws Error if it cannot be had, or the device has no memory for it.
     MovingScene(const Context& context, SceneSeries series, MovingSettings settings, const Progress& progress = {});
     ~MovingScene() override;
 
@@ -38,23 +38,23 @@ public:
     [[nodiscard]] const GpuScene& scene() const override { return resident_->scene(); }
     [[nodiscard]] const SceneTraits& traits() const override { return traits_; }
     [[nodiscard]] const SceneSeries& series() const { return series_; }
-    // How long it takes to begin again.
+    // The length of the loop.
     [[nodiscard]] double seconds() const { return static_cast<double>(series_.size()) / settings_.rate_hz; }
     [[nodiscard]] double rateHz() const { return settings_.rate_hz; }
-    // That of the time, 0 .. size() - 1.
+    // The frame of the time, 0 .. size() - 1.
     [[nodiscard]] std::size_t frameAt(double time_s) const { return momentAt(time_s).frame; }
-    // The first frame, for what asks how a scene lies; once.
+    // The first frame, for finding out how a scene lies; once.
     [[nodiscard]] Scene takeFirst() { return std::move(first_); }
     [[nodiscard]] const LoadNotes& notes() const { return notes_; }
 
-    // Before or after the loop is within it, too.
+    // Times before or after the loop are mapped into it.
     void setTime(double time_s) override { time_s_ = time_s; }
     void update(std::span<const Eye> eyes, double step_seconds) override;
     void settle(std::span<const Eye> eyes, const Progress& progress = {}) override;
     [[nodiscard]] bool isSettled() const override;
     [[nodiscard]] double share() const override { return 1.0; }
     [[nodiscard]] StreamCounters counters() const override;
-    // settle() throws for what it cannot do without; who shows frames is told of what is broken, see tryTakeLines().
+    // settle() throws if it lacks what it needs; for display, broken files are reported, see tryTakeLines().
     [[nodiscard]] std::vector<std::string> takeLines() override { return std::exchange(lines_, {}); }
     [[nodiscard]] std::vector<std::string> tryTakeLines() override;
 
@@ -74,16 +74,16 @@ private:
         std::uint64_t time_set = 0;
     };
     struct Question {
-        Frame from, first, second;  // `second` is null where nothing lies between
+        Frame from, first, second;  // `second` is null if nothing lies between
         Moment moment;
-        std::uint64_t time_set = 0;  // so many times before it was asked
+        std::uint64_t time_set = 0;  // how often it was set before this was asked
     };
 
     [[nodiscard]] Moment momentAt(double time_s) const;
     [[nodiscard]] std::size_t sceneAfter(std::size_t frame) const;
     [[nodiscard]] bool isBetween(Moment moment) const;
     [[nodiscard]] Frame frameOf(const Question& question) const;
-    // Where all is read that the moment needs.
+    // Once everything that the moment needs is read.
     [[nodiscard]] std::optional<Question> questionFor(Moment moment) const;
     void wantFrom(std::size_t frame);
     void ask(Moment moment);

@@ -67,7 +67,7 @@ T at(const std::vector<std::uint8_t>& bytes, std::uint64_t offset) {
 SplatPage pageBetween(const SplatPage& from, const SplatPage& to, float share, const ChunkLayout& layout, const SceneTraits& traits) {
     SplatPage page{from.splats, {}, from.bytes};
     const auto put = [&]<typename T>(std::uint64_t offset, const T& value) { std::memcpy(page.bytes.data() + offset, &value, sizeof(T)); };
-    // What is equal stays as it is, to the bit.
+    // Equal values stay as they are, to the bit.
     const auto mixFloats = [&](std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t offset = begin; offset < end; offset += sizeof(float)) {
             const auto a = at<float>(from.bytes, offset), b = at<float>(to.bytes, offset);
@@ -94,7 +94,7 @@ SplatPage pageBetween(const SplatPage& from, const SplatPage& to, float share, c
     return page;
 }
 
-// Boxes about what changed, gathered by where their splats' centres lie.
+// Boxes around what changed, by where the splats' centres lie.
 class BoxGrid {
 public:
     void add(const PageReader& reader, std::size_t i) {
@@ -178,7 +178,7 @@ bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits&
         moved.push_back(glm::distance(centreOf(from, splat), centreOf(to, splat)));
         apart.push_back(glm::distance(centreOf(from, splat), centreOf(from, other)));
     }
-    // All but a few: what turns up elsewhere is seen to fly there.
+    // All but a few: a splat that turns up elsewhere is seen to fly there.
     const auto at = [](std::vector<float>& values, double share) {
         const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
         std::ranges::nth_element(values, place);

@@ -1,4 +1,4 @@
-// What a moving scene shows at one time, and how it differs from what it showed before.
+// The splats of a moving scene at one time, and how they differ from those before.
 #pragma once
 
 #include "engine/gpu/gpu_scene.h"
@@ -18,26 +18,26 @@ struct SplatPage {
     std::vector<std::uint8_t> bytes;  // laid out as a ChunkLayout of kPageSplats
 };
 
-// All splats of one scene frame, in the order of their file. What is the same in two frames may be one page.
+// All splats of one scene frame, in the order of their file. Frames may share a page that is the same in both.
 using SceneFrame = std::vector<std::shared_ptr<const SplatPage>>;
 
-// Throws Error where the scene's splats are of another kind than the traits'. Pages that `like` has too are its own.
+// Throws Error if the scene's splats are of another kind than the traits'. Pages that are the same in `like` are shared with it.
 SceneFrame makeSceneFrame(const Scene& scene, const SceneTraits& traits, const SceneFrame& like = {});
-// Splats, and bytes of the pages that `without` has not.
+// Splats, and bytes of the pages that are not in `without`.
 std::uint64_t splatsIn(const SceneFrame& frame);
 std::uint64_t bytesIn(const SceneFrame& frame, const SceneFrame& without = {});
 
-// Whether splat i of one is splat i of the other, a little further on: as many of them, most of which lie nearer to each other than
-// kNearbyShare of what lies between two of one frame.
+// True if splat i of one is splat i of the other, a little further on: there are as many, and most are nearer to each other than
+// kNearbyShare of the distance between two of one frame.
 inline constexpr double kNearbyShare = 0.1;
 bool correspond(const SceneFrame& from, const SceneFrame& to, const SceneTraits& traits);
-// Between two that correspond, `share` of the way: every value on a straight line, and rotations on the shorter of their two, of unit
+// Between two frames that correspond, `share` of the way: every value linearly, and rotations along the shorter of two ways, of unit
 // length.
 SceneFrame between(const SceneFrame& from, const SceneFrame& to, float share, const SceneTraits& traits);
 
 struct FrameDifference {
-    std::vector<std::uint32_t> pages;  // that are others, or that only one of the two has
-    // Where splats of these pages that are others were and are: boxes that share no splat, kMostBoxes at most.
+    std::vector<std::uint32_t> pages;  // that differ, or that only one of the two has
+    // Where the differing splats of these pages were and are: boxes that share no splat, kMostBoxes at most.
     std::vector<SceneChange> changes;
 };
 inline constexpr int kBoxesAside = 12;

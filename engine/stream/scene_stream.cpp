@@ -13,13 +13,13 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint64_t kPageSplats = gpu::kPageSplats;
-// Splats on their way to the device in one frame: of a headset, or where nobody waits for the next one, as on a software device.
+// Splats uploaded in one frame: of a headset, or if nobody waits for the next one, as on a software device.
 constexpr std::uint64_t kBytesAFrame = std::uint64_t{8} << 20, kBytesAPicture = std::uint64_t{128} << 20;
 constexpr std::chrono::milliseconds kLook(50);
 
 std::uint64_t pagesOf(std::uint64_t splats) { return (splats + kPageSplats - 1) / kPageSplats; }
 
-// Of all chunks of the coarsest levels, which are the first to be needed anyway, and of one chunk of each other level.
+// Of all chunks of the coarsest levels, which are needed first anyway, and of one chunk of each other level.
 SceneTraits traitsOf(ChunkSource& source, const StreamSettings& settings) {
     std::set<std::size_t> files;
     std::set<std::uint32_t> levels;
@@ -75,7 +75,7 @@ SceneStream::SceneStream(const Context& context, std::unique_ptr<ChunkSource> so
     : context_(context), settings_(std::move(settings)) {
     const std::span<const LodLeaf> tree = source->leaves();
     const SceneTraits traits = traitsOf(*source, settings_);
-    // Room for the finest level of all leaves is never exceeded, nor is, where a budget is given, what that takes. A share of the pages is
+    // Never more room than the finest level of all leaves takes or, if a budget is given, than that takes. A share of the pages is
     // for exchanges, at least as many as the largest part has.
     std::uint64_t most_pages = 0, largest = 1;
     for (const LodLeaf& leaf : tree) {
@@ -130,7 +130,7 @@ void SceneStream::wish(bool coarsest_only) {
                          [&](LeafLevel at) { return leaves_->isEmpty(at.leaf) || chosen_.levels[at.leaf] == at.level; });
     if (!coarsest_only) {
         finer = chosen_.finer;
-        // What is to have fewer splats makes room for the others.
+        // Leaves that are to have fewer splats make room for the others.
         std::ranges::stable_partition(finer, [&](LeafLevel at) { return leaves_->isTooFine(at.leaf); });
     }
     has_wishes_ = !loader_->tryWant(missing(coarsest), missing(finer));
@@ -188,7 +188,7 @@ void SceneStream::ask(std::span<const Eye> eyes) {
     if (planner_->ask(question)) { asked_ = std::move(question); }
 }
 
-// What is left comes with the next frame, which so learns where it is.
+// The rest comes with the next frame, which so learns where it is.
 void SceneStream::flushIfMuch() {
     const ResidentScene& resident = leaves_->resident();
     const std::uint64_t waiting = resident.splatsAdded() - std::min(resident.splatsAdded(), resident.splatsShown());

@@ -26,22 +26,22 @@ struct StreamSettings {
 
 class SceneStream final : public LiveScene {
 public:
-    // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error where that memory is not to be had, and
-    // where no chunk of the coarsest level can be opened.
+    // Takes the device memory, and begins to load when it is told where the eyes are. Throws Error if that memory is not to be had, or
+    // no chunk of the coarsest level can be opened.
     SceneStream(const Context& context, std::unique_ptr<ChunkSource> source, StreamSettings settings);
 
     [[nodiscard]] const std::string& name() const override { return source().name(); }
     [[nodiscard]] const GpuScene& scene() const override { return leaves_->resident().scene(); }
     [[nodiscard]] const SceneTraits& traits() const override { return leaves_->resident().traits(); }
     [[nodiscard]] const ChunkSource& source() const { return loader_->source(); }
-    // What the memory holds, or the whole scene has, if that is less.
+    // As many splats as the memory holds, or as the whole scene has, if that is less.
     [[nodiscard]] std::uint64_t mostSplats() const;
-    // Splats that are chosen, at most; from the next choice on.
+    // The most splats that are chosen; from the next choice on.
     void setSplatBudget(std::uint64_t splats);
 
     void update(std::span<const Eye> eyes, double step_seconds) override;
     void settle(std::span<const Eye> eyes, const Progress& progress = {}) override;
-    // The same of the coarsest level of every leaf alone, so that there is something to see.
+    // The same for only the coarsest level of every leaf, so that there is something to see.
     void settleCoarsest(std::span<const Eye> eyes, const Progress& progress = {});
 
     [[nodiscard]] bool isSettled() const override;
@@ -52,10 +52,10 @@ public:
     [[nodiscard]] std::vector<std::string> tryTakeLines() override { return loader_->tryTakeLines(); }
 
 private:
-    // Wishes for what is chosen and not there.
+    // The chosen levels that are not there, to be wished for.
     [[nodiscard]] std::vector<LeafLevel> missing(const std::vector<LeafLevel>& chosen) const;
     void wish(bool coarsest_only = false);
-    // What did not find room before, and what was loaded since.
+    // Adds the parts that found no room before, and those loaded since.
     void takeLoaded(bool at_once);
     void ask(std::span<const Eye> eyes);
     void settleChosen(std::span<const Eye> eyes, bool coarsest_only, const Progress& progress);
@@ -68,9 +68,9 @@ private:
     std::unique_ptr<ChunkLoader> loader_;
     std::unique_ptr<ShownLeaves> leaves_;
     LevelChoices chosen_;
-    std::deque<LoadedPart> held_;  // that found no room yet
-    bool has_wishes_ = false;      // to tell the loader
-    // Of settle, and of update.
+    std::deque<LoadedPart> held_;  // parts that found no room yet
+    bool has_wishes_ = false;      // that the loader has not been told
+    // For settle, and for update.
     std::unique_ptr<LevelChooser> chooser_;
     std::unique_ptr<LevelPlanner> planner_;
     std::optional<LevelQuestion> asked_;  // the last one

@@ -93,7 +93,7 @@ std::optional<std::size_t> SeriesLoader::next() {
         wanted_, [&](std::size_t scene) { return !kept_.contains(scene) && !troubles_.contains(scene) && !reading_[scene]; });
     if (found == wanted_.end()) { return std::nullopt; }
     const auto order = static_cast<std::size_t>(found - wanted_.begin());
-    // What is being read has no bytes yet.
+    // Scenes that are being read have no bytes yet.
     const auto under_way = static_cast<std::uint64_t>(std::ranges::count(reading_, true));
     while (bytes_ + (under_way + 1) * largest_ > settings_.most_bytes) {
         const auto last = std::ranges::max_element(kept_, {}, [&](const auto& kept) { return orderOf(kept.first); });

@@ -20,7 +20,7 @@ class SeriesLoader {
 public:
     using Frame = std::shared_ptr<const SceneFrame>;
     struct Settings {
-        std::uint64_t most_bytes = std::uint64_t{1} << 30;  // of frames that are kept, but at least of kLeastKept
+        std::uint64_t most_bytes = std::uint64_t{1} << 30;  // for frames that are kept, but at least kLeastKept of them
         int threads = 1;
     };
     static constexpr std::size_t kLeastKept = 3;
@@ -33,14 +33,14 @@ public:
     // Waits for what is being read.
     ~SeriesLoader();
 
-    // What will be needed, the next one first; what was read before and is needed last makes room. Waits for nobody: false if the loader
-    // is just looking through its lists, ask again.
+    // The scenes that will be needed, the next one first; of those read before, the one needed last makes room. Never waits: false if the
+    // loader is just looking through its lists, ask again.
     [[nodiscard]] bool tryWant(const std::vector<std::size_t>& scenes);
-    // Null where it is not there now. Never waits.
+    // Null if it is not there now. Never waits.
     [[nodiscard]] Frame tryGet(std::size_t scene) const;
-    // Whether it cannot be had. Never waits; perhaps later.
+    // True if it cannot be had. Never waits; perhaps later.
     [[nodiscard]] bool isSurelyBroken(std::size_t scene) const;
-    // Waits until it is there. Throws Error where it cannot be had.
+    // Waits until it is there. Throws Error if it cannot be had.
     [[nodiscard]] Frame get(std::size_t scene);
     // One sentence for each scene that cannot be had, once.
     [[nodiscard]] std::vector<std::string> takeLines();
@@ -50,7 +50,7 @@ public:
 private:
     struct Kept {
         Frame frame;
-        std::uint64_t bytes = 0;  // beside what the one before it has, too
+        std::uint64_t bytes = 0;  // besides those that the one before it has, too
     };
     struct Trouble {
         std::string what;

@@ -25,7 +25,7 @@ bool ShownLeaves::add(LoadedPart& part) {
     if (!is_wanted || has(part.at)) { return true; }
     if (part.pages.pageCount() > resident_.freePages()) { makeRoom(); }
     if (part.pages.pageCount() > resident_.freePages() && wanted_[leaf] == level && shown.size() == 1) {
-        // Not even what is replaced can stay until then: once nothing else goes.
+        // As a last resort, when nothing else can go, not even the part being replaced can stay until then.
         const std::uint64_t own_pages = (splatsOf(leaf, shown.front().level) + gpu::kPageSplats - 1) / gpu::kPageSplats;
         if (part.pages.pageCount() <= resident_.freePages() + own_pages) { remove(leaf, shown.begin()); }
     }

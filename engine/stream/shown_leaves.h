@@ -19,28 +19,28 @@ public:
     ShownLeaves(const Context& context, const SceneTraits& traits, const ResidentScene::Options& options, std::span<const LodLeaf> leaves);
 
     [[nodiscard]] const ResidentScene& resident() const { return resident_; }
-    // Brings all that was added to the device, and waits for that. Frames do not learn where that was.
+    // Copies everything that was added to the device, and waits for that. Frames do not learn where it was.
     void flush(const Context& context);
 
-    // What leaves are to show, by leaf, as LevelChoices::levels. Until it is there a leaf goes on showing what it shows.
+    // The level that each leaf is to show, as LevelChoices::levels. Until it is there a leaf goes on showing what it shows.
     void want(const std::vector<std::uint32_t>& levels);
-    // Takes a part that is wanted, or the first of its leaf; others are dropped. False where there is no room for it now: the part is as it
-    // was.
+    // Takes a part that is wanted, or the first of its leaf; others are dropped. False if there is no room for it now: the part is then
+    // unchanged.
     [[nodiscard]] bool add(LoadedPart& part);
-    // A step of all exchanges, as a share of a fade; from 1 on they end at once.
+    // A step of all exchanges, as a share of a fade; at 1 or more they end at once.
     void step(float share);
-    // Likewise, but what is on its way to the device counts as being there: for who brings it there before the next frame.
+    // Ends all exchanges, and counts what is on its way to the device as there: for callers that bring it there before the next frame.
     void exchangeAtOnce();
 
     [[nodiscard]] bool has(LeafLevel at) const;
     [[nodiscard]] bool isEmpty(std::uint32_t leaf) const { return leaves_[leaf].empty(); }
-    // Whether fewer splats are wanted of the leaf than are there.
+    // True if fewer splats are wanted of the leaf than are there.
     [[nodiscard]] bool isTooFine(std::uint32_t leaf) const;
     // For LevelsThere.
     [[nodiscard]] std::vector<std::uint64_t> loadedLevels() const;
     [[nodiscard]] std::uint32_t partCount() const { return part_count_; }
     [[nodiscard]] bool isExchanging() const { return !changing_.empty(); }
-    // Splats of the wanted levels, and of these what is there.
+    // Splats of the wanted levels, and how many of these are there.
     [[nodiscard]] std::uint64_t splatsWanted() const { return splats_wanted_; }
     [[nodiscard]] std::uint64_t splatsThere() const;
 
@@ -51,12 +51,12 @@ private:
         float fade;
     };
     [[nodiscard]] std::uint64_t splatsOf(std::uint32_t leaf, std::uint32_t level) const { return tree_[leaf].levels[level].splats.count; }
-    // The part that a leaf ends with as things are; end() where it is to have none.
+    // The part that a leaf ends with as things are; end() if it is to have none.
     [[nodiscard]] std::vector<Shown>::iterator goalOf(std::uint32_t leaf);
     void remove(std::uint32_t leaf, std::vector<Shown>::iterator shown);
     // False: there is nothing left to change in this leaf.
     bool stepLeaf(std::uint32_t leaf, float share, bool at_once);
-    // Parts that go anyway, now.
+    // Removes parts that go anyway, now.
     void makeRoom();
 
     ResidentScene resident_;

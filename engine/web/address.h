@@ -6,7 +6,7 @@
 namespace binosplat {
 
 struct Address {
-    std::string text;    // as it is asked for: without a fragment, and with letters beyond ASCII encoded
+    std::string text;    // as it is requested: without a fragment, and with letters beyond ASCII encoded
     std::string folder;  // up to its last slash, with it and without what follows a question mark
     std::string server;  // its scheme, host and port
 };
@@ -14,7 +14,7 @@ struct Address {
 // Throws Error if `source` is no http or https address, or names a user.
 Address parseAddress(const std::string& source);
 
-// Of the file `name` in the folder of `address`; the empty name is the address itself. Throws Error if it would lead out of there.
+// The address of the file `name` in the folder of `address`; for the empty name `address` itself. Throws Error if it would lead out.
 std::string addressOf(const Address& address, const std::string& name);
 
 }  // namespace binosplat

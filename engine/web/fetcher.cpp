@@ -114,13 +114,13 @@ private:
         const auto found = std::ranges::find(running_, handle, [](const auto& transfer) { return transfer->handle(); });
         std::unique_ptr<Transfer> transfer = std::move(*found);
         running_.erase(found);
-        // Judged before it is removed, which closes the connection of one that was broken off.
+        // Judged before it is removed, which closes the connection of an interrupted one.
         const bool is_over = transfer->finish(code, is_stalled);
         curl_multi_remove_handle(multi_.get(), handle);
         if (!is_over) { waiting_.push_back(std::move(transfer)); }
     }
 
-    // Milliseconds until something is due; curl itself wakes up for what comes, and for its own timers.
+    // Milliseconds until something is due; curl itself wakes up for incoming data, and for its own timers.
     [[nodiscard]] int untilNext() const {
         auto pause = running_.empty() ? kIdle : std::min(kWatch, settings_.patience);
         const Transfer::Clock::time_point now = Transfer::Clock::now();

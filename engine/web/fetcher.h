@@ -15,9 +15,9 @@ struct FetchSettings {
     using Milliseconds = std::chrono::milliseconds;
     std::uint64_t most_bytes = std::uint64_t{64} << 30;  // of one file
     int attempts = 4;
-    Milliseconds first_pause{500};   // before the second attempt, then twice as long each time
+    Milliseconds first_pause{500};   // before the second attempt, then doubled each time
     Milliseconds most_pause{20000};  // that a server may ask for
-    Milliseconds patience{20000};    // with one from which next to nothing comes
+    Milliseconds patience{20000};    // with a server that sends next to nothing
     std::size_t at_once = 8;
 };
 
@@ -29,13 +29,13 @@ struct FetchRequest {
 
 struct Fetched {
     enum class Kind {
-        kNew,          // the file, whole
-        kUnchanged,    // the copy that is there is the file still
+        kNew,          // the whole file
+        kUnchanged,    // the existing copy is still the file
         kUnreachable,  // no server answers, or it cannot serve anybody at present
         kRefused,      // there is no such file, or none that may be taken
     };
     Kind kind = Kind::kRefused;
-    std::string reason;  // of the last two: what is wrong and what to do, after the address
+    std::string reason;  // for the last two: what is wrong and what to do, after the address
     std::unique_ptr<IncomingFile> file{};
     FileVersion version{};
 };
@@ -50,7 +50,7 @@ public:
 
     [[nodiscard]] std::future<Fetched> request(FetchRequest request);
 
-    // Of all that was asked for until now, as far as the servers have said how much it is.
+    // Of everything requested so far, as far as the servers have said how much it is.
     [[nodiscard]] double share() const;
 
 private:

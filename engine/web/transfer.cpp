@@ -1,4 +1,4 @@
-// What is asked of curl, and what its verdicts mean.
+// Requests to curl, and the meaning of its verdicts.
 #include "engine/web/transfer.h"
 
 #include "engine/scene/address.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr long kMostRedirects = 5;
 constexpr long kBufferBytes = 1 << 18;
 constexpr std::uint64_t kLongestErrorPage = 1 << 16;
-// Less than this while a server's patience lasts is nothing.
+// Fewer bytes than this while a server's patience lasts count as none.
 constexpr std::uint64_t kLeastBytes = 1024;
 constexpr std::size_t kLongestVersion = 256;
 constexpr long kOk = 200, kPartial = 206, kNoSuchRange = 416;
@@ -61,7 +61,7 @@ Transfer::Transfer(const WebCache& cache, const FetchSettings& settings, FetchTa
     : cache_(cache), settings_(settings), tally_(tally), request_(std::move(request)), easy_(curl_easy_init()) {
     if (easy_ == nullptr) { throw std::bad_alloc(); }
     const auto set = [&](CURLoption option, auto value) { curl_easy_setopt(easy_.get(), option, value); };
-    // A file of this machine is never followed to, nor is a secure address to an insecure one.
+    // Never followed: redirects to a file of this machine, and from a secure address to an insecure one.
     const bool is_secure = request_.address.substr(0, 5).find_first_of("sS") != std::string::npos;
     set(CURLOPT_URL, request_.address.c_str());
     set(CURLOPT_PROTOCOLS_STR, "http,https");
@@ -124,7 +124,7 @@ std::size_t Transfer::writeBody(char* data, std::size_t size, std::size_t count,
     return static_cast<Transfer*>(transfer)->take(data, size * count);
 }
 
-// Other than `bytes` stops the transfer. Nothing is thrown through curl.
+// Returning anything other than `bytes` stops the transfer. Nothing is thrown through curl.
 std::size_t Transfer::take(const char* data, std::size_t bytes) {
     got_bytes_ += bytes;
     try {
@@ -168,7 +168,7 @@ std::optional<Transfer::ContentRange> Transfer::contentRange() const {
     const char *const from = text.data() + kUnit.size(), *const end = text.data() + text.size();
     const auto [after, error] = std::from_chars(from, end, range.first);
     if (error != std::errc{} || after == end || *after != '-') { return std::nullopt; }
-    std::from_chars(text.data() + slash + 1, end, range.total);  // 0 where the server does not know it
+    std::from_chars(text.data() + slash + 1, end, range.total);  // 0 if the server does not know it
     return range;
 }
 
@@ -237,7 +237,7 @@ bool Transfer::saysLength() const {
     return length >= 0 || http >= CURL_HTTP_VERSION_2_0 || !header("Transfer-Encoding").empty();
 }
 
-// Nothing if the server does not say where the file ends: one that was cut off would be taken for whole for ever.
+// Nothing if the server does not say where the file ends: a truncated one would be taken for whole forever.
 FileVersion Transfer::versionSent() const {
     if (!saysLength()) { return {}; }
     FileVersion version{header("ETag"), header("Last-Modified")};
@@ -261,11 +261,11 @@ bool Transfer::finish(CURLcode code, bool is_stalled) {
 std::optional<Fetched> Transfer::judge(CURLcode code, bool is_stalled) {
     using Kind = Fetched::Kind;
     const long answer = status();
-    // What curl takes for a whole answer ended before it began.
+    // An answer that curl takes for whole, but that ended before it began.
     if (code == CURLE_OK && answer == kOk && (file_ == nullptr || kept_bytes_ > 0) && !saysLength()) { code = CURLE_GOT_NOTHING; }
     if (!refused_.empty()) { return Fetched{Kind::kRefused, refused_}; }
     const bool is_rest = answer == kPartial && kept_bytes_ > 0 && isTheRest();
-    // With its rest a file is as long as the server said of the whole, whatever it says of the rest.
+    // A resumed file is as long as the server said of the whole, whatever it says of the rest.
     if (code == CURLE_OK && is_rest && file_->sizeBytes() != (is_sized_ ? expected_bytes_ : contentRange()->total)) {
         code = CURLE_PARTIAL_FILE;
     }

@@ -1,5 +1,5 @@
-// One request to a server, as often as it takes. A file that broke off goes on where it ended, if the server says which version of it that
-// was (a strong ETag, RFC 9110, section 8.8.3) and sends the rest of the same; else it starts over.
+// One request to a server, as often as it takes. A file that broke off is resumed where it ended, if the server says which version of it
+// that was (a strong ETag, RFC 9110, section 8.8.3) and sends the rest of the same; else it starts over.
 #pragma once
 
 #include "engine/web/fetcher.h"
@@ -59,15 +59,15 @@ private:
         std::uint64_t first = 0, total = 0;
     };
     [[nodiscard]] std::optional<ContentRange> contentRange() const;
-    // Whether the answer (206) is the rest of what is there.
+    // True if the answer (206) is the rest of what is there.
     [[nodiscard]] bool isTheRest() const;
-    // The rest was asked for, and the answer says that it is not to be had so.
+    // The rest was requested, and the answer says that it cannot be had that way.
     [[nodiscard]] bool isNoRest() const;
     [[nodiscard]] bool canGoOn() const;
     void setHeaders();
     [[nodiscard]] long status() const;
     [[nodiscard]] std::string header(const char* name) const;
-    // How long the body is, or where it ends.
+    // True if the answer says how long the body is, or where it ends.
     [[nodiscard]] bool saysLength() const;
     [[nodiscard]] FileVersion versionSent() const;
     // None: another attempt may do.
@@ -87,8 +87,8 @@ private:
     // An attempt that brought this much, and whose rest can be asked for, does not count: large files may break off often.
     static constexpr std::uint64_t kWorthwhileBytes = 1 << 20;
     int attempts_ = 0;                                   // since one that was worthwhile
-    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // so much of the file makes the next one that; it never falls, or a server whose
-                                                         // file is always another one would be asked for ever
+    std::uint64_t worthwhile_bytes_ = kWorthwhileBytes;  // this much of the file makes the next one that; it never falls, or a server whose
+                                                         // file is always another one would be asked forever
     Clock::time_point due_{}, watched_since_{};
     std::uint64_t got_bytes_ = 0, watched_bytes_ = 0, expected_bytes_ = 0;
     bool is_sized_ = false;  // the server has said how long it is

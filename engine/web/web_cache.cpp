@@ -1,4 +1,4 @@
-// The folder's names: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part of what is on its way.
+// The folder's names: FINGERPRINT.json, FINGERPRINT.data, and FINGERPRINT-PROCESS-N.part while a file is on its way.
 #include "engine/web/web_cache.h"
 
 #include "engine/error.h"
@@ -22,10 +22,10 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kFreeSpace = std::uint64_t{64} << 20;  // that other programs may need
 constexpr std::uint64_t kLongestNote = 1 << 16;
 constexpr int kMostNames = 1000;
-// A file that is no copy and that nothing was written to for so long is on its way no more.
+// A file that is no copy, and that nothing was written to for this long, is no longer on its way.
 constexpr std::chrono::hours kOnItsWay(1);
 
-// FNV-1a. Two addresses with the same one would only take each other's place: the note names the address.
+// FNV-1a. Two addresses with the same one would only replace each other: the note names the address.
 std::string fingerprint(const std::string& text) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char letter : text) { hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3u; }

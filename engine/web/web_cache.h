@@ -1,6 +1,6 @@
-// What was fetched, kept on the disk for the next time: for each address a file of its bytes, and a note (JSON) of whose they are.
+// Fetched files, kept on the disk for the next time: for each address a file of its bytes, and a note (JSON) of whose they are.
 // Several programs may use one folder: bytes are written under a name that nobody else has and put in place in one step, as are notes, and
-// a note that was written for other bytes counts for nothing.
+// a note that was written for other bytes is ignored.
 #pragma once
 
 #include "engine/platform.h"
@@ -36,7 +36,7 @@ private:
     bool is_kept_ = false;
 };
 
-// What a server said of a version of a file, to ask it whether there is a newer one.
+// A server's description of a version of a file, to ask it whether there is a newer one.
 struct FileVersion {
     std::string etag, last_modified;
 };
@@ -54,12 +54,12 @@ public:
 
     // Null, with the reason in errno, if no file can be made. By any thread.
     [[nodiscard]] std::unique_ptr<IncomingFile> begin(const std::string& address) const;
-    // Replaces the copy that was kept of it. Throws Error if the disk does not take it.
+    // Replaces the copy that was kept of it. Throws Error if it cannot be written to the disk.
     void keep(const std::string& address, std::unique_ptr<IncomingFile> file, const FileVersion& version) const;
     // Counts as a use.
     [[nodiscard]] std::optional<KeptCopy> find(const std::string& address) const;
-    // Removes copies until all that are left have `most_bytes`, those that were not used for longest first, and what broken-off programs
-    // left. What cannot be removed stays.
+    // Removes copies until those left have `most_bytes` at most, the least recently used first, and leftovers of programs that broke
+    // off. What cannot be removed stays.
     void trim(std::uint64_t most_bytes) const noexcept;
 
 private:

@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of the whole, what fetching takes; the rest is reading.
+// The share of the whole that fetching takes; the rest is reading.
 constexpr double kFetchingShare = 0.7;
 constexpr std::chrono::milliseconds kLook(50);
-// Another program may throw out what was just fetched, but hardly time and again.
+// Another program may remove what was just fetched, but hardly time and again.
 constexpr int kMostTurns = 3;
 
 std::string dateOf(std::int64_t seconds) { return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(seconds))); }

@@ -1,4 +1,4 @@
-// The files of a scene on the web: what is kept of them and has not changed there, and otherwise what the server sends.
+// The files of a scene on the web: kept copies that have not changed there, and otherwise what the server sends.
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -29,7 +29,7 @@ std::filesystem::path webCacheFolder();
 // For one thread. Files of the cache stay while it lives, unless another program needs the room; then they are fetched again.
 class WebFiles final : public SceneFiles {
 public:
-    // `waiting` is called now and then where a file is waited for, with the share done of all that was asked for; it may throw. Throws
+    // `waiting` is called now and then while a file is waited for, with the share done of everything requested; it may throw. Throws
     // Error if `address` is none, in a build without network, and if the cache cannot be written.
     WebFiles(const std::string& address, const WebSettings& settings, Progress waiting = {});
     WebFiles(const WebFiles&) = delete;
@@ -42,7 +42,7 @@ public:
 
     // A sentence if a server did not answer and copies were taken for its files; else empty.
     [[nodiscard]] const std::string& stale() const { return stale_; }
-    // How many files could not be had so far: what failed may succeed later.
+    // How many files could not be had so far: they may be had later.
     [[nodiscard]] std::uint64_t failedCount() const { return failed_count_; }
 
 private:
@@ -73,8 +73,8 @@ private:
     std::set<std::string> settled_;
     std::string stale_;
     std::uint64_t failed_count_ = 0;
-    bool is_unreachable_ = false;  // what is kept is taken as it is
-    Fetcher fetcher_;              // first to go
+    bool is_unreachable_ = false;  // kept copies are taken as they are
+    Fetcher fetcher_;              // destroyed first
 };
 
 // Loads `source`, which is an address or whatever loadScene takes.

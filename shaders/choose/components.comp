@@ -23,7 +23,7 @@ bool isHole(WarpView warp, uvec2 at) {
 // Other threads change parents meanwhile; every value one may see leads to the same root.
 uint parentOf(uint pixel) { return atomicOr(pass.pixels.at[slotOf(pixel)].parent, 0); }
 
-// On the way up each pixel is hung on its grandparent: otherwise the chains of a hole are as long as it is wide and high.
+// On the way up each pixel is linked to its grandparent: otherwise the chains of a hole are as long as it is wide and high.
 uint rootOf(uint pixel) {
     uint parent = parentOf(pixel);
     while (parent != pixel) {
@@ -47,7 +47,7 @@ void unite(uint a, uint b) {
     }
 }
 
-// With more components than boxes none gets one, since which came first is up to the order of threads.
+// With more components than boxes none gets one, since which came first depends on the order of threads.
 bool haveBoxes() { return pass.counters.at[0].components <= pass.box_capacity; }
 
 // Marks the tiles that [low, high) meets, grown by the margin.

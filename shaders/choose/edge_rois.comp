@@ -1,6 +1,6 @@
 // edge_rois: the borders of the target that the source does not see (paper, section 3.5, step 1). Samples along the
-// edges of the source are moved at the least and the greatest depth; where they land bounds what is covered. A thread a tile:
-// every workgroup finds the bounds for itself, since that takes it less than waiting for another dispatch.
+// edges of the source are moved at the least and the greatest depth; where they land bounds what is covered. A thread per tile:
+// every workgroup finds the bounds for itself, which takes less than waiting for another dispatch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -55,7 +55,7 @@ void sampleEdges(WarpView warp) {
         const vec2 pixel_px = vertical ? vec2(edge == 0 ? 0.5 : size.x - 0.5, along * size.y) : vec2(along * size.x, edge == 1 ? 0.5 : size.y - 0.5);
         const vec3 moved = movePixel(warp.target_from_source, pixel_px, inverse_depth_bounds[sample_index & 1]);
         if (!(moved.z > 0)) { continue; }
-        // The paper counts pixels from 0 at their centres. To 2^-14 px, so that an edge that does not move stays at 0.
+        // The paper counts pixels from 0 at their centres. Rounded to 2^-14 px, so that an edge that does not move stays at 0.
         const vec2 place = round((moved.xy - 0.5) * 16384.0) / 16384.0;
         low.xy = min(low.xy, place);
         high.xy = max(high.xy, place);

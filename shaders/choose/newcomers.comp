@@ -1,5 +1,5 @@
-// newcomers: splats that the target sees and the source does not. Standing in front of what was reprojected they leave no hole,
-// so that no look at the picture finds them; here each adds its expected error to the tiles it meets.
+// newcomers: splats that the target sees and the source does not. They stand in front of what was reprojected and leave no hole,
+// so the picture does not reveal them; here each adds its expected error to the tiles it meets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -21,17 +21,17 @@ layout(push_constant, scalar) uniform Push { NewcomersPass pass; };
 
 shared uint unseen_ranks[kNewcomersBlock];
 shared uint unseen_count;
-// Splats over more tiles than these would take one thread long: they stay in the list, and all others leave it.
+// Splats over more tiles than this would keep one thread busy for long: they stay in the list, and all others leave it.
 const uint kLargeTiles = 64;
 const uint kDone = 0xffffffffu;
 shared uint large_count;
 
-// A tile's sum stops at half of what a word holds, in steps; whatever gets there is rendered anyway. The greatest float below it is what one
-// splat adds at most.
+// A tile's sum stops at half of what a word holds, in steps; a tile that gets there is rendered anyway. One splat adds at most the greatest
+// float below it.
 const uint kMostSteps = 0x7fffffffu;
 const float kMostStepsOfOne = 2147483520.0;
 
-// Whether the splat's centre, held to the picture, is clearly nearer than what the source sees in the middle of its tile; also in a
+// True if the splat's centre, clamped to the picture, is clearly nearer than what the source sees in the middle of its tile; always in a
 // tile that is rendered.
 bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
     const uint tile = tileOf(warp.size_tiles, uvec2(clamp(pixel_px, vec2(0), vec2(warp.size_px - 1))));
@@ -39,7 +39,7 @@ bool standsInFront(WarpView warp, vec2 pixel_px, float inverse_depth) {
     return pass.tile_kinds.at[tile] != 0 || moving == 0 || inverse_depth > kInFrontRatio * inverseDepthOf(moving);
 }
 
-// By exchange, since many threads that each looked before they added could still go beyond kMostSteps together.
+// By exchange, since many threads that each checked before adding could still exceed kMostSteps together.
 void addError(uint tile, uint steps) {
     uint seen = atomicOr(pass.tile_errors.at[tile], 0), before;
     do {
@@ -48,8 +48,8 @@ void addError(uint tile, uint steps) {
     } while (seen != before);
 }
 
-// What the splat adds to the tiles it meets, by one thread or, of a large one, by all `together`, which share its rows. False: it is large, and
-// one thread alone leaves it.
+// Adds the splat's error to the tiles it meets, by one thread or, if it is large, by all threads `together`, which share its rows.
+// False: it is large, and one thread alone leaves it.
 bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const CameraSplat splat = loadCameraSplat(pass.chunks, placeOfSplat(pass.order.at[rank], pass.chunk_bits), eye);
     bool has_reference;
@@ -67,7 +67,7 @@ bool addNewcomer(uint rank, EyeView eye, WarpView warp, bool together) {
     const float jacobian = p.plane_from_pixel.x * abs(p.plane_from_pixel.z);
     const float area_px = 3.14159265 * (kSplatKind != kDiscs ? 1 / jacobian : 1 / eye.low_pass + p.inverse_depth * p.inverse_depth / jacobian);
     const float pixels = has_reference ? min(area_px / float(tiles), float(kTileSize * kTileSize)) : float(kTileSize * kTileSize);
-    const float error = warp.newcomer_error * exp2(-negativeLog2Opacity(p));  // as dimmed, where it is
+    const float error = warp.newcomer_error * exp2(-negativeLog2Opacity(p));  // after dimming, if any
     const uint steps = uint(min(error * error * pixels * kErrorSteps, kMostStepsOfOne));
     const int first = together ? int(gl_LocalInvocationIndex) : 0, rows_apart = together ? int(kWarpGroup) : 1;
     for (int row = box.y + first; row < box.w; row += rows_apart) {

@@ -1,6 +1,6 @@
-// periphery: what an eye sees of its picture where it does not look. First, which tiles of a picture of half the size are needed: those
-// where the eye resolves nothing finer than its samples. Then, once that picture is there, which tiles are rendered at the eye's own size:
-// the others, and those of which the eye would see what half the size loses.
+// periphery: chooses the resolution of an eye's picture where it does not look. First, which tiles of a half-size picture are needed: those
+// where the eye resolves nothing finer than its samples. Then, once that picture exists, which tiles are rendered at the eye's own size:
+// the others, and those in which the eye would see what is lost at half the size.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -25,11 +25,11 @@ bool isShown(uvec2 size_tiles, uvec2 tile) {
     return all(equal(uvec2(pass.shown_mask), uvec2(0))) || isInMask(pass.shown_mask, size_tiles, tile);
 }
 
-// Whether the tile lies so far beyond the clear angle that the eye resolves nothing finer there than a sample of half the size.
+// True if the tile lies so far beyond the clear angle that the eye resolves nothing finer there than a half-size sample.
 bool isBeyond(uvec2 tile) { return seenShareThere(pass.gaze, tile) <= kCoarseShare; }
 
-// Whether a tile of the half-size picture is needed: one of the eye's may be made from it, or reads beyond its own border there. A tile of
-// 8x8 samples reads two beyond, so that it meets no more than the tile that it lies in and the one that it lies next to.
+// True if a tile of the half-size picture is needed: a tile of the eye's may be made from it, or reads it beyond its own border. A tile of
+// 8x8 samples reads two beyond, so that it meets no more than the half-size tile that it lies in and the adjacent ones.
 bool isNeeded(uvec2 half_tile, uvec2 size_tiles) {
     bool needed = false;
     [[unroll]] for (int i = 0; i < 16; ++i) {
@@ -45,7 +45,7 @@ vec3 sampleAt(ivec2 at, ivec2 last) {
     return colourAt(pass.colours, pass.half_colours, uint(held.y * (last.x + 1) + held.x)).rgb;
 }
 
-// The squares of the second differences of a tile's row of samples, in kErrorSteps.
+// The squared second differences of one row of a tile's samples, in kErrorSteps.
 uint detailOfRow(ivec2 at, ivec2 last) {
     if (at.y > last.y) { return 0; }
     vec3 left = sampleAt(at - ivec2(1, 0), last), here = sampleAt(at, last);
@@ -64,7 +64,7 @@ uint detailOfRow(ivec2 at, ivec2 last) {
 
 bool isFromPast() { return any(notEqual(uvec2(pass.tile_kinds), uvec2(0))); }
 
-// By every thread.
+// Every thread must call it.
 void listTile(bool exists, bool chosen, uint tile, uvec2 size_tiles) {
     const uvec4 lanes = subgroupBallot(chosen);
     const uint count = subgroupBallotBitCount(lanes);
@@ -92,7 +92,7 @@ void main() {
         listTile(exists, exists && isNeeded(uvec2(tile % half_tiles.x, tile / half_tiles.x), size_tiles), tile, half_tiles);
         return;
     }
-    // kHalfTileRows threads a tile.
+    // kHalfTileRows threads per tile.
     const uint in_group = gl_LocalInvocationIndex / kHalfTileRows, row = gl_LocalInvocationIndex % kHalfTileRows;
     const uint tile = gl_WorkGroupID.x * kGroupTiles + in_group;
     const uvec2 at = uvec2(tile % size_tiles.x, tile / size_tiles.x);

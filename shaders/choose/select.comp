@@ -1,4 +1,4 @@
-// select: the tiles that are rendered, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
+// select: the tiles to render, as a list and as a mask: those that earlier passes have marked and, where errors are predicted, those
 // with the greatest error per pair, as many as the budget allows. Of equal ones the first are taken. A thread per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -12,9 +12,9 @@
 layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { SelectPass pass; };
 layout(constant_id = 0) const bool kPredicted = false;  // otherwise tile_kinds says which
-layout(constant_id = 1) const bool kPast = false;  // two eyes share the budget, and a tile that is dearer than what is left has its turn
+layout(constant_id = 1) const bool kPast = false;  // two eyes share the budget, and a tile that costs more than is left still gets its turn
 
-const uint kTilesPerStep = 8;  // loaded at a time, since each load takes as long as all of them
+const uint kTilesPerStep = 8;  // loaded at once, since each load takes as long as all of them
 
 // Where the budget ends (price).
 struct End {
@@ -22,11 +22,11 @@ struct End {
     uint left;  // of the budget, for its tiles
 };
 
-// Whether what is left of the budget in the last bin is for this tile. One that the list counted in a higher bin, as if it were seen whole
-// (price), has had its turn there, unless the budget is enough for all.
+// True if the tile may use what is left of the budget in the last bin. A tile that the list counted in a higher bin, as if its error were
+// seen whole (price), has had its turn there, unless the budget is enough for all.
 bool isOfLast(uint price, End end) { return price != 0 && price >> 22 == end.bin && ((price & kSeenInPart) == 0 || end.left == 0xffffffffu); }
 
-// What the tiles of the last bin cost that come before this workgroup's; `first_tile` is a multiple of its size.
+// The cost of the last bin's tiles before this workgroup's; `first_tile` is a multiple of its size.
 uint costBefore(uint first_tile, End end) {
     uint own = 0;
     for (uint tile = gl_LocalInvocationIndex; tile < first_tile; tile += kTilesPerStep * kWarpGroup) {

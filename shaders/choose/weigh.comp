@@ -1,7 +1,7 @@
-// weigh: what is cheap to render is not moved. Moving a tile costs about the same whatever it shows. Rendering it costs in proportion to its
-// pairs of tile and splat, and the source's ranges show about how many these are. A thread per tile. The last workgroup decides
-// whether moving pays at all: if not, the passes that move are empty dispatches, every tile is rendered, and nothing is lost. Where it did
-// not pay in the frame before, the source comes without what moving needs, and the decision is only for the next frame.
+// weigh: tiles that are cheap to render are not warped. Warping a tile costs about the same whatever it shows. Rendering it costs in
+// proportion to its pairs of tile and splat, and the source's ranges show roughly how many these are. A thread per tile. The last workgroup
+// decides whether warping pays at all: if not, the passes that warp are empty dispatches, every tile is rendered, and nothing is lost. If
+// it did not pay in the frame before, the source comes without what warping needs, and the decision is only for the next frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
@@ -17,7 +17,7 @@ layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { WeighPass pass; };
 layout(constant_id = 1) const bool kHiddenTiles = false;  // parts of the source were not rendered
 layout(constant_id = 2) const bool kKindsGiven = true;    // tile_kinds says which tiles no lens shows; otherwise all are shown
-layout(constant_id = 3) const bool kMayMove = true;       // the source's pixels are there to be moved
+layout(constant_id = 3) const bool kMayMove = true;       // the source's pixels can be warped
 
 // The pixel in the middle of a tile; of an even row, since odd ones may have no depths.
 uvec2 middleOf(WarpView warp, uint tile) {
@@ -25,7 +25,7 @@ uvec2 middleOf(WarpView warp, uint tile) {
     return min(at * kTileSize + kTileSize / 2, warp.size_px - 1) & uvec2(~0u, ~1u);
 }
 
-// Pairs of the source tile that this pixel comes from, if it is as deep as what the source sees there.
+// Pairs of the source tile that this pixel comes from, assuming that it is as deep as what the source sees there.
 uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     const vec2 middle_px = vec2(middle) + 0.5;
     const vec3 moved = movePixel(warp.source_from_target, middle_px, moving == 0 ? 0 : inverseDepthOf(moving));
@@ -36,15 +36,15 @@ uint pairsNear(WarpView warp, uvec2 middle, uint moving) {
     return range.y - range.x;
 }
 
-// Whether the moved tiles save more than two costs together: what moving costs where no tile is moved (kMoveSharedPart), and the budget for
-// what it gets wrong.
-// Without depths it is less certain where tiles come from: to be taken up again, moving must then save clearly more, or frames would
+// True if the warped tiles save more than two costs together: the cost of warping where no tile is warped (kMoveSharedPart), and the
+// budget for mending its errors.
+// Without depths it is less certain where tiles come from: to be taken up again, warping must then save clearly more, or frames would
 // alternate.
 bool movingPays(WarpView warp, uint all_saved, uint picture_cost, uint tiles) {
     const uint saved = kMayMove ? all_saved : all_saved - all_saved / kResumePart;
     const float budget = warp.budget * float(picture_cost);
     const uint mending = budget < 4e9 ? uint(budget) : 4000000000u;
-    // What is left for the shared part, times kMoveSharedPart, against what moving all tiles costs: in 64 bits.
+    // What is left for the shared part, times kMoveSharedPart, against the cost of warping all tiles: in 64 bits.
     uvec2 gain, cost;
     umulExtended(saved - min(saved, mending), kMoveSharedPart, gain.y, gain.x);
     umulExtended(warp.move_cost, tiles, cost.y, cost.x);

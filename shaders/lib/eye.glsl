@@ -1,4 +1,4 @@
-// The eye that a workgroup works for, brought to shared memory once, so that its forty words are not fetched by every thread.
+// The eye that a workgroup works for, loaded into shared memory once, so that not every thread fetches its forty words.
 
 shared EyeView group_eye;
 

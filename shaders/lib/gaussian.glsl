@@ -8,7 +8,7 @@
 struct ScreenGaussian {
     float xx, xy, yy;  // Sigma2, px^2
     float root_det;    // of Sigma2
-    float root_sharp;  // likewise, without the low-pass
+    float root_sharp;  // of Sigma2 without the low-pass
     vec2 with_depth;   // the covariance of 1/z and the place on the screen, px
 };
 
@@ -18,7 +18,7 @@ float lengthOf(vec3 areas, float rest) {
     return most * length(vec4(areas, rest) / most);
 }
 
-// Of a centre beyond the eye's plane.
+// For a centre beyond the eye's plane.
 ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 size_px = vec2(eye.size_px);
     const vec2 low = -(eye.principal_px + kDerivativeBorder * size_px) / eye.focal_px;
@@ -30,7 +30,7 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     const vec2 u = scales.x * px_per_unit * (splat.t_u.xy - slope * splat.t_u.z);
     const vec2 v = scales.y * px_per_unit * (splat.t_v.xy - slope * splat.t_v.z);
     const vec2 w = scales.z * px_per_unit * (t_w.xy - slope * t_w.z);
-    // u x v and its likes: the area that two axes span, seen along the line of sight.
+    // u x v and the like: the area that two axes span, seen along the line of sight.
     const vec3 along = vec3(dot(splat.t_u, vec3(slope, 1)), dot(splat.t_v, vec3(slope, 1)), dot(t_w, vec3(slope, 1)));
     const vec3 areas = vec3(scales.y * px_per_unit.x, scales.x * px_per_unit.x, scales.x * px_per_unit.x) *
                        (vec3(scales.z, scales.z, scales.y) * px_per_unit.y) * along;
@@ -40,14 +40,14 @@ ScreenGaussian screenGaussian(CameraSplat splat, EyeView eye) {
     g.yy = u.y * u.y + v.y * v.y + w.y * w.y + eye.screen_variance;
     const vec3 climb = scales * vec3(splat.t_u.z, splat.t_v.z, t_w.z) / splat.centre.z;
     g.with_depth = -(climb.x * u + climb.y * v + climb.z * w) / splat.centre.z;
-    // The low-pass's own part twice over in xx + yy.
+    // xx + yy contains the variance of the low-pass twice.
     const float blurred = sqrt(eye.screen_variance) * sqrt(g.xx + g.yy - eye.screen_variance);
     g.root_det = lengthOf(areas, blurred);
     g.root_sharp = lengthOf(areas, 0);
     return g;
 }
 
-// What the low-pass leaves of an opacity that was trained with it in mind (Yu et al. 2024, section 5.2).
+// What the low-pass leaves of an opacity that was trained with it (Yu et al. 2024, section 5.2).
 float dimmedOpacity(float opacity, ScreenGaussian g) { return opacity * min(g.root_sharp / g.root_det, 1); }
 
 // The geometry of ProjectedSplat; see there. `has_reference`: the centre lies beyond the near plane, and the splat is seen at all.
@@ -70,7 +70,7 @@ ProjectedSplat projectGaussian(CameraSplat splat, EyeView eye, bool dimmed, out 
     return p;
 }
 
-// Of a splat of the scene's kind.
+// For a splat of the scene's kind.
 ProjectedSplat projectSplat(CameraSplat splat, EyeView eye, out bool has_reference) {
     if (kSplatKind == kDiscs) { return projectGeometry(splat, eye, has_reference); }
     return projectGaussian(splat, eye, kSplatKind == kAntialiasedGaussians, has_reference);

@@ -1,7 +1,7 @@
 // Workgroups: which one this is, which thread, and prefix sums across one. No subgroup width is assumed.
 //
-// Here and elsewhere loops that matter ask at their end whether to go on: a device that runs branches under a mask, as llvmpipe does, goes
-// through the body of a `for` once more than there are items.
+// Here and elsewhere hot loops test at their end whether to go on: a device that runs branches under a mask, as llvmpipe does, runs
+// the body of a `for` once more than there are items.
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
@@ -10,8 +10,8 @@
 // Dispatches of many groups are folded into rows.
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-// Even ones first, then the odd ones: pictures are often full below and empty above, and a device that deals out workgroups in runs gets
-// runs of like work.
+// Even numbers first, then the odd ones: pictures are often full below and empty above, and a device that deals out workgroups in runs
+// then gets runs of similar work.
 uint spread(uint i, uint count) {
     const uint even = (count + 1) / 2;
     return i < even ? 2 * i : 2 * (i - even) + 1;
@@ -23,7 +23,7 @@ uint laneCount() { return subgroupBallotBitCount(subgroupBallot(true)); }
 // The thread's place in the order that the scans below sum in: by subgroup and lane, which the invocation index need not follow.
 uint threadIndex() { return gl_SubgroupID * laneCount() + gl_SubgroupInvocationID; }
 
-// One value a subgroup, of at least four lanes, and one for all.
+// One value per subgroup, of at least four lanes, and one for all.
 shared uint subgroup_sums[kGroupSize / 4 + 1];
 
 // The sum of `value` over the threads before this one; `total` is the sum over all. Every thread must call it.
@@ -52,7 +52,7 @@ uint scanGroup(uint value, out uint total) {
     return subgroup_sums[gl_SubgroupID] + before_in_subgroup;
 }
 
-// The greatest `value` of the threads up to and with this one; `greatest` is that of all. Every thread must call it.
+// The greatest `value` of the threads up to and including this one; `greatest` is that of all. Every thread must call it.
 uint scanGroupMax(uint value, out uint greatest) {
     const uint in_subgroup = subgroupInclusiveMax(value);
     const uint of_subgroup = subgroupMax(value);

@@ -15,6 +15,6 @@ void lagrangeWeights(float t, out float weights[kTaps]) {
     weights[5] = low * d * e * (1.0 / 120);
 }
 
-// Of six samples in a row what changes its sign from one to the next, which is lost halfway between them: 32 times its amplitude.
+// 32 times the amplitude of what alternates in sign over six consecutive samples, which is lost halfway between them.
 const float kFifthDifference[kTaps] = float[kTaps](-1, 5, -10, 10, -5, 1);
 float lostShare(float t) { return 4 * t * (1 - t) / 32; }

@@ -3,16 +3,16 @@
 
 shared uint group_is_last;
 
-// Whether all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
+// True if all other workgroups of the dispatch are done; `list` counts them and is back at 0 afterwards. In uniform control flow, by
 // every workgroup, once.
 bool isLastGroup(ListStates list);
 // The same for the `blocks` workgroups of one run of a sort's blocks, at most 16.
 bool isLastOfRun(ListStates list, uint run, uint blocks);
 
-// What the others wrote is then there to read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
+// What the others wrote can then be read, if it is read and written through a `coherent` array. In the words of Vulkan's memory model
 // each memoryBarrierBuffer releases and acquires for the whole device; two of them synchronize where a barrier() lies between them, or the
 // two atomicAdds. So a thread's writes are handed to its thread 0, from there to thread 0 of the last workgroup, and on to its threads.
-// What the workgroup wrote is handed to its thread 0.
+// Hands what the workgroup wrote to its thread 0.
 void beginLast() {
     memoryBarrierBuffer();
     barrier();

@@ -5,7 +5,7 @@
 //   4..0   how far its inverse depth spreads, as the standard deviation's share of the mean: 2^((code - 1)/2 - 13), or nothing;
 //          where colours are copied, which pixel it is: bit 0 of its column, and in the next place that of its row
 //
-// What is cut off the inverse depth is 2^-19 of it: 1e-4 px where the eyes see a point 50 px apart.
+// Rounding costs up to 2^-19 of the inverse depth: 1e-4 px where the eyes see a point 50 px apart.
 
 const uint kLanded = 0x20u;
 const uint kSpreadBits = 0x1fu;
@@ -14,7 +14,7 @@ uint movingPixel(float inverse_depth, uint landed, uint spread) { return ((((flo
 float inverseDepthOf(uint moving) { return uintBitsToFloat(((moving >> 6) - 1) << 5); }
 
 // A pixel is moved back from the middle of the one that it arrived in, and so comes out as far off as it had landed from that middle: by
-// less than a pixel. Of the pixels around that place only one has its parity.
+// less than a pixel. Only one of the pixels around that place has its parity.
 uint parityOf(uvec2 pixel) { return (pixel.x & 1) | (pixel.y & 1) << 1; }
 ivec2 pixelOfParity(vec2 place_px, uint moving) {
     const vec2 parity = vec2(moving & 1, moving >> 1 & 1);

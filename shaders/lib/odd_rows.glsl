@@ -1,19 +1,19 @@
-// Rows that come after those above and below them: sampled at the places of the one above, or their mean. For resample.
+// Rows that are made after those above and below them: sampled at the places of the one above, or their mean. For resample.
 
-// Where a pixel is sampled, for the one below it in an odd row; in the words where the colour of that one is going to be.
+// Where a pixel was sampled, for the one below it in an odd row; stored where the colour of that one is going to be.
 //
 //   31..3  its column in the source, in pixels, with 15 bits of fraction
-//   2      it is a neighbour's, in the row above
+// 1: it repeats a neighbour, in the row above
 //   1..0   the class
 //
-// Then, where depths are wanted, a second word: the inverse depth.
+// Followed, where depths are wanted, by a second word: the inverse depth.
 const float kPlaceSteps = 32768;
 const uint kRepeats = 4;
 
 Uints placeWords() { return Uints(uvec2(pass.half_target)); }
 uint placeAt(WarpView warp, uvec2 at) { return (at.y * warp.size_px.x + at.x) * (kHalfColours ? 2 : 4); }
 
-// What later pictures must know of a pixel of an odd row: the depth is that of the one above.
+// What later pictures must know of a pixel of an odd row: its depth is that of the one above.
 void repeatWord(uint i, uint width) {
     if (keepsWords()) { pass.words.at[i] = pass.words.at[i - width]; }
 }
@@ -37,7 +37,7 @@ float sampleBelow(WarpView warp, uvec2 at, out uint pixel_class) {
     return 0;
 }
 
-// Whether the row may be the mean of those above and below: these are there, in the same tiles, and tiles say where.
+// True if the row may be the mean of those above and below: both are there, in the same tiles, and tile_errors says in which.
 bool mayBeMean(WarpView warp, uint y) {
     const bool between = (y & 1) == 1 && (y + 1) % kTileSize != 0 && y + 1 < warp.size_px.y;
     return !kPredictErrors && between && any(notEqual(uvec2(pass.tile_errors), uvec2(0)));

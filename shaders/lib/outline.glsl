@@ -1,4 +1,4 @@
-// What of the screen a splat covers: the outline rho < cut of its disc, a conic, and the circle of the low-pass around its
+// The part of the screen that a splat covers: the outline rho < cut of its disc, a conic, and the circle of the low-pass around its
 // projected centre. Both are convex, so that the pixels they cover in a band of rows lie between two bounds.
 //
 // Offsets y from the centre, s = A x + B y (= u/z), h = e + gamma y (1/z at s = 0), phi = f/A, gamma = g - phi B: the outline
@@ -89,7 +89,7 @@ ivec2 tilesInRow(Outline o, uint row, ivec4 tile_box) {
     return ivec2(max(tiles.x, tile_box.x), min(tiles.y, tile_box.z));
 }
 
-// `low_pass`: of EyeView.
+// `low_pass`: as in EyeView.
 Outline outlineOfProjected(ProjectedSplat p, float low_pass) {
     const float cut = (kLog2Of255 - negativeLog2Opacity(p)) / kLog2PerRho;
     if (kSplatKind != kDiscs) {  // an ellipse around its centre, if there is anything of it

@@ -1,13 +1,13 @@
-// What making a picture from a past one takes, block by block or pixel by pixel. For shaders that say what kind of pictures: kHalfColours,
-// kHiddenTiles, kSomeTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl and lib/move_pixel.glsl.
+// For shaders that make a picture from a past one, block by block or pixel by pixel, and say what kind of pictures these are: kHalfColours,
+// kHiddenTiles, kSomeTiles; after their push constants, lib/tile_mask.glsl, lib/picture.glsl, lib/moving_pixel.glsl, lib/move_pixel.glsl.
 
 const uvec2 kBlock = uvec2(kPastColumns, kPastRows);
 
 bool isInPast(PastView view, vec2 place_px) { return all(greaterThanEqual(place_px, vec2(0))) && all(lessThan(place_px, vec2(view.past_size_px))); }
 
-// Eight bytes in one access, and sixteen in two, as addresses that are none: llvmpipe goes from lane to lane once for each number of a vector,
-// however wide it is. An integer of 64 bits would do as well, but not every device has these. GPUs join the two. What an address would point
-// to says how it is aligned itself.
+// Eight bytes in one access, and sixteen in two, as if they were addresses: llvmpipe goes from lane to lane once per number of a vector,
+// however wide it is. A 64-bit integer would do as well, but not every device has these. GPUs join the two accesses. glslang gives an
+// address the alignment of what it points to.
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Eights { HalfColours at[]; };
 struct Sixteen {
     FloatColours low;
@@ -24,10 +24,10 @@ void putSixteen(Sixteens sixteens, uint i, uvec4 words) {
 struct Seen {
     uint word;  // lib/moving_pixel.glsl
     float inverse_depth;  // as the picture that is made sees it
-    vec2 off_px;          // where that pixel's middle comes to lie, less where `wanted_px` is
+    vec2 off_px;          // where that pixel's middle comes to lie, relative to `wanted_px`
 };
 
-// The lens hides the same parts of a picture at any size. By a pixel's middle: a GPU's division is not exact, not even of equal numbers.
+// The lens hides the same parts of a picture at any size. By a pixel's middle: a GPU's division is not exact, not even for equal numbers.
 bool isHiddenInPast(PastView view, uvec2 at) {
     if (!kHiddenTiles) { return false; }
     return !isInMask(pass.shown_mask, view.size_tiles, uvec2((vec2(at) + 0.5) * (vec2(view.size_px) / vec2(view.past_size_px))) / kTileSize);
@@ -46,10 +46,10 @@ Seen look(PastView view, vec2 place_px, vec2 wanted_px) {
     return Seen(moves.z > 0 ? word : 0, inverse_depth / max(moves.z, 1e-6), (middle_px - wanted_px) + moves.xy);
 }
 
-// How far a place in the past moves for a unit of inverse depth.
+// How far a place in the past moves per unit of inverse depth.
 vec2 disparity(PastView view, vec2 pixel_px) { return view.past_from_now.shift.xy - pixel_px * view.past_from_now.shift.z; }
 
-// The amplitude of what an uncertain depth costs. `across` and `down`: how the picture changes from pixel to pixel.
+// How far the place may be off because of its depth's spread; at most kMaxSpread.
 vec2 uncertainMove(vec2 disparity_px, float spread) {
     const vec2 move_px = disparity_px * spread;
     const float length_px = length(move_px);
@@ -66,7 +66,7 @@ vec4 sourceAt(uint i) {
     return uintBitsToFloat(uvec4(uvec2(pixels.at[i].low), uvec2(pixels.at[i].high)));
 }
 
-// Of pixels inside the picture.
+// For pixels inside the picture.
 void putWord(PastView view, uvec2 pixel, uint word) {
     pass.target_words.at[pixel.y * view.size_px.x + pixel.x] = isHidden(view, pixel) ? 0 : word;
 }

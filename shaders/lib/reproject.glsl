@@ -12,7 +12,7 @@ struct Moved {
     bool valid;
 };
 
-// Whether the pixel or one within kHiddenMargin of it lies in a hidden tile; tiles are larger than that.
+// True if the pixel or one within kHiddenMargin of it lies in a hidden tile; corners suffice, since tiles are larger than that.
 bool isNearHidden(WarpView warp, uvec2 pixel) {
     const vec2 low = vec2(pixel) - kHiddenMargin, high = vec2(pixel) + kHiddenMargin;
     return isHiddenAt(warp, pass.shown_mask, low) || isHiddenAt(warp, pass.shown_mask, high) ||

@@ -1,4 +1,4 @@
-// What arrived in a row of the target, kept in shared memory where it fits: from memory, or moved there from the source's row. For resample.
+// For resample: the pixels that arrived in a row of the target, in shared memory if they fit: from memory, or from the source's row.
 
 uint arrivalAt(uint row, uint x) { return kSharedRow == 0 ? pass.moving.at[row + x] : row_arrivals[x]; }
 
@@ -10,7 +10,7 @@ void put(WarpView warp, ivec2 at, uint arrival) {
 
 #include "lib/reproject.glsl"
 
-// The source's row, to where the target sees it; four pixels at a time, each with its right neighbour.
+// Moves the source's row to where the target sees it; four pixels at a time, each with its right neighbour.
 void moveRow(WarpView warp, uint y, uint width) {
     uint x = 4 * gl_LocalInvocationIndex;
     if (x >= width) { return; }
@@ -31,7 +31,7 @@ void moveRow(WarpView warp, uint y, uint width) {
     } while (x < width);
 }
 
-// Four pixels at a time. What lies beyond the row's end is as if nothing had arrived there.
+// Four pixels at a time. Nothing arrives beyond the row's end.
 void loadRow(uint row, uint width) {
     uint x = 4 * gl_LocalInvocationIndex;
     [[dont_unroll]] do {
@@ -68,7 +68,7 @@ int arrivedAfter(uint x, uint width) {
     return bits == 0 ? -1 : word * 32 + findLSB(bits);
 }
 
-// Where a pixel's colour is taken from: where the pixel in `column` of its row, at this depth, comes from.
+// Where a pixel's colour is taken from: the source's place of the pixel in `column` of its row, at this depth.
 struct Resolved {
     uint column;
     uint pixel_class;

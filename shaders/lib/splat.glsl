@@ -1,5 +1,5 @@
-// Wants kSplatKind: whether the scene's splats are discs. A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the
-// form that ProjectedSplat holds.
+// A splat from the scene to the camera: loading, and the ray-disc intersection of 2DGS (Huang et al. 2024, section 4.2) in the form
+// that ProjectedSplat holds. Needs kSplatKind.
 //
 // A disc point is P(u, v) = u a + v b + c with a = s_u t_u, b = s_v t_v, c in camera space. A pixel's ray is z r with
 // r = ((x - cx)/fx, (y - cy)/fy, 1). From u a + v b + c = z r follows (u, v, 1)/z = [a b c]^-1 r, and with t_w = t_u x t_v and
@@ -28,14 +28,14 @@ void tangents(vec4 q, out vec3 t_u, out vec3 t_v) {
     t_v = vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x));
 }
 
-// Where a splat of the scene lies. A chunk's addresses are read one by one: not every compiler survives a copy of all of them.
+// Where a splat of the scene lies. A chunk's addresses are read one by one: some compilers do not survive a copy of all of them.
 struct SplatPlace {
     uint chunk, in_chunk;
 };
 SplatPlace placeOfSplat(uint i, uint chunk_bits) { return SplatPlace(i >> chunk_bits, i & ((1u << chunk_bits) - 1)); }
 vec3 positionOf(SceneChunks chunks, SplatPlace at) { return Vec3s(chunks.at[at.chunk].positions).at[at.in_chunk]; }
 
-// The same in world space, of a chunk that is not faded.
+// The splat in world space, without its chunk's fade.
 CameraSplat loadUnfadedSplat(SceneChunks chunks, SplatPlace at) {
     const uvec2 positions = chunks.at[at.chunk].positions;
     Vec4s rotations = chunks.at[at.chunk].rotations;
@@ -56,7 +56,7 @@ CameraSplat loadWorldSplat(SceneChunks chunks, SplatPlace at) {
     return splat;
 }
 
-// From one place in the world, in two floats, to another; both may lie close together and far from its origin: in this order the first
+// From one place in the world, in two floats, to another. Both may lie close together and far from the origin: in this order the first
 // difference is exact where it is small compared with its terms.
 vec3 fromPlace(vec3 from, vec3 from_low, vec3 position) {
     precise const vec3 difference = (position - from) - from_low;
@@ -84,8 +84,8 @@ float packOpacity(float opacity, bool has_reference) {
 bool hasReference(ProjectedSplat splat) { return (floatBitsToUint(splat.opacity) & 0x80000000u) == 0; }
 float negativeLog2Opacity(ProjectedSplat splat) { return abs(splat.opacity); }
 
-// What single precision lost of reference_px, x and y in eight bits each: in units of half its last place. Without it the edge of
-// a splat of a few pixels would be off by 1e-4 of its alpha in a picture of 768 pixels, that of a disc seen edge-on by far more.
+// The remainder that single precision drops from reference_px, x and y in eight bits each: in units of half its last place. Without it the
+// edge of a splat of a few pixels would be off by 1e-4 of its alpha in a picture of 768 pixels, that of a disc seen edge-on by far more.
 vec2 halfLastPlace(vec2 value) { return uintBitsToFloat(floatBitsToUint(value) & 0x7f800000u) * 5.9604645e-8; }
 uint packRest(vec2 reference_px, vec2 rest_px) { return packSnorm4x8(vec4(0, 0, rest_px / max(halfLastPlace(reference_px), vec2(1e-30)))); }
 vec2 restOfReference(ProjectedSplat splat) { return unpackSnorm4x8(splat.colour.y).zw * halfLastPlace(splat.reference_px); }

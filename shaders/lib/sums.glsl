@@ -1,4 +1,4 @@
-// What each workgroup counted, summed up by the last of them. For workgroups of kGroupSize; after lib/group.glsl and lib/list.glsl.
+// Sums up what each workgroup counted, in the last of them. For workgroups of kGroupSize; after lib/group.glsl and lib/list.glsl.
 
 const uint kSumsPerThread = 8;
 
@@ -7,7 +7,7 @@ const uint kSumsPerThread = 8;
 void sumUp(CoherentUints sums, uint count, ListStates result, uint capacity) {
     const uint thread = threadIndex();
     uint before_step = 0;
-    // The total may not fit into 32 bits: what each thread has of it is kept in 33, the highest for "that much or more".
+    // The total may not fit into 32 bits: each thread's part of it has 33, the highest for "that much or more".
     uint own = 0, own_carry = 0, step_begin = 0;
     [[dont_unroll]] do {
         const uint first = step_begin + thread * kSumsPerThread;

@@ -11,7 +11,7 @@ bool isInMask(Uints mask, uvec2 size_tiles, uvec2 tile) {
 // Where the word of tile `x` of a row ends, or `end` if that comes first.
 uint wordEnd(uint x, uint end) { return min(end, (x & ~31u) + 32); }
 
-// Of the tiles of a row from `begin` to `end` (exclusive, see wordEnd) those that belong to it: the first one's bit is bit 0.
+// The mask's bits of a row's tiles from `begin` to `end` (exclusive, see wordEnd): the first tile's is bit 0.
 uint maskBits(Uints mask, uvec2 size_tiles, uint row, uint begin, uint end) {
     const uint bits = mask.at[row * maskWords(size_tiles) + begin / 32] >> (begin & 31);
     return end - begin < 32 ? bits & ((1u << (end - begin)) - 1) : bits;

@@ -1,5 +1,5 @@
-// The tiles that a splat meets, in 64 bits: where its box begins, and a bit for each tile that it meets (under a mask: of the mask) if the box has at most 4x4;
-// otherwise where the box ends, half open, and the outline has to tell again which rows meet which tiles.
+// The tiles that a splat meets, in 64 bits: where its box begins, and a bit for each tile that it meets (under a mask: of the mask) if
+// the box has at most 4x4; otherwise where the box ends, half open, and the outline has to tell again which rows meet which tiles.
 //
 //   x0 | y0 << 16,   x1 | y1 << 16                                     a large box: tile coordinates stay below 2^11
 //   x0 | y0 << 16,   1 << 31 | 1 << (column + 4 row) for each tile          a small one

@@ -5,9 +5,9 @@ bool isHiddenAt(WarpView warp, Uints shown_mask, vec2 place_px) {
     return !isInMask(shown_mask, warp.size_tiles, tile);
 }
 
-// Whether a corner of the tile lies outside the source by more than a gap even if all is infinitely far (so much of a
-// headset's eye, whose view is wider outwards than inwards, nothing but rendering can fill), or where the source's lens hides what
-// it would need. The paper's borders know of the first kind, not of the second: `beyond_counts` is false for it.
+// True if a corner of the tile lies more than a gap outside the source even if everything is infinitely far (only rendering can fill so
+// much of a headset's eye, whose view is wider outwards than inwards), or where the source's lens hides what it would need. The paper's
+// borders cover the first case but not the second: `beyond_counts` is false there.
 bool isUnseen(WarpView warp, Uints shown_mask, bool any_hidden, uint tile, bool beyond_counts) {
     const uvec2 first = uvec2(tile % warp.size_tiles.x, tile / warp.size_tiles.x) * kTileSize;
     const uvec2 last = min(first + kTileSize, warp.size_px) - 1;

@@ -12,8 +12,8 @@ vec3 movePixel(PixelMap map, vec2 pixel_px, float inverse_depth) {
     return movePixelAnywhere(map, pixel_px, inverse_depth);
 }
 
-// Pixels that the other eye's view moves by for a unit of inverse depth, as a vector.
+// By how many pixels the other eye's view is shifted per unit of inverse depth, as a vector.
 vec2 disparityPerInverseDepth(PixelMap map, vec2 pixel_px) { return kRectified ? vec2(map.shift.x, 0) : map.shift.xy - pixel_px * map.shift.z; }
 
-// Where errors are predicted, an odd row is moved like the even one above it, by that one's depths.
+// Where errors are predicted, an odd row is warped like the even one above it, with that one's depths.
 bool movesEvenRows(WarpView warp) { return kRectified && warp.rows_apart == 2; }

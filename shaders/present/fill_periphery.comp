@@ -1,6 +1,6 @@
-// fill_periphery: the tiles that are not rendered at an eye's own size, from its picture of half the size, by Catmull and Rom's cubic. A
-// sample is as wide as two pixels, so that a pixel lies a quarter of it before or behind its centre. A thread goes down a tile by a column of
-// samples, so that each row is sampled across once.
+// fill_periphery: fills the tiles that are not rendered at an eye's own size from its half-size picture, by Catmull and Rom's cubic. A
+// sample is as wide as two pixels, so a pixel lies a quarter of a sample before or behind its centre. A thread goes down one column of a
+// tile's samples, so that each row is sampled across once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -15,8 +15,8 @@ layout(constant_id = 2) const bool kPast = false;  // later pictures are made fr
 
 #include "lib/picture.glsl"
 
-// Weights of the samples from two before a pixel to one behind it, where it lies before the centre of the third; in the other direction where
-// it lies behind the centre of the second.
+// Weights of the samples from two before a pixel to one behind it, for a pixel before the centre of the third; in reverse order for one
+// behind the centre of the second.
 const vec4 kCubic = vec4(-0.0234375, 0.2265625, 0.8671875, -0.0703125);
 
 // The two pixels of each sample of a column in one of its rows, before and behind the sample's centre; D and A between two samples.
@@ -39,7 +39,7 @@ Across sampleAcross(ivec2 at, ivec2 last) {
                   0.25 * depths[0] + 0.75 * depths[1], 0.75 * depths[1] + 0.25 * depths[2]);
 }
 
-// A pixel's D is its alpha times the depth that linear weights give, which has no overshoot.
+// A pixel's D is its alpha times its depth, which is interpolated linearly and so does not overshoot.
 void putPixel(uvec2 pixel, vec4 cubic, vec2 linear, bool hidden) {
     if (any(greaterThanEqual(pixel, pass.size_px))) { return; }
     const vec4 held = hidden ? vec4(pass.background, 0) : max(cubic, vec4(0));
@@ -49,7 +49,7 @@ void putPixel(uvec2 pixel, vec4 cubic, vec2 linear, bool hidden) {
     if (kDepth) { pass.depths.at[k] = !hidden && linear.y > 0 ? colour.a * linear.x / linear.y : 0; }
 }
 
-// What later pictures must know: how far away the sample is, of each of its pixels.
+// Writes what later pictures must know of each of the sample's pixels: how far away the sample is.
 void putWords(ivec2 at, ivec2 last, bool hidden) {
     const uint word = hidden ? 0 : pass.source_words.at[at.y * (last.x + 1) + at.x];
     [[unroll]] for (uint i = 0; i < 4; ++i) {
@@ -58,8 +58,8 @@ void putWords(ivec2 at, ivec2 last, bool hidden) {
     }
 }
 
-// And of the tile: what rendering it would take, which a quarter of the tile that it is made from tells, and what it lacks, which is what half
-// the size loses and what that tile lacks itself.
+// And of the tile: its cost if rendered, estimated from that of the half-size tile that it is made from, and its error: the loss at half
+// size plus the error of that tile's quarter.
 void putTile(uvec2 tile, uvec2 size_tiles, bool hidden) {
     const uvec2 half_tiles = ((pass.size_px + 1) / 2 + kTileSize - 1) / kTileSize;
     const PastTile from = pass.source_tiles.at[tile.y / 2 * half_tiles.x + tile.x / 2];

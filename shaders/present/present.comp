@@ -1,16 +1,16 @@
-// present: an eye's picture as the headset's swapchain image wants it: 8 bits a channel and, on request, its depth. Trained values are
-// display-encoded already, which is what the bytes of an sRGB image are.
+// present: an eye's picture in the format of the headset's swapchain image: 8 bits per channel and, on request, its depth. Trained values
+// are display-encoded already, as are the bytes of an sRGB image.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "passes.h"
 
 layout(constant_id = 0) const bool kBlueFirst = false;  // BGRA in place of RGBA
-layout(constant_id = 1) const bool kLinear = false;     // the image is no sRGB one: its bytes count as light
-layout(constant_id = 2) const bool kTint = false;       // by what made each pixel
+layout(constant_id = 1) const bool kLinear = false;     // the image is not an sRGB one: its bytes count as light
+layout(constant_id = 2) const bool kTint = false;       // tint by what made each pixel
 layout(constant_id = 3) const uint kDepth = 0;  // where its depth comes from
 const uint kFromDepths = 1, kFromWords = 2;
 layout(constant_id = 4) const bool kHalfColours = false;
-layout(constant_id = 5) const bool kSeeThrough = false;  // its alpha goes along, for what the headset shows behind it
+layout(constant_id = 5) const bool kSeeThrough = false;  // output alpha, for what the headset shows behind it
 layout(local_size_x = 16, local_size_y = 8) in;
 
 #include "lib/picture.glsl"
@@ -19,7 +19,7 @@ layout(local_size_x = 16, local_size_y = 8) in;
 
 layout(push_constant, scalar) uniform Push { PresentPass pass; };
 
-// NaN becomes 0, as everything that is not above 0.
+// NaN becomes 0, like everything that is not above 0.
 vec3 clampToDisplay(vec3 colour) { return mix(vec3(0), min(colour, vec3(1)), greaterThan(colour, vec3(0))); }
 
 // The share is kTintShare of engine/picture/roi_picture.h and the colours are those of its tintOf.
@@ -53,7 +53,7 @@ void main() {
     const uint i = at.y * pass.size_px.x + at.x;
     const vec4 pixel = colourAt(pass.colours, pass.half_colours, i);
     vec3 colour = clampToDisplay(pixel.rgb);
-    // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied in anew.
+    // Colours were multiplied by alpha as display-encoded values, but headsets blend light: alpha is divided out and multiplied back in.
     const float alpha = kSeeThrough ? (pixel.a > 0 ? min(pixel.a, 1) : 0) : 1;
     if (kSeeThrough) { colour = alpha > 0 ? clampToDisplay(pixel.rgb / alpha) : vec3(0); }
     if (kTint) { colour = tint(colour, at, (pass.size_px.x + kTileSize - 1) / kTileSize); }
@@ -62,7 +62,7 @@ void main() {
     const uvec3 bytes = uvec3(colour * 255 + 0.5);
     pass.pixels.at[i] = (kBlueFirst ? bytes.b | bytes.g << 8 | bytes.r << 16 : bytes.r | bytes.g << 8 | bytes.b << 16) | uint(alpha * 255 + 0.5) << 24;
     if (kDepth != 0) {
-        // D/A, as near / depth: 1 at the near plane, 0 where nothing is.
+        // near over the depth D/A: 1 at the near plane, 0 where there is nothing.
         const uint word = kDepth == kFromWords ? pass.words.at[i] : 0;
         const float share = kDepth == kFromDepths ? pass.near * pixel.a / pass.depths.at[i] : word == 0 ? 0 : pass.near * inverseDepthOf(word);
         pass.device_depths.at[i] = share > 0 && pixel.a >= kMinAlpha ? min(share, 1) : 0;

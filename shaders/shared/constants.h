@@ -1,4 +1,4 @@
-// The numbers that shape code, each with its reason.
+// Constants that shape the code, each with its reason.
 #ifndef BINOSPLAT_SHADERS_SHARED_CONSTANTS_H
 #define BINOSPLAT_SHADERS_SHARED_CONSTANTS_H
 
@@ -11,22 +11,22 @@ BINOSPLAT_CONSTANT uint kTileSize = 16;
 // Cells are the quarters of a tile that one subgroup owns while blending, so that a splat costs only the cells it meets.
 BINOSPLAT_CONSTANT uint kCellSize = 8;
 BINOSPLAT_CONSTANT uint kCellsPerTile = 4;
-// Splats of a tile that are brought to shared memory at a time: 128 x 56 bytes = 7 KiB, so that eight workgroups and more
-// fit into the shared memory of a GPU's core; a multiple of 32, since a bit each says which cells they meet.
+// Splats of a tile that are loaded into shared memory at a time: 128 x 56 bytes = 7 KiB, so that eight or more workgroups
+// fit into the shared memory of a GPU core; a multiple of 32, since one bit per splat says which cells it meets.
 BINOSPLAT_CONSTANT uint kBatchSize = 128;
 
-// Threads of a workgroup wherever a thread handles one item: as many as every device has, and a subgroup on the widest.
+// Threads per workgroup where each thread handles one item: as many as every device supports, and one subgroup on the widest.
 BINOSPLAT_CONSTANT uint kGroupSize = 128;
-// Splats of the scene that a workgroup culls or compacts, and items of a list that one projects or bins. Several a thread, so that the
-// last workgroup has few counts to sum up, and the eye is brought to shared memory less often.
+// Splats of the scene that a workgroup culls or compacts, and items of a list that one projects or bins. Several per thread, so that the
+// last workgroup has few counts to sum up, and the eye is loaded into shared memory less often.
 BINOSPLAT_CONSTANT uint kCullBlock = 512;
 BINOSPLAT_CONSTANT uint kListBlock = 256;
-// Splats that come and go together: what one workgroup culls.
+// Splats that come and go together: as many as one workgroup culls.
 BINOSPLAT_CONSTANT uint kPageSplats = kCullBlock;
 
 // Sorting: up to 8 bits a round; a block is what one workgroup ranks: of kSortSubgroups subgroups where these are narrow, of more where
-// they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. From half a million keys on blocks grow. Counts are
-// summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads a thread.
+// they are wide (engine/passes/sort.cpp), each with a histogram in shared memory. Beyond half a million keys, blocks grow. Counts are
+// summed up in two steps, by runs of kSortRun blocks and then over the runs, each step a few loads per thread.
 BINOSPLAT_CONSTANT uint kMaxDigits = 256;
 BINOSPLAT_CONSTANT uint kSortBlock = 2048;
 BINOSPLAT_CONSTANT uint kMaxSortBlocks = 256;
@@ -34,36 +34,36 @@ BINOSPLAT_CONSTANT uint kSortRun = 16;
 BINOSPLAT_CONSTANT uint kMaxSortRuns = kMaxSortBlocks / kSortRun;
 BINOSPLAT_CONSTANT uint kSortSubgroups = 4;
 
-// bin_large: enough threads for any device, since how many splats there are for them is known to the device alone.
+// bin_large: enough threads for any device, since only the device knows how many splats there are for them.
 BINOSPLAT_CONSTANT uint kBinLargeSize = 128;
 BINOSPLAT_CONSTANT uint kBinLargeGroups = 256;
 
 // newcomers: visible splats that a workgroup looks over; those that only one eye sees are few.
 BINOSPLAT_CONSTANT uint kNewcomersBlock = 1024;
 
-// A list holds no more: SPIR-V takes the index of an array as a signed number.
+// No list is longer: SPIR-V treats array indices as signed.
 BINOSPLAT_CONSTANT uint kMaxItems = 0x7fffffffu;
 
 // A dispatch of more groups than this is folded into rows: 65535 is what every device allows along one axis.
 BINOSPLAT_CONSTANT uint kMaxGroupsX = 32768;
 
-// What a scene's splats are: discs (2DGS), or 3D Gaussians, of which some were trained with an opacity that the low-pass dims.
+// A scene's splats are discs (2DGS) or 3D Gaussians; antialiased ones were trained with an opacity that the low-pass dims.
 BINOSPLAT_CONSTANT uint kDiscs = 0;
 BINOSPLAT_CONSTANT uint kGaussians = 1;
 BINOSPLAT_CONSTANT uint kAntialiasedGaussians = 2;
-// The low-pass of 3DGS: so much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
+// The low-pass of 3DGS: this much variance is added on the screen, in px^2 (Kerbl et al. 2023, the reference implementation).
 BINOSPLAT_CONSTANT float kScreenVariance = 0.3f;
-// The projection's derivative is taken within the picture enlarged by this part of its width and height on each side: next to the eye
-// the linear projection breaks down (likewise).
+// The projection's derivative is taken within the picture enlarged by this fraction of its width and height on each side: next to the
+// eye the linear projection breaks down (the same reference implementation).
 BINOSPLAT_CONSTANT float kDerivativeBorder = 0.15f;
 // The depth of a 3D Gaussian at a pixel is a linear guess from its centre; it stays within this ratio of the centre's.
 BINOSPLAT_CONSTANT float kDepthReach = 2.0f;
-// The axes of a 3D Gaussian are cut off here on the screen, in px, so that the squares of their lengths and the areas between them stay
-// finite: what is seen of one that long is as opaque everywhere along it.
+// The axes of a 3D Gaussian are cut off at this length on the screen, in px, so that their squares and the areas between them stay
+// finite: the visible part of one that long is equally opaque everywhere along it.
 BINOSPLAT_CONSTANT float kMaxSigma = 1e15f;
 
 // Alpha is never above this and hits below 1/255 are skipped; blending stops before the transmittance would fall under
-// kMinTransmittance (Kerbl et al. 2023, appendix C). What alpha lets pass is a number of its own: 1 - 0.99f is 0.01 to six digits only,
+// kMinTransmittance (Kerbl et al. 2023, appendix C). kMinPassing is a constant of its own: 1 - 0.99f is 0.01 to six digits only,
 // and two such hits leave exactly 1e-4, which is not under it.
 BINOSPLAT_CONSTANT float kMaxAlpha = 0.99f;
 BINOSPLAT_CONSTANT float kMinAlpha = 1.0f / 255.0f;
@@ -85,38 +85,38 @@ BINOSPLAT_CONSTANT float kMaxPlaneSlope = 1e15f;
 // Outlines are widened by this much, in pixels: a hundred times the rounding of a coordinate in a 2048 px image.
 BINOSPLAT_CONSTANT float kOutlinePadding = 1.0f / 64.0f;
 
-// What the reprojection takes for a pixel's depth: D as the paper writes it, D/A, or A/I, the mean of the disparity.
+// The depth that the reprojection takes for a pixel: D as the paper writes it, D/A, or A/I, from the mean disparity.
 BINOSPLAT_CONSTANT uint kDepthSum = 0;
 BINOSPLAT_CONSTANT uint kDepthMean = 1;
 BINOSPLAT_CONSTANT uint kDepthInverse = 2;
 
-// What made a pixel of the target, before patching.
+// How a pixel of the target came about, before patching.
 BINOSPLAT_CONSTANT uint kCovered = 0;
 BINOSPLAT_CONSTANT uint kGap = 1;
 BINOSPLAT_CONSTANT uint kHole = 2;
 
-// Why a tile of the target is rendered; 0: it is not, its pixels are moved.
+// Why a tile of the target is rendered; 0: it is not, its pixels are warped.
 BINOSPLAT_CONSTANT uint kTileEdge = 1;
 BINOSPLAT_CONSTANT uint kTileCenter = 2;
 BINOSPLAT_CONSTANT uint kTilePredicted = 3;
-// Neither: no lens shows it, so that it stays the background, without splats and without errors.
+// Neither rendered nor warped: no lens shows it, so it stays background, without splats or errors.
 BINOSPLAT_CONSTANT uint kTileHidden = 4;
-// Rendered because that is cheaper than moving its pixels.
+// Rendered because that is cheaper than warping its pixels.
 BINOSPLAT_CONSTANT uint kTileCheap = 5;
 
-// What a tile costs to render in addition to its pairs, in pairs: a workgroup starts and 256 pixels are written.
+// The cost of rendering a tile beyond its pairs, in pairs: starting a workgroup and writing 256 pixels.
 BINOSPLAT_CONSTANT uint kTilePairs = 16;
-// Moving costs something even where tiles are not moved, since rasterize and resample, or reproject and resample, go over all pixels: this
-// part of what moving all tiles costs.
+// Warping has a cost even where no tile is warped, since rasterize and resample, or reproject and resample, go over all pixels: the
+// cost of warping all tiles, divided by this.
 BINOSPLAT_CONSTANT uint kMoveSharedPart = 2;
-// Where nothing was moved in the frame before, this part of what moving saves is not counted on.
+// If nothing was warped in the frame before, one part in this many of what warping saves is not counted on.
 BINOSPLAT_CONSTANT uint kResumePart = 8;
 
-// The price list of price: bins of 1/16 octave of expected error a pair, from 2^-23 steps upwards; more than any quotient of two words
+// The price list of price: bins of 1/16 octave of expected error per pair, from 2^-23 steps upwards; more than any quotient of two words
 // needs.
 BINOSPLAT_CONSTANT uint kPriceBins = 1024;
-// What a tile costs in the price list at most, in pairs: ten bits of the word say the bin, and one that the tile would be in a higher one
-// if its error were seen whole.
+// The highest cost of a tile in the price list, in pairs: ten bits of the word hold the bin, and one says that the tile would be in a
+// higher bin if its error were seen whole.
 BINOSPLAT_CONSTANT uint kMaxTileCost = 0x1fffffu;
 BINOSPLAT_CONSTANT uint kSeenInPart = 0x200000u;
 
@@ -124,33 +124,33 @@ BINOSPLAT_CONSTANT uint kSeenInPart = 0x200000u;
 // angle from there: the more careful of the two slopes of Guenter et al. 2012, Foveated 3D Graphics.
 BINOSPLAT_CONSTANT float kFovealCycle = 0.000363610f;
 BINOSPLAT_CONSTANT float kCyclePerAngle = 0.022f;
-// A tile outside where the eye looks is never rendered for its error if the eye sees less than this of its square: a hundredth of what lies
-// between black and white in each of its 256 pixels, about the least contrast of a picture that is noticed.
+// Where the eye sees an error only in part, a tile is never rendered for it if less than this of its square is seen: a hundredth of the
+// range from black to white in each of its 256 pixels, about the lowest contrast that is noticed.
 BINOSPLAT_CONSTANT float kLeastSeenError = 0.0256f;
-// Where the eye sees no more than this share of an error its finest cycle has four pixels: two rows are one to it, and resample makes a row
-// of those above and below. price writes this in place of the tile's error: it is more than any error.
+// Where the eye sees no more than this share of an error, its finest cycle spans four pixels: it cannot tell two rows apart, and resample
+// averages the rows above and below. price writes kSeenCoarsely in place of the tile's error: it is greater than any error.
 BINOSPLAT_CONSTANT float kCoarseShare = 0.25f;
 BINOSPLAT_CONSTANT uint kSeenCoarsely = 0xffffffffu;
-// A tile that is made from a picture of half the size is expected to have lost this part of what the second differences of its 8x8 samples
-// there have, squared and summed over both axes and all channels. Of 2DGS scenes as headsets show them: docs/tried.md.
+// A tile that is made from a half-size picture is expected to have lost this fraction of the second differences of its 8x8 samples there,
+// squared and summed over both axes and all channels. Measured on 2DGS scenes as headsets show them: docs/tried.md.
 BINOSPLAT_CONSTANT float kHalfLoss = 0.3f;
-// What rendering a tile takes, of what a tile of half the size takes where it lies: four of them have two and a half times its pairs.
+// The cost of rendering a tile, relative to that of the half-size tile it lies in: four of them have two and a half times its pairs.
 BINOSPLAT_CONSTANT float kOwnCost = 0.6f;
-// Threads that look over a tile in it, each a row of its 8x8 samples.
+// Threads that examine such a tile, each one row of its 8x8 half-size samples.
 BINOSPLAT_CONSTANT uint kHalfTileRows = kTileSize / 2;
-// Tiles beside each other that a workgroup of fill_periphery fills.
+// Adjacent tiles that a workgroup of fill_periphery fills.
 BINOSPLAT_CONSTANT uint kFillTiles = 8;
-// The spread of a moving pixel's inverse depth is kept in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
+// The spread of a moving pixel's inverse depth is stored in 31 steps of half an octave, the first at 2^-13 of the inverse depth.
 BINOSPLAT_CONSTANT uint kSpreadCodes = 31;
 BINOSPLAT_CONSTANT float kLeastSpreadLog2 = -13.0f;
 
-// resample keeps a row of arrivals in shared memory, in steps of so many pixels: 12 KiB with all that belongs to them, and two steps where
-// a device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory again. reproject brings pixels there,
-// as it does for canted eyes whatever the length.
+// resample keeps a row of arrivals in shared memory, in steps of this many pixels: 12 KiB with all that belongs to them, and two steps if
+// a device has 32 KiB, which is as long as the rows of any headset. Longer rows are read from memory, where reproject puts their pixels,
+// as it does for canted eyes at any length.
 BINOSPLAT_CONSTANT uint kArrivalsStep = 2304;
 BINOSPLAT_CONSTANT uint kMostRowSteps = 2;
-// What resample makes a row from: arrivals in memory; the source's pixels; these where none of its tiles is hidden, as is most often so
-// where errors are predicted; or the places that the row above was sampled at.
+// What resample makes a row from: arrivals in memory; the source's pixels; the same where the source has no hidden tiles, as is usual
+// where errors are predicted; or the places at which the row above was sampled.
 BINOSPLAT_CONSTANT uint kArrivalsGiven = 0;
 BINOSPLAT_CONSTANT uint kRowMoved = 1;
 BINOSPLAT_CONSTANT uint kWholeRowMoved = 2;
@@ -158,37 +158,37 @@ BINOSPLAT_CONSTANT uint kPlacesGiven = 3;
 // Invocations of a workgroup in the passes of warp and choose: as many as every device allows.
 BINOSPLAT_CONSTANT uint kWarpGroup = 128;
 
-// warp_past: what a thread makes, in pixels: 9x13 of the source are read for 4x8. A workgroup makes such blocks of a row of tiles.
+// warp_past: the block of pixels that a thread makes: 9x13 source pixels are read for 4x8. A workgroup makes the blocks of a row of tiles.
 BINOSPLAT_CONSTANT uint kPastColumns = 4;
 BINOSPLAT_CONSTANT uint kPastRows = 8;
 BINOSPLAT_CONSTANT uint kPastGroup = 64;
 BINOSPLAT_CONSTANT uint kPastTiles = kPastGroup * kPastColumns * kPastRows / (kTileSize * kTileSize);
-// So far around a block depths are looked at: in a frame a head moves what is near by less than that beside what is far.
+// Depths are examined this far around a block: within a frame, a head's motion shifts near against far content by less than that.
 BINOSPLAT_CONSTANT uint kPastBorder = 2;
-// Farther away it is looked for what stands in front, where the near plane moves that far: along the way that it would come, in such steps.
+// Farther away, occluders are searched for where the near plane moves that far: along the path they would take, in steps of this.
 BINOSPLAT_CONSTANT float kPastSearchStep = 8.0f;
 BINOSPLAT_CONSTANT uint kPastMostSearched = 48;
-// The places of a block's pixels may differ by this from a common shift, in pixels, and for what depths differ by.
+// How far the places of a block's pixels may deviate from a common shift, and how much of that its depths may account for, in pixels.
 BINOSPLAT_CONSTANT float kPastSmooth = 0.0625f;
 BINOSPLAT_CONSTANT float kPastSameDepth = 0.25f;
-// A pixel of the past that comes this near to where it is wanted is what is seen there (half a pixel, and rounding).
+// A pixel of the past that lands this close to where it is wanted is what is seen there (half a pixel, and rounding).
 BINOSPLAT_CONSTANT float kPastAgrees = 0.51f;
 BINOSPLAT_CONSTANT uint kPastSteps = 3;
-// What a pixel counts for that the past did not see: a squared error in three channels.
+// The squared error, in three channels, of a pixel that the past did not see.
 BINOSPLAT_CONSTANT float kUnseenError = 1.0f;
-// What a pixel that moved counts for at least, (1/4000)^2 in three channels, so that every tile has its turn.
+// The least squared error that a warped pixel takes on, (1/4000)^2 in three channels, so that every tile gets its turn.
 BINOSPLAT_CONSTANT float kLeastGrowth = 1.9e-7f;
-// How much of a tile's growth of error is what was measured when it was last rendered; the rest is the model's. A quarter of it in which
-// much was not seen grows by the model alone.
+// The weight of the growth of a tile's error that was measured when it was last rendered; the rest is the model's. A quarter of a tile in
+// which much was not seen grows by the model alone.
 BINOSPLAT_CONSTANT float kMeasuredShare = 0.5f;
 BINOSPLAT_CONSTANT float kUnseenGrowth = 0.05f;
 
-// Where a part of the scene came or went, an eye's past is expected to be wrong by this amplitude, and never by more than the second: what
-// lies there is often much like what lay there, and a tile that nobody saw before is worth more.
+// Where a part of the scene came or went, an eye's past is expected to be wrong by this amplitude, and never by more than the second: new
+// content often resembles the old, and a tile that nobody saw before is worth more.
 BINOSPLAT_CONSTANT float kChangedError = 0.125f;
 BINOSPLAT_CONSTANT float kMostChangedError = 0.5f;
 
-// Pixels of the source that are this near to a tile without a picture go nowhere: where they arrive the cubic kernel reads up to
+// Pixels of the source this close to a tile without a picture are not warped: where they arrive, the cubic kernel reads up to
 // two pixels beside them, and the place is up to one off.
 BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 
@@ -196,22 +196,22 @@ BINOSPLAT_CONSTANT uint kHiddenMargin = 3;
 // is at most kMaxPixelError (more than black and white differ in three channels), so that a tile's sum stays under 2^31.
 BINOSPLAT_CONSTANT float kErrorSteps = 1048576.0f;
 BINOSPLAT_CONSTANT float kMaxPixelError = 4.0f;
-// What a hole's pixel counts for at least, since what is hidden there need not look like what stands next to it: (1/100)^2, so
-// little that it decides only between tiles that are otherwise equal.
+// The least error of a hole's pixel, since what is hidden there need not look like what stands next to it: (1/100)^2, so
+// little that it only decides between tiles that are otherwise equal.
 BINOSPLAT_CONSTANT float kLeastHoleError = 1e-4f;
-// How much the spread of the depths that a pixel blends counts. All of the pixel moves by their mean, so each part of it is off by how far
-// its own depth lies from that, but shows only with its own weight. All values between a quarter and three quarters choose equally well.
+// The weight of the spread of the depths that a pixel blends. All of the pixel is warped by their mean, so each part of it is off by how
+// far its own depth lies from that, but shows only with its own weight. All values from a quarter to three quarters choose equally well.
 BINOSPLAT_CONSTANT float kSpreadWeight = 0.5f;
-// A disparity uncertain by more pixels than these is not a blur any more: the error stops growing with it.
+// A disparity that is uncertain by more pixels than this is no longer a blur: the error stops growing with it.
 BINOSPLAT_CONSTANT float kMaxSpread = 4.0f;
 
-// A splat that only one eye sees stands in front of what the other saw if its inverse depth is greater by this ratio than that of the
-// tile's middle: a wall that goes on beyond the border is as deep as what is repeated there, and rounding must not decide.
+// A splat that only one eye sees stands in front of what the other saw if its inverse depth exceeds that of the tile's middle by this
+// ratio: a wall that continues beyond the border is as deep as what is repeated there, and rounding must not decide.
 BINOSPLAT_CONSTANT float kInFrontRatio = 1.01f;
 
 // Depths are counted in bins of 1/32 octave, from 2^-16 to 2^16 scene units.
 BINOSPLAT_CONSTANT uint kDepthBins = 1024;
-// Tiles that a workgroup of depth_bounds counts: 16 pixels an invocation, which clears eight bins and adds eight up.
+// Tiles that a workgroup of depth_bounds counts: 16 pixels per invocation, which clears eight bins and adds up eight.
 BINOSPLAT_CONSTANT uint kBoundsTiles = 16;
 
 BINOSPLAT_END_SHARED

@@ -1,4 +1,4 @@
-// What lets one header be read by C++ and by GLSL: vector types of equal layout (GLSL's `scalar`) and typed device addresses.
+// Lets one header be read by both C++ and GLSL: vector types of equal layout (GLSL's `scalar`) and typed device addresses.
 #ifndef BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 #define BINOSPLAT_SHADERS_SHARED_LANGUAGE_H
 
@@ -19,7 +19,7 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
-// What the address of an array of T must be a multiple of: see BINOSPLAT_ALIGNED_ARRAY_OF.
+// The address of an array of T must be a multiple of this: see BINOSPLAT_ALIGNED_ARRAY_OF.
 template <typename T>
 inline constexpr std::uint64_t kArrayAlignment = 4;
 template <>
@@ -57,14 +57,14 @@ struct DeviceAddress {
 #define BINOSPLAT_END_SHARED
 // In a shader `name.at[i]` is element i.
 #define BINOSPLAT_ARRAY_OF(Element, Name) BINOSPLAT_ALIGNED_ARRAY_OF(Element, 4, Name)
-// Of elements that begin at a multiple of `align` bytes, so that one access takes a whole one also where a device wants it to lie so.
+// Elements begin at multiples of `align` bytes, so that one access loads a whole element even on devices that require alignment.
 #define BINOSPLAT_ALIGNED_ARRAY_OF(Element, align, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = align) buffer Name { Element at[]; }
-// Where workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
+// For arrays in which workgroups read what others of the same dispatch have written; see lib/last_group.glsl.
 #define BINOSPLAT_COHERENT_ARRAY_OF(Element, Name) \
     layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer Name { Element at[]; }
-// An address, in memory, of an array that is aligned to less than eight bytes; Name(it) is the array. As a number: glslang would say of its
-// load, too, that it is aligned to less, where Vulkan asks for eight. Others are addresses, since a load of 64 bits is cheaper.
+// The address, stored in memory, of an array aligned to less than eight bytes; Name(it) is the array. A number, because glslang would give
+// the load of an address the array's alignment, too, where Vulkan requires eight. Other arrays keep addresses: a 64-bit load is cheaper.
 #define BINOSPLAT_STORED(Name) uvec2
 #define BINOSPLAT_CONSTANT const
 

@@ -6,14 +6,14 @@
 
 BINOSPLAT_BEGIN_SHARED
 
-// cull_pages: of a scene whose chunks come and go, the pages that may hold such splats.
+// cull_pages: in a scene whose chunks come and go, the pages that may hold splats that cull keeps.
 struct CullPagesPass {
     ScenePages pages;
     EyeViews eyes;
-    CoherentUints page_bits;     // out: a bit a page
-    CoherentUints word_offsets;  // out: how many visible pages there are before each word of these
+    CoherentUints page_bits;     // out: one bit per page
+    CoherentUints word_offsets;  // out: visible pages before each word of page_bits
     Uints page_list;             // out: the visible pages, ascending
-    ListStates visible_pages;    // out; per_item is a workgroup for each
+    ListStates visible_pages;    // out; per_item: one workgroup per page
     uint page_count;
     uint first_eye;
     uint eye_count;
@@ -23,10 +23,10 @@ struct CullPagesPass {
 struct CullPass {
     SceneChunks chunks;
     EyeViews eyes;
-    Uints page_list;             // of a scene in pages: the blocks of kCullBlock splats that are looked at; otherwise all
-    ListStates visible_pages;    // likewise: how many
-    Uints visible_bits;          // out: a bit a splat of these blocks
-    CoherentUints group_counts;  // out: how many visible splats there are before each block
+    Uints page_list;             // in a scene of pages: the blocks of kCullBlock splats to examine; otherwise all are
+    ListStates visible_pages;    // and how many there are
+    Uints visible_bits;          // out: one bit per splat of these blocks
+    CoherentUints group_counts;  // out: visible splats before each block
     ListStates visible;          // out
     uint splat_count;
     uint chunk_bits;
@@ -50,8 +50,8 @@ struct CompactPass {
     Uints splats;  // out: indices into the scene
     uint splat_count;
     uint chunk_bits;
-    uint order_eye;  // whose depths
-    Place middle;    // between the eyes, where distances are wanted
+    uint order_eye;  // the eye whose depths are the keys
+    Place middle;    // between the eyes, if distances are the keys
 };
 
 // project: the visible splats, front to back, as one eye sees them, and how many tiles each meets.
@@ -63,8 +63,8 @@ struct ProjectPass {
     ProjectedSplats splats;    // out
     UVec2s tile_sets;          // out: lib/tile_set.glsl
     Uints tile_counts;         // out
-    CoherentUints group_sums;  // out: how many tiles there are before each kListBlock of splats
-    ListStates pairs;          // out: as long as there are tiles
+    CoherentUints group_sums;  // out: tiles before each block of kListBlock splats
+    ListStates pairs;          // out: one for each tile that a splat meets
     EyeCounterss counters;     // out
     Uints tile_mask;           // under a mask: lib/tile_mask.glsl
     uint chunk_bits;
@@ -83,35 +83,35 @@ struct BinPass {
     Uints tiles;         // out
     Uints ranks;         // out: indices into `splats`
     Uints large_splats;  // out of bin, in no order: what is left to bin_large
-    Uints large_begins;  // likewise: where the pairs of each begin
+    Uints large_begins;  // out of bin: where the pairs of each begin
     EyeCounterss counters;
     Uints tile_mask;  // under a mask, as in ProjectPass
     uvec2 size_tiles;
     float low_pass;  // EyeView
 };
 
-// tile_ranges: where each tile's pairs lie once they are sorted by tile. Under a mask also which tiles have any; the others become
+// tile_ranges: where each tile's pairs lie once sorted by tile. Under a mask also which tiles have any; the others become
 // background.
 struct TileRangesPass {
     Uints tiles;
-    ListStates pairs;         // counts workgroups
+    ListStates pairs;         // also counts finished workgroups
     UVec2s ranges;            // out: begin and end, equal where a tile has no pairs
     Uints tile_list;          // under a mask: the tiles to render
-    ListStates masked_tiles;  // likewise: how many
-    Uints full_tiles;         // likewise out: those with pairs
-    EyeCounterss counters;    // likewise out: how many
-    FloatColours colours;     // likewise out, of those without: one of the two
+    ListStates masked_tiles;  // under a mask: how many
+    Uints full_tiles;         // out under a mask: the tiles with pairs
+    EyeCounterss counters;    // out under a mask: how many have pairs
+    FloatColours colours;     // out under a mask, for tiles without pairs: one of the two
     HalfColours half_colours;
-    Floats depths;         // likewise, unless it is null
-    Uints moving;          // likewise: infinitely far
-    PastTiles past_tiles;  // likewise
-    ListStates visible;    // likewise: of whose splats they are
+    Floats depths;         // the same, unless null
+    Uints moving;          // the same: infinitely far
+    PastTiles past_tiles;  // the same
+    ListStates visible;    // under a mask: the splats of the pairs
     vec3 background;
     uvec2 size_px;
-    uint is_made;  // 1: every tile shows what a past made of it, which stays where lists had no room
+    uint is_made;  // 1: every tile shows a picture warped from a past, which stays where lists had no room
 };
 
-// rasterize: blending, a workgroup a tile.
+// rasterize: blending, one workgroup per tile.
 struct RasterizePass {
     EyeViews eyes;
     ProjectedSplats splats;
@@ -121,18 +121,18 @@ struct RasterizePass {
     HalfColours half_colours;
     Floats depths;          // out where asked for: D = sum w z
     Vec2s moments;          // out where asked for: I = sum w/z and J = sum w/z^2
-    Uints moving;           // out where the picture is going to be moved: lib/moving_pixel.glsl
-    Uints arrivals;         // likewise, unless it is null: 0, since nothing has arrived in the other eye yet
+    Uints moving;           // out if the picture is going to be warped: lib/moving_pixel.glsl
+    Uints arrivals;         // out then, unless null: 0, since nothing has arrived in the other eye yet
     Uints full_tiles;       // under a mask: the tiles to render
-    EyeCounterss counters;  // likewise: how many
+    EyeCounterss counters;  // under a mask: how many
     vec3 background;
     uint eye;
     uint row_words;        // of `moving` and `arrivals`
     uint is_light;         // 1: colours and background are light, to be encoded once they are blended
-    PastTiles past_tiles;  // out where the picture is going to be a past; under a mask in, too
+    PastTiles past_tiles;  // out if the picture is going to be a past; under a mask in, too
 };
 
-// weigh: predicted: which tiles are cheaper to render than to move, and whether anything is worth moving.
+// weigh: predicted: which tiles are cheaper to render than to warp, and whether warping anything pays.
 struct WeighPass {
     WarpViews warp;
     UVec2s ranges;  // of the source's pairs
@@ -143,9 +143,9 @@ struct WeighPass {
     Uints tile_depths;  // out: what the source sees in the middle of each, a word of `moving`
     Uints tile_mask;    // out: zeros
     Uints price_bins;   // out: zeros
-    Uints shown_mask;   // where the source has hidden tiles: the others
+    Uints shown_mask;   // if the source has hidden tiles: the shown ones
     ListStates visible;
-    ListStates masked_tiles;  // counts workgroups; empty as yet
+    ListStates masked_tiles;  // counts finished workgroups; empty so far
     WarpCounterss counters;
 };
 
@@ -167,36 +167,36 @@ struct EdgeRoisPass {
     WarpCounterss counters;
 };
 
-// reproject: the source's pixels go to where the target sees them; the nearest stays.
+// reproject: moves the source's pixels to where the target sees them; the nearest stays.
 struct ReprojectPass {
     WarpViews warp;
     Uints moving;
     Uints arrivals;    // in: zeros; out: lib/moving_pixel.glsl
-    Uints shown_mask;  // where the source has hidden tiles: the others
+    Uints shown_mask;  // if the source has hidden tiles: the shown ones
 };
 
-// resample: every pixel that no tile renders gets its colour from its place in the source; tiles their expected error.
+// resample: every pixel that is not rendered is sampled at its place in the source; tiles get their expected error.
 struct ResamplePass {
     WarpViews warp;
     FloatColours source;
     HalfColours half_source;
-    Uints moving;         // the source's pixels or, where reproject ran, the arrivals that it left
+    Uints moving;         // the source's pixels or, if reproject ran, the arrivals that it left
     FloatColours target;  // out; `moving` may lie in the same row
     HalfColours half_target;
-    Floats depths;  // out where asked for: D, alpha over the inverse depth that the place was found by
+    Floats depths;  // out where asked for: D, alpha over the inverse depth with which the place was found
     Uints tile_kinds;
-    Uints tile_errors;                 // out, where errors are predicted; of the odd rows null, or where price says kSeenCoarsely
+    Uints tile_errors;                 // out if errors are predicted; for the odd rows null, or in: kSeenCoarsely by price
     Uints pixel_classes;               // out where asked for: 2 bits a pixel, kCovered, kGap or kHole
-    ComponentPixels component_pixels;  // out where holes are grouped: the same memory as `target`
+    ComponentPixels component_pixels;  // out if holes are grouped: the same memory as `target`
     WarpCounterss counters;
-    Uints shown_mask;  // where the source has hidden tiles: the others; null where it has none
-    Uints words;       // out where later pictures are made from the target, otherwise null; arrivals may lie in the same row
-    vec3 background;   // of tiles that are hidden
-    uint first_row;    // 1: the odd rows, where rows are two apart
+    Uints shown_mask;  // if the source has hidden tiles: the shown ones; otherwise null
+    Uints words;       // out if later pictures are made from the target, otherwise null; arrivals may lie in the same row
+    vec3 background;   // of hidden tiles
+    uint first_row;    // 1: the odd rows, if rows are two apart
 };
 
-// warp_past and warp_pixels: an eye's picture from the one that it showed before; what each tile has gone wrong by so far. Of colours that
-// are half floats these are the addresses, too.
+// warp_past and warp_pixels: an eye's picture warped from the one that it showed before, and each tile's error so far. With half-float
+// colours these are their addresses, too.
 struct WarpPastPass {
     PastViews view;
     FloatColours source;  // the past
@@ -208,8 +208,8 @@ struct WarpPastPass {
     Uints tile_kinds;     // out: 0, or kTileHidden
     Uints tile_mask;      // out: zeros
     Uints price_bins;     // out: zeros
-    Uints shown_mask;     // where parts are hidden: the others; otherwise null
-    Uints tile_list;      // where only some tiles are made: those; the kinds of all are there then
+    Uints shown_mask;     // if parts are hidden: the shown tiles; otherwise null
+    Uints tile_list;      // if only some tiles are made: these; tile_kinds is then complete already
     ListStates listed_tiles;
     PastBlocks blocks;  // from warp_past to warp_pixels: the blocks whose pixels are made one by one
     PastBlockLists block_list;
@@ -223,7 +223,7 @@ struct NewcomersPass {
     Uints tile_depths;  // WeighPass
     Uints order;
     ListStates visible;
-    Uints source_counts;  // of tiles
+    Uints source_counts;  // tiles that each splat meets in the source
     Uints tile_kinds;
     Uints tile_errors;
     WarpCounterss counters;
@@ -242,34 +242,34 @@ struct ComponentsPass {
     uint box_capacity;
 };
 
-// mark_changed: where there is a past, what of it parts of the scene belie that came, went or faded.
+// mark_changed: where parts of the scene came, went or faded, a past is wrong.
 struct MarkChangedPass {
-    PastTiles tiles;  // in and out, of the picture that is made
+    PastTiles tiles;  // in and out, of the picture being made
     ChangedRects rects;
     uvec2 size_tiles;
     uint count;  // of rects, at least 1
 };
 
-// price: predicted: what each tile's error costs to mend, and how much there is of each price.
+// price: predicted: what it costs to mend each tile's error, and how much there is at each price.
 struct PricePass {
     WarpViews warp;
     Uints tile_kinds;
     Uints tile_costs;
     Uints tile_errors;         // in; out where an eye does not resolve two rows: kSeenCoarsely
     Uints tile_prices;         // out: bin << 22 | cost
-    CoherentUints price_bins;  // cost of the tiles in each bin, of errors that are seen whole; greatest error a pair last
-    ListStates masked_tiles;   // counts workgroups
+    CoherentUints price_bins;  // cost of the tiles in each bin, without a past by errors as if seen whole; greatest error per pair last
+    ListStates masked_tiles;   // counts finished workgroups
     WarpCounterss counters;
-    WarpCounterss budget;  // whose budget it is: its own, or one for both eyes
-    // Where there is a past, in place of tile_errors and tile_costs, which is then written; where there will be one, out: what it is told
-    // by these. Otherwise null.
+    WarpCounterss budget;  // the counters of the budget: its own, or one for both eyes
+    // With a past: in, and tile_errors and tile_costs are written from it. If later pictures are made from this one: out, written from
+    // those. Otherwise null.
     PastTiles past_tiles;
     uint is_last;  // 1: no other picture shares the budget after this one
-    float area;    // of a pixel, in those of the eye's own picture: what an error in it is worth
-    EyeGaze gaze;  // where it is known where the target looks
+    float area;    // of a pixel, in pixels of the eye's own picture: the weight of an error in it
+    EyeGaze gaze;  // if it is known where the target looks
 };
 
-// select: the tiles that are rendered, as a list and as a mask.
+// select: the tiles to render, as a list and as a mask.
 struct SelectPass {
     WarpViews warp;
     Uints tile_kinds;  // in and, where errors are predicted, out
@@ -278,52 +278,52 @@ struct SelectPass {
     Uints tile_mask;  // in: zeros; out
     Uints tile_costs;
     ListStates visible;
-    ListStates masked_tiles;    // in: a list of none; out
+    ListStates masked_tiles;    // in: an empty list; out
     ListStates masked_visible;  // out: as long as `visible`, or empty if no tile is masked
     WarpCounterss counters;
     WarpCounterss budget;  // as in PricePass
 };
 
-// periphery: which tiles of an eye's picture are rendered at half of its size, or which at its own.
+// periphery: which tiles of an eye's picture are rendered at half its size or, once these are there, at its own.
 struct PeripheryPass {
-    FloatColours colours;  // of the half-size picture, once it is there: one of the two
+    FloatColours colours;  // of the half-size picture, once it exists: one of the two
     HalfColours half_colours;
-    Uints shown_mask;   // where the eye has hidden tiles: the others; otherwise null
-    Uints tile_list;    // out, in no order: of the half-size picture or of the eye's
-    Uints tile_mask;    // in: zeros; out
-    Uints tile_kinds;   // out where the picture is made from a past: kTileHidden of the tiles that are not needed
-    Uints tile_losses;  // out, of the eye's tiles beyond the clear angle: what half the size is expected to lose there, in kErrorSteps
-    ListStates chosen_tiles;  // counts workgroups; out
+    Uints shown_mask;         // if the eye has hidden tiles: the shown ones; otherwise null
+    Uints tile_list;          // out, in no order: of the half-size picture or of the eye's
+    Uints tile_mask;          // in: zeros; out
+    Uints tile_kinds;         // out if the picture is made from a past: kTileHidden for tiles that are not needed
+    Uints tile_losses;        // out, for the eye's tiles beyond the clear angle: the loss expected at half size, in kErrorSteps
+    ListStates chosen_tiles;  // counts finished workgroups; out
     uvec2 size_px;            // of the eye's picture
     EyeGaze gaze;
 };
 
-// fill_periphery: the tiles that are not rendered at the eye's own size, from the half-size picture.
+// fill_periphery: fills the tiles that are not rendered at the eye's own size from the half-size picture.
 struct FillPeripheryPass {
     FloatColours source;
     HalfColours half_source;
-    Floats source_depths;  // D, where it is wanted
+    Floats source_depths;  // D, if it is wanted
     FloatColours target;   // out
     HalfColours half_target;
-    Floats depths;     // out where wanted
-    Uints tile_mask;   // those that are there
+    Floats depths;     // out if wanted
+    Uints tile_mask;   // of the tiles rendered at the eye's own size
     Uints shown_mask;  // as in PeripheryPass
-    // Where later pictures are made from this one: what they must know of it.
+    // If later pictures are made from this one: what they must know of it.
     Uints source_words;
     Uints words;  // out
     PastTiles source_tiles;
     PastTiles tiles;  // out
     Uints tile_losses;
-    vec3 background;  // of tiles that are hidden
+    vec3 background;  // of hidden tiles
     uvec2 size_px;
 };
 
-// A stable radix sort of (key, value), up to 8 bits a round, reduce then scan: needs neither forward progress between workgroups
+// A stable radix sort of (key, value), up to 8 bits per round, reduce then scan: assumes neither forward progress between workgroups
 // nor a subgroup width.
 struct SortCountPass {
     Uints keys;
-    CoherentUints histograms;  // out: [block][digit], of the run's blocks before
-    CoherentUints run_sums;    // out: [run][digit], of the runs before
+    CoherentUints histograms;  // out: [block][digit], in the run's earlier blocks
+    CoherentUints run_sums;    // out: [run][digit], in the earlier runs
     Uints digit_begins;        // out
     ListStates list;
     uint shift;
@@ -340,14 +340,14 @@ struct SortScatterPass {
     uint digits;
 };
 
-// present: an eye's picture as the headset takes it.
+// present: an eye's picture in the format that the headset takes.
 struct PresentPass {
     FloatColours colours;
     HalfColours half_colours;
-    Floats depths;         // D, where its depth is wanted; of a picture that later ones are made from
-    Uints words;           // its words instead: lib/moving_pixel.glsl
-    Uints tile_kinds;      // where it shows what made it
-    Uints pixel_classes;   // likewise
+    Floats depths;         // D, if its depth is wanted
+    Uints words;           // instead of D, for a picture that later ones are made from: lib/moving_pixel.glsl
+    Uints tile_kinds;      // for a tint by what made each pixel
+    Uints pixel_classes;   // for the tint
     Uints pixels;          // out: 8 bits a channel
     Floats device_depths;  // out where wanted: near / depth
     uvec2 size_px;

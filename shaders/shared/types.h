@@ -1,4 +1,4 @@
-// What lies in device memory, read by C++ and GLSL alike (scalar layout).
+// Structures in device memory, read by C++ and GLSL alike (scalar layout).
 #ifndef BINOSPLAT_SHADERS_SHARED_TYPES_H
 #define BINOSPLAT_SHADERS_SHARED_TYPES_H
 
@@ -14,11 +14,11 @@ BINOSPLAT_ALIGNED_ARRAY_OF(vec2, 8, Vec2s);
 BINOSPLAT_ARRAY_OF(vec3, Vec3s);
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, Vec4s);
 
-// A picture, rows top to bottom: rgb = sum w c + T background, a = sum w. As floats, or where nobody asks for these as four half floats.
+// A picture, rows top to bottom: rgb = sum w c + T background, a = sum w. As floats or, unless these are asked for, four half floats.
 BINOSPLAT_ALIGNED_ARRAY_OF(vec4, 16, FloatColours);
 BINOSPLAT_ALIGNED_ARRAY_OF(uvec2, 8, HalfColours);
 
-// A run of splats that lies in one allocation: 48 bytes a disc, 52 a 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has
+// A run of splats in one allocation: 48 bytes per disc, 52 per 3D Gaussian, and 20, 48 or 92 for the SH bands 1 to 3 if the scene has
 // them.
 struct SceneChunk {
     BINOSPLAT_STORED(Vec3s) positions;
@@ -28,15 +28,15 @@ struct SceneChunk {
     BINOSPLAT_STORED(Floats) opacities;
     UVec2s base_colours;         // f_dc: r | g << 16, b, as half floats
     BINOSPLAT_STORED(Uints) sh;  // f_rest, coefficient by coefficient, rgb interleaved, two half floats a word
-    float fade;                  // 0 to 1, times the opacity of each
+    float fade;                  // 0 to 1, multiplies the opacity of each
     uint unused;
 };
 BINOSPLAT_ALIGNED_ARRAY_OF(SceneChunk, 8, SceneChunks);
 
-// A chunk of kPageSplats in a scene whose chunks come and go: what of it can be seen lies in a box in the world.
+// A chunk of kPageSplats in a scene whose chunks come and go; the box, in world space, encloses all that can be seen of it.
 struct ScenePage {
     vec3 low;
-    float reach;  // of any one splat from its centre, where it is longest
+    float reach;  // how far any one splat extends from its centre, at most
     vec3 high;
     uint count;  // of splats that can be seen; 0: none
 };
@@ -54,14 +54,14 @@ struct EyeView {
     uvec2 size_tiles;
     float near;
     float max_inverse_depth;  // 1 / near
-    // What single precision leaves of the fields above: (x + x_low) has 48 bits.
+    // The remainders that single precision drops from the fields above: (x + x_low) has 48 bits.
     vec3 camera_from_world_x_low;
     vec3 camera_from_world_y_low;
     vec3 camera_from_world_z_low;
     vec3 position_low;
     vec2 focal_px_low;
     vec2 principal_px_low;
-    // kLowPass and kScreenVariance of a pixel of the eye's own picture, which may have more pixels than this one.
+    // kLowPass and kScreenVariance for a pixel of the eye's own picture, which may have more pixels than this one.
     float low_pass;
     float screen_variance;
 };
@@ -79,7 +79,7 @@ struct Place {
 //   u/z = plane_from_pixel.x dx + plane_from_pixel.y dy
 //   v/z =                         plane_from_pixel.z dy
 // (u, v) in standard deviations, turned within the disc so that v does not depend on dx. All three are linear in the pixel.
-// Of a 3D Gaussian u and v themselves stand there for u/z and v/z, so that rho = u^2 + v^2 needs no depth.
+// For a 3D Gaussian these are u and v themselves in place of u/z and v/z, so that rho = u^2 + v^2 needs no depth.
 // A disc whose centre is not beyond the near plane has no such reference: then (see `opacity`) reference_px holds the
 // constant terms of u/z and v/z instead, and offsets count from the middle of the image.
 struct ProjectedSplat {
@@ -88,7 +88,7 @@ struct ProjectedSplat {
     vec2 perspective;
     float inverse_depth;
     float opacity;  // -log2 of it, not negative; its sign bit is set where there is no reference
-    uvec2 colour;   // r | g << 16, b, as half floats; in the last 16 bits what reference_px lacks, see packRest
+    uvec2 colour;   // r | g << 16, b, as half floats; in the last 16 bits the remainder of reference_px, see packRest
 };
 BINOSPLAT_ARRAY_OF(ProjectedSplat, ProjectedSplats);
 
@@ -97,12 +97,12 @@ struct DispatchSize {
     uint x, y, z;
 };
 
-// A list whose length the GPU alone knows: what was needed, what fits (0 if it does not fit: the frame is void and is done
-// again with more room), and the dispatches that go over it.
+// A list whose length only the GPU knows: what was needed, what fits (0 if it does not fit: the frame is void and is done
+// again with more room), and the dispatches over it.
 struct ListState {
     uint needed;  // 0xffffffff: more than kMaxItems
     uint count;
-    uint groups_done;             // of a dispatch that is under way, see lib/last_group.glsl; otherwise 0
+    uint groups_done;             // of a dispatch under way, see lib/last_group.glsl; otherwise 0
     uvec4 run_groups_done;        // the same for each of the kMaxSortRuns runs of a sort's blocks, a byte each
     DispatchSize per_item;        // workgroups of kGroupSize
     DispatchSize per_block;       // workgroups of kListBlock
@@ -120,7 +120,7 @@ struct PixelMap {
     vec3 shift;
 };
 
-// What the reprojection is given at the start of a frame.
+// Parameters of the reprojection, constant within a frame.
 struct WarpView {
     PixelMap target_from_source;
     PixelMap source_from_target;
@@ -129,17 +129,17 @@ struct WarpView {
     uint row_words;        // from a row of moving pixels or of arrivals to the next
     uint rows_apart;       // 2: resample takes the even rows first, and the odd ones once tiles are chosen; 1: all at once
     uint gap_px;           // runs of uncovered pixels up to this long are gaps; longer ones are holes
-    uint margin_px;        // paper: around what needs rendering
-    uint edge_samples;     // paper: N, along each edge
+    uint margin_px;        // paper: margin around what needs rendering
+    uint edge_samples;     // paper: N, samples along each edge
     uint tight_edges;      // 1: bounds of what near content uncovers as well
-    uint move_cost;        // predicted: what moving a tile costs, in pairs; tiles of at most so many pairs are rendered
+    uint move_cost;        // predicted: the cost of warping a tile, in pairs; tiles of at most so many pairs are rendered
     float budget;          // predicted: the share of an eye's work that is spent on tiles with an error
-    float hole_error;      // predicted: what a hole's expected difference counts for
-    float newcomer_error;  // predicted: what full coverage by splats that the source does not see counts for
+    float hole_error;      // predicted: the weight of a hole's expected difference
+    float newcomer_error;  // predicted: the weight of full coverage by splats that the source does not see
 };
 BINOSPLAT_ARRAY_OF(WarpView, WarpViews);
 
-// How places of a picture and of the one that it is made from lie in each other: what the same eye showed before, or the other eye.
+// How places in a picture map to the one that it is made from, and back: what the same eye showed before, or the other eye's.
 struct PastView {
     PixelMap past_from_now;
     PixelMap now_from_past;
@@ -152,18 +152,18 @@ struct PastView {
 };
 BINOSPLAT_ARRAY_OF(PastView, PastViews);
 
-// What is known of a tile of a picture that later ones are made from.
+// What later pictures must know of a tile of the one they are made from.
 struct PastTile {
     uint cost;     // in pairs, when it was last rendered
     uint age;      // frames since then
-    float growth;  // of the amplitude of its error in a frame, as it had turned out then
+    float growth;  // of its error's amplitude per frame, as measured then
     vec4 errors;   // by quarters, row by row: the amplitude of the expected error (root of the mean square over pixels and channels)
-    uvec4 grown;   // until the choice: sums of what the quarters are expected to take on in this frame, squared, in kErrorSteps
+    uvec4 grown;   // until tiles are chosen: squared errors that the quarters are expected to take on in this frame, summed, in kErrorSteps
 };
 BINOSPLAT_ARRAY_OF(PastTile, PastTiles);
 
-// Where in a picture a part of the scene is seen that changed: pixels from begin to end (exclusive), and the amplitude of the error to
-// expect there of a picture that is made from its past.
+// Where a changed part of the scene is seen in a picture: pixels from begin to end (exclusive), and the amplitude of the error to
+// expect there if the picture is warped from its past.
 struct ChangedRect {
     uvec2 begin_px;
     uvec2 end_px;
@@ -171,14 +171,14 @@ struct ChangedRect {
 };
 BINOSPLAT_ARRAY_OF(ChangedRect, ChangedRects);
 
-// A block of a picture whose pixels are made from the past one by one.
+// A block of a picture whose pixels are warped from the past one by one.
 struct PastBlock {
     uint place;           // row << 16 | column, in blocks
     vec2 inverse_depths;  // the least and the greatest in and around it
 };
 BINOSPLAT_ARRAY_OF(PastBlock, PastBlocks);
 struct PastBlockList {
-    DispatchSize per_group;  // workgroups of kGroupSize, a thread a pixel, at most kMaxGroupsX
+    DispatchSize per_group;  // workgroups of kGroupSize, one thread per pixel, at most kMaxGroupsX
     uint count;
 };
 BINOSPLAT_ARRAY_OF(PastBlockList, PastBlockLists);
@@ -203,26 +203,26 @@ struct WarpCounters {
     uint cheap_tiles;
     uint newcomers;
     uint moved_tiles;               // before any is chosen for its error
-    uint picture_cost;              // of all tiles that are shown, in pairs: an eye's work
+    uint picture_cost;              // of all tiles that are shown, in pairs: the work of rendering an eye
     uint shown_tiles;               // that no lens hides
-    uint saved_cost;                // by moving tiles, as far as known before the choice
+    uint saved_cost;                // by warping tiles, as far as known before the choice
     uint chosen_cost;               // of what is rendered
-    uint moves;                     // 1: something is moved
-    uint pays;                      // 1: moving pays, or would have paid in a frame that could not
+    uint moves;                     // 1: something is warped
+    uint pays;                      // 1: warping pays, or would have paid in a frame that could not
     uint last_bin;                  // of the price list: the one in which the budget ends
     uint left_for_last;             // of the budget; all ones: it does not end
     uvec4 borders_px;               // paper: left, top, right, bottom
-    DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is moved
-    DispatchSize per_row;           // likewise over the rows
-    DispatchSize per_visible;       // likewise over the visible splats
+    DispatchSize per_pixel_block;   // workgroups over the pixels, 16x8 each; none if nothing is warped
+    DispatchSize per_row;           // the same over the rows
+    DispatchSize per_visible;       // the same over the visible splats
     DispatchSize component_groups;  // paper: workgroups over the pixels, none if there is no hole
 };
 BINOSPLAT_ARRAY_OF(WarpCounters, WarpCounterss);
 
-// Where an eye looks, and what its pixels are.
+// Where an eye looks, and the geometry of its pixels.
 struct EyeGaze {
     vec3 direction;     // in the eye's axes, of length 1
-    float clear_rad;    // so far about it nothing is taken away
+    float clear_rad;    // within this angle of it nothing is taken away
     float pixel_cycle;  // the angle of two pixels, in radians
     vec2 focal_px;
     vec2 principal_px;
@@ -234,7 +234,7 @@ struct PixelBox {
 };
 BINOSPLAT_ARRAY_OF(PixelBox, PixelBoxes);
 
-// Counters that are in no list: for the report, and for dispatches.
+// Counters that belong to no list: for the report, and for dispatches.
 struct EyeCounters {
     uint square_box_pairs_low;  // pairs that square boxes of 3 sigma would have made, 64 bits
     uint square_box_pairs_high;

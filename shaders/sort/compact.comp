@@ -6,7 +6,7 @@
 #include "passes.h"
 #include "lib/group.glsl"
 #include "lib/list.glsl"
-const uint kSplatKind = kDiscs;  // of all kinds the centre alone
+const uint kSplatKind = kDiscs;  // only the centre is read, whatever the kind
 #include "lib/splat.glsl"
 #include "lib/eye.glsl"
 
@@ -21,8 +21,8 @@ const uint kBlockWords = kCullBlock / 32;
 shared uint visible_words[kBlockWords];
 shared uint visible_before[kBlockWords];  // how many of the block's splats come before each word's
 
-// Of the same order as what it stands for. The square of a distance keeps what float32 tells apart of the distance, and is the same float
-// for whichever eyes the list is made, since it asks for neither.
+// Orders splats as depths or distances do. The square of a distance keeps what float32 tells apart of the distance, and is the same float
+// for whichever eyes the list is made, since it depends on neither.
 float keyOf(EyeView eye, vec3 position) {
     if (kByDistance) {
         const vec3 from_middle = fromPlace(pass.middle.position, pass.middle.position_low, position);
@@ -52,7 +52,7 @@ void main() {
     }
     EyeView eye;
     if (kByDistance) {
-        barrier();  // as shareEye has: visible_before is there for all
+        barrier();  // as in shareEye: visible_before is there for all
     } else {
         eye = shareEye(pass.eyes, pass.order_eye);
     }

@@ -1,6 +1,6 @@
 // cull: which splats may touch a pixel of any eye. A splat reaches to rho = 2 ln(255 o), so its disc is tested as a whole against
 // the planes of the view by its support function, and its low-pass by the projected centre; a 3D Gaussian by its box on the screen.
-// The last workgroup writes how long their list is.
+// The last workgroup writes the length of their list.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -10,7 +10,7 @@
 #include "lib/list.glsl"
 #include "lib/sums.glsl"
 
-layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
+layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -19,7 +19,7 @@ layout(constant_id = 0) const uint kSplatKind = kDiscs;  // dimmed or not is all
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { CullPass pass; };
-layout(constant_id = 1) const bool kMasked = false;  // of each eye only the tiles of its mask count
+layout(constant_id = 1) const bool kMasked = false;  // only the tiles of each eye's mask count
 layout(constant_id = 2) const bool kInPages = false;
 #include "lib/block.glsl"
 
@@ -32,16 +32,16 @@ float reachAlong(CameraSplat splat, float radius, vec3 normal) {
     return radius * length(splat.scale * vec2(dot(splat.t_u, normal), dot(splat.t_v, normal)));
 }
 
-// Whether any of the disc lies on the side of the plane through the eye that `normal` points to.
+// True if any of the disc lies on the side of the plane through the eye that `normal` points to.
 bool reachesInside(CameraSplat splat, float radius, vec3 normal) { return dot(splat.centre, normal) + reachAlong(splat, radius, normal) >= 0; }
 
-// Whether a box around the projected centre meets the picture.
+// True if a box around the projected centre meets the picture.
 bool isOnScreen(CameraSplat splat, EyeView eye, vec2 half_px) {
     const vec2 centre_px = eye.focal_px * splat.centre.xy / splat.centre.z + eye.principal_px;
     return all(greaterThan(centre_px, -half_px)) && all(lessThan(centre_px, vec2(eye.size_px) + half_px));
 }
 
-// Whether one of the tiles between two corners in pixels belongs to the mask.
+// True if any tile between two corners, in pixels, belongs to the mask.
 bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     const vec2 last = vec2(size_tiles) - 1;
     const vec2 first_tile = floor(low_px / float(kTileSize)), last_tile = floor(high_px / float(kTileSize));
@@ -59,7 +59,7 @@ bool meetsMask(Uints mask, uvec2 size_tiles, vec2 low_px, vec2 high_px) {
     return bits != 0;
 }
 
-// Whether the splat, which is visible, may touch a tile of the mask: by its bounds on the screen, where it lies in front of the eye.
+// True if the splat, which is visible, may touch a tile of the mask: by its bounds on the screen, if it lies in front of the eye.
 bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
     const float cut = cutOf(splat.opacity);
     const vec3 c = splat.centre;
@@ -68,7 +68,7 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
         const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px, half_px = sqrt(cut * vec2(g.xx, g.yy)) + kOutlinePadding + 0.5;
         return meetsMask(mask, eye.size_tiles, centre_px - half_px, centre_px + half_px);
     }
-    // The ellipse's bounds: x/z is extreme where (x, z) sees it at an angle; of r = centre + radius (cos a + sin b).
+    // The ellipse's bounds: the extremes of x/z and y/z over c + a cos t + b sin t.
     const float radius = sqrt(cut);
     const vec3 a = radius * splat.scale.x * splat.t_u, b = radius * splat.scale.y * splat.t_v;
     const float reach_z = length(vec2(a.z, b.z));
@@ -79,7 +79,7 @@ bool meetsMask(CameraSplat splat, EyeView eye, Uints mask) {
         const vec2 square = middle * middle - (c.xy * c.xy - (a.xy * a.xy + b.xy * b.xy)) / d;
         const vec2 half_px = eye.focal_px * sqrt(max(square, vec2(0)));
         const vec2 middle_px = eye.focal_px * middle + eye.principal_px;
-        // And the circle of the low-pass around its centre. The square root of a difference of squares keeps half their digits.
+        // And the circle of the low-pass around its centre. The root of a difference of squares keeps only half their digits.
         const vec2 rounding_px = 0.5 + 5e-4 * abs(eye.focal_px * middle) + kOutlinePadding;
         const vec2 centre_px = eye.focal_px * c.xy / c.z + eye.principal_px;
         const float circle_px = sqrt(cut / eye.low_pass);
@@ -136,7 +136,7 @@ void main() {
     } while (in_block < kCullBlock);
     barrier();
     const uint groups = blockCount();
-    if (group < groups) {  // the last row of a dispatch may have more
+    if (group < groups) {  // the last row of a dispatch may have more workgroups
         if (gl_LocalInvocationIndex < kBlockWords) {
             pass.visible_bits.at[group * kBlockWords + gl_LocalInvocationIndex] = visible_words[gl_LocalInvocationIndex];
         }

@@ -1,5 +1,5 @@
-// cull_pages: of a scene whose chunks come and go, which pages may hold a splat that cull keeps, as a list in the scene's order. By the box
-// around all that can be seen of a page, against the planes of the view; they are widened by what the low-pass reaches on the screen.
+// cull_pages: in a scene whose chunks come and go, lists the pages that may hold a splat that cull keeps, in the scene's order. The box
+// around all that can be seen of a page is tested against the planes of the view, widened by the reach of the low-pass on the screen.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -20,21 +20,21 @@ layout(push_constant, scalar) uniform Push { CullPagesPass pass; };
 const uint kGroupWords = kGroupSize / 32;
 shared uint visible_words[kGroupWords];
 
-// What single precision may lose here and in cull, as a part of the distances that are summed.
+// The rounding error allowed for here and in cull, as a fraction of the distances that are summed.
 const float kRounding = 1e-5;
 
 struct Box {
     vec3 middle, half_size;  // in the world's axes, from the eye
 };
 
-// Whether the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length. NaN does: cull sees to it.
+// True if the box reaches beyond `least` along `normal`, a direction in the eye's axes of any length; also for NaN, which cull handles.
 bool reaches(Box box, EyeView eye, vec3 normal, float least) {
     const vec3 n = normal.x * eye.camera_from_world_x + normal.y * eye.camera_from_world_y + normal.z * eye.camera_from_world_z;
     const float rounding = kRounding * dot(abs(box.middle) + box.half_size, abs(n));
     return !(dot(box.middle, n) + dot(box.half_size, abs(n)) + rounding < least);
 }
 
-// Of one side of the view: the points of a disc that cull looks at may lie behind the eye, where a wider plane is no wider.
+// One side of the view, widened or not: the points of a disc that cull tests may lie behind the eye, where a wider plane is no wider.
 bool reachesSide(Box box, EyeView eye, vec3 normal, float wider_px, float least) {
     return reaches(box, eye, normal, least) || reaches(box, eye, normal + vec3(0, 0, wider_px), least);
 }
@@ -43,8 +43,8 @@ bool mayShow(ScenePage page, EyeView eye) {
     const vec3 low = fromEye(eye, page.low), high = fromEye(eye, page.high);
     const Box box = Box(0.5 * (low + high), 0.5 * (high - low));
     if (!reaches(box, eye, vec3(0, 0, 1), eye.near)) { return false; }
-    // On the screen a 3D Gaussian reaches as far as its ellipsoid along f (1, 0, -slope), whose slope is held within the picture and a border
-    // of it (lib/gaussian.glsl): for one beside the picture no more than along the side's normal and that border times its reach in depth.
+    // On the screen a 3D Gaussian reaches as far as its ellipsoid along f (1, 0, -slope), the slope clamped to the picture and its border
+    // (lib/gaussian.glsl): beside the picture at most its reach along the side's normal plus the border times its reach in depth.
     const vec2 size_px = vec2(eye.size_px), to_far_edge = size_px - eye.principal_px;
     float wider_px = sqrt(kMaxCut / eye.low_pass);
     vec2 least = vec2(0);

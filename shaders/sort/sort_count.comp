@@ -1,5 +1,5 @@
-// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run of blocks sums up how many of
-// it there are in the run's blocks before each; the last one of all does so over the runs, and finds where each digit begins.
+// Radix sort, first step of a round: how often each digit occurs in each block. The last workgroup of a run of blocks replaces each count
+// by the sum over the run's earlier blocks; the last workgroup of all does the same over the runs, and finds where each digit begins.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -12,7 +12,7 @@ layout(constant_id = 0) const uint kThreads = 128;
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortCountPass pass; };
 
-const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at a time, since each load takes as long as all of them
+const uint kMaxColumn = max(kSortRun, kMaxSortRuns);  // loaded at once, since each load takes as long as all of them
 
 shared uint digit_counts[kMaxDigits];
 
@@ -33,7 +33,7 @@ void countDigits(uint block, uint block_keys, uint count) {
     }
 }
 
-// Replaces the counts of one digit, in `rows` rows from `first` on, by the sums of those before them; returns the sum of all.
+// Replaces the counts of one digit, in `rows` rows starting at `first`, by the sums of those before them; returns the total.
 uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
     uint values[kMaxColumn];
     [[unroll]] for (uint row = 0; row < kMaxColumn; ++row) { values[row] = row < rows ? counts.at[(first + row) * pass.digits + digit] : 0; }
@@ -45,7 +45,7 @@ uint sumColumn(CoherentUints counts, uint first, uint rows, uint digit) {
     return sum;
 }
 
-// A thread a digit, so that what they read lies side by side.
+// One thread per digit, so that what they read lies side by side.
 void sumBlocksOfRun(uint run, uint blocks) {
     for (uint digit = gl_LocalInvocationIndex; digit < pass.digits; digit += kThreads) {
         pass.run_sums.at[run * pass.digits + digit] = sumColumn(pass.histograms, run * kSortRun, blocks, digit);

@@ -1,6 +1,6 @@
 // Radix sort, second step of a round: every pair goes to its place. Stable: a subgroup takes a contiguous run of a block's keys, counts
 // its digits, and then walks the run once more, a subgroup's width at a time, ranking equal digits by comparing them across the lanes
-// (Adinets and Merrill 2022, section 4.3, without the chained scan). Keys are read twice, so that a thread holds but one of them.
+// (Adinets and Merrill 2022, section 4.3, without the chained scan). Keys are read twice, so that a thread holds only one of them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -12,7 +12,7 @@
 
 layout(constant_id = 0) const uint kThreads = 128;
 layout(constant_id = 1) const uint kMaxSubgroups = 8;
-layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: subgroups are just so wide, and a comparison a lane is cheaper than a ballot a bit
+layout(constant_id = 2) const uint kComparedLanes = 0;  // not 0: the subgroup width, where comparisons are cheaper than ballots
 layout(local_size_x_id = 0) in;
 layout(push_constant, scalar) uniform Push { SortScatterPass pass; };
 
@@ -48,7 +48,7 @@ uint firstLane(uvec4 lanes) {
     return lanes.z != 0 ? 64 + uint(findLSB(lanes.z)) : 96 + uint(findLSB(lanes.w));
 }
 
-// Turns counts into places: where each digit begins, in all and in this block, and each subgroup's share of it.
+// Turns counts into places: where each digit begins overall and in this block, and where each subgroup's share of it does.
 void placeDigits(uint block) {
     uint digit = gl_LocalInvocationIndex;
     if (digit >= pass.digits) { return; }
@@ -88,8 +88,8 @@ void main() {
     placeDigits(block);
     barrier();
 
-    // As many steps for every subgroup, though the runs of a list's last block may be shorter: a device may make whole workgroups wait
-    // at a subgroup's barrier, as Mesa 25's software device does. The first run is the longest.
+    // The same number of steps for every subgroup, though the runs of a list's last block may be shorter: a device may make whole
+    // workgroups wait at a subgroup's barrier, as Mesa 25's software device does. The first run is the longest.
     const uint steps_end = min(run_keys, count - block_begin);
     uint step_begin = 0;
     [[dont_unroll]] do {
@@ -108,7 +108,7 @@ void main() {
             pass.keys_out.at[place] = key;
             pass.values_out.at[place] = value;
         }
-        subgroupBarrier();  // the next step's first of a digit is another lane
+        subgroupBarrier();  // in the next step another lane is the first of a digit
         step_begin += lanes;
     } while (step_begin < steps_end);
 }

@@ -1,4 +1,4 @@
-// bin: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are a bit each; the few
+// bin: a (tile, splat) pair for each tile a splat meets, front to back. A small splat's tiles are one bit each; the few
 // larger splats are listed for bin_large, so that one over the whole screen stalls nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform Push { BinPass pass; };
 
 #include "lib/pair.glsl"
 
-// By every lane of a subgroup.
+// Every lane of a subgroup must call it.
 void listLarge(bool is_large, uint rank, uint begin) {
     const uvec4 large_lanes = subgroupBallot(is_large);
     const uint large = subgroupBallotBitCount(large_lanes);

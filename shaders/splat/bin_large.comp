@@ -1,4 +1,4 @@
-// bin, second step: the pairs of the splats that bin listed. A subgroup a splat and a lane a row of tiles.
+// bin, second step: the pairs of the splats that bin listed. A subgroup per splat and a lane per row of tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -9,14 +9,14 @@
 
 layout(local_size_x = kBinLargeSize) in;
 layout(push_constant, scalar) uniform Push { BinPass pass; };
-layout(constant_id = 0) const bool kMasked = false;  // pairs in tiles of the mask alone
-layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
+layout(constant_id = 0) const bool kMasked = false;  // only pairs in tiles of the mask
+layout(constant_id = 1) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 
 #include "lib/splat.glsl"
 #include "lib/outline.glsl"
 #include "lib/pair.glsl"
 
-// Of the tiles of a row from `begin` to `end` how many count.
+// How many of a row's tiles from `begin` to `end` count.
 uint countRow(int row, uint begin, uint end) {
     if (!kMasked) { return end - begin; }
     uint tiles = 0, x = begin;
@@ -49,7 +49,7 @@ void putRow(uvec2 pairs, int row, uint begin, uint end, uint rank) {
     } while (x < end);
 }
 
-// By every lane of a subgroup: the pairs of the splat at place `i` of the list.
+// The pairs of the splat at place `i` of the list. Every lane of a subgroup must call it.
 void putLarge(uint i, uint lanes) {
     const uint rank = pass.large_splats.at[i];
     const ivec4 box = largeBox(pass.tile_sets.at[rank]);
@@ -65,7 +65,7 @@ void putLarge(uint i, uint lanes) {
         pairs.x += subgroupAdd(tiles);
         first_row += int(lanes);
     } while (first_row < box.w);
-    // project counted no fewer; should it ever: pairs of no tile are sorted behind all others and blended nowhere.
+    // project counted no fewer. Should it count more, the rest become pairs of no tile, which are sorted last and never blended.
     for (uint pair = pairs.x + gl_SubgroupInvocationID; pair < pairs.y; pair += lanes) {
         pass.tiles.at[pair] = pass.size_tiles.x * pass.size_tiles.y;
         pass.ranks.at[pair] = rank;

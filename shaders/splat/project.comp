@@ -1,5 +1,5 @@
-// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes how long the list of
-// pairs is.
+// project: the visible splats, front to back, as one eye sees them, and how many tiles each meets. The last workgroup writes the length of
+// the list of pairs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -13,7 +13,7 @@ layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { ProjectPass pass; };
 layout(constant_id = 1) const bool kMasked = false;  // only tiles of the mask count; splats that meet none cost little
 layout(constant_id = 2) const uint kSplatKind = kDiscs;
-layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the customary bound are counted; not under a mask
+layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the usual bound are counted; not under a mask
 
 #include "lib/splat.glsl"
 #include "lib/gaussian.glsl"
@@ -27,7 +27,7 @@ layout(constant_id = 3) const bool kSquareBoxes = false;  // pairs of the custom
 
 shared uint group_tiles;
 
-// How many tiles the customary bound meets: a square of three standard deviations of the larger extent on the screen, around
+// How many tiles the usual bound meets: a square of three standard deviations of the larger extent on the screen, around
 // the middle of its box, whatever the opacity (as the rasterizers of Huang et al. 2024 and Kerbl et al. 2023 bin). For the report alone.
 uint squareTiles(vec2 middle_px, float radius_px, EyeView eye) {
     const vec2 tiles = vec2(eye.size_tiles);
@@ -56,7 +56,7 @@ uint squareBoxTiles(CameraSplat splat, EyeView eye) {
     return squareTiles(middle_px, ceil(max(max(extent_px.x, extent_px.y), 3 * 0.70710678)), eye);
 }
 
-// How many tiles the splat meets that count; `small` has a bit for each where the box is small enough.
+// How many tiles (of the mask, if there is one) the splat meets; `small` has a bit for each if the box is small enough.
 uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     const bool fits = isSmallBox(box);
     uint tiles = 0;
@@ -87,7 +87,7 @@ uint countTiles(Outline outline, ivec4 box, uvec2 size_tiles, out uint small) {
     return fits ? bitCount(small) : tiles;
 }
 
-// What a visible splat is to this eye: the tiles it meets, and for the report those of the customary bound.
+// Projects a visible splat for this eye; returns how many tiles it meets and, for the report, how many the usual bound does.
 uint project(uint rank, EyeView eye, out uint square_tiles) {
     const SplatPlace at = placeOfSplat(pass.order.at[rank], pass.chunk_bits);
     const uvec2 size_tiles = eye.size_tiles;

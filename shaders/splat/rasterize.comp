@@ -1,4 +1,4 @@
-// rasterize: blending, front to back, a workgroup a tile. A tile's splats come to shared memory a batch at a time, and with each a bit
+// rasterize: blending, front to back, a workgroup per tile. A tile's splats come to shared memory a batch at a time, each with a bit
 // for every cell of 8x8 pixels that it meets; the threads of a cell (one subgroup, where its width allows) then walk over
 // their own splats alone. A thread blends several pixels of a column, so that what it reads from shared memory serves them all.
 #version 460
@@ -14,14 +14,14 @@
 layout(constant_id = 0) const uint kThreadsPerCell = 32;  // 8, 16, 32 or 64
 layout(constant_id = 1) const bool kDepth = true;
 layout(constant_id = 2) const bool kMoments = false;  // of the inverse depth
-layout(constant_id = 3) const bool kMoving = false;   // the picture is going to be moved
-layout(constant_id = 4) const bool kSpread = false;   // and how far its pixels' depths spread
-layout(constant_id = 5) const bool kMasked = false;   // the tiles of pass.full_tiles alone
-layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // what a moving pixel's depth is
+layout(constant_id = 3) const bool kMoving = false;   // the picture is going to be warped
+layout(constant_id = 4) const bool kSpread = false;   // and needs to know how far its pixels' depths spread
+layout(constant_id = 5) const bool kMasked = false;   // only the tiles of pass.full_tiles
+layout(constant_id = 6) const uint kDepthChoice = kDepthInverse;  // the depth that a pixel is warped by
 layout(constant_id = 7) const bool kHalfColours = false;
-layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not is all the same here
+layout(constant_id = 8) const uint kSplatKind = kDiscs;  // dimmed or not makes no difference here
 layout(local_size_x_id = 9) in;  // kCellsPerTile * kThreadsPerCell
-layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going to be moved like the even one above it
+layout(constant_id = 10) const bool kEvenRows = false;  // an odd row is going to be warped like the even one above it
 layout(constant_id = 11) const bool kPast = false;      // the picture is going to be a past; under a mask it is made from one
 
 #include "lib/splat.glsl"
@@ -31,14 +31,14 @@ layout(constant_id = 11) const bool kPast = false;      // the picture is going 
 
 layout(push_constant, scalar) uniform Push { RasterizePass pass; };
 
-// What the loop sums up so that a pixel can be moved.
+// The sums that the loop needs so that a pixel can be warped.
 const bool kMovesByDepth = kMoving && kDepthChoice != kDepthInverse;
 const bool kMovesByInverseDepth = kSpread || (kMoving && kDepthChoice == kDepthInverse);
 
 const uint kThreads = kCellsPerTile * kThreadsPerCell;
 const uint kPixels = kCellSize * kCellSize / kThreadsPerCell;  // of a thread: a column
 const float kFar = 3e38;                                       // a rho that is no hit
-const float kNoLowPass = 1e30;                                 // likewise, but nearer than a hit at no depth (z infinite)
+const float kNoLowPass = 1e30;                                 // no hit either, but nearer than a hit at no depth (z infinite)
 const uint kNoSplat = kBatchSize;                              // the slot of a splat of no opacity
 
 // u, v and the low-pass are scaled here so that alpha = exp2(-(what opacity adds) - u^2 - v^2).
@@ -48,9 +48,9 @@ shared vec4 batch_depth[kBatchSize + 1];      // 1/z there, its slopes, -log2(op
 shared uvec2 batch_colour[kBatchSize + 1];
 shared uint cell_splats[kCellsPerTile][kBatchSize / 32];  // four words: blendBatch holds them in registers
 shared uint threads_done;
-shared uint squares;  // of what is rendered less what was there before, in kErrorSteps
+shared uint squares;  // of the differences between what is rendered and what was there before, in kErrorSteps
 
-// Which cells of the tile the splat meets, a bit each.
+// The cells of the tile that the splat meets, a bit each.
 uint cellsOf(ProjectedSplat splat, uvec2 tile_px, float low_pass) {
     const Outline outline = outlineOfProjected(splat, low_pass);
     if (!outline.ellipse) { return 15; }
@@ -76,8 +76,8 @@ void loadSplat(uint slot, uint lanes_in_subgroup, uint rank, vec2 middle_px, uve
     batch_plane[slot] = vec4(scale * splat.plane_from_pixel, kSplatKind == kDiscs && has_reference ? kLog2PerRho * low_pass : 0);
     batch_depth[slot] = vec4(splat.inverse_depth, splat.perspective, negativeLog2Opacity(splat));
     batch_colour[slot] = splat.colour;
-    // A subgroup's slots follow one another, so that one lane can set the bits of all that are here; 32 divides the slot of lane 0 or is
-    // divided by the subgroup's width.
+    // A subgroup's slots are consecutive, so that one lane can set the bits of all that are here; either 32 divides the slot of lane 0, or
+    // the subgroup's width divides 32.
     const uint cells = cellsOf(splat, tile_px, low_pass), first_slot = slot - gl_SubgroupInvocationID;
     for (uint cell = 0; cell < kCellsPerTile; ++cell) {
         const uvec4 lanes = subgroupBallot((cells & (1u << cell)) != 0);
@@ -100,7 +100,7 @@ void loadBatch(uint begin, uint splats, uint lanes, vec2 middle_px, uvec2 tile_p
     } while (slot < splats);
 }
 
-// What the thread's pixels have come to.
+// The sums of the thread's pixels so far.
 vec3 colour[kPixels];
 float depth[kPixels];
 vec2 moments[kPixels];
@@ -157,8 +157,8 @@ void blend(uint slot, vec2 first_px, uint max_inverse_depth_bits) {
     any_open = most_open > 0;
 }
 
-// Those of the batch that meet the cell, in one loop: with one for each word of bits inside another for the words, NVIDIA's compilers
-// hold a fifth more registers, and every pixel's sums would be carried through both. A word without bits blends the splat of no opacity.
+// Blends the splats of the batch that meet the cell, in one loop: with a loop over bits inside one over words, NVIDIA's compilers
+// use a fifth more registers, and every pixel's sums would be carried through both. A word without bits blends the splat of no opacity.
 void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bits) {
     uint first_slot = 0, bits = cell_splats[cell][0];
     uvec3 next = uvec3(cell_splats[cell][1], cell_splats[cell][2], cell_splats[cell][3]);
@@ -173,7 +173,7 @@ void blendBatch(uint splats, uint cell, vec2 first_px, uint max_inverse_depth_bi
     } while (any_open && first_slot < splats);
 }
 
-// The pixel as it is going to be moved: at the depth that stands for it, infinitely far where nothing was blended.
+// The pixel as it is going to be warped: at the depth that stands for it, infinitely far where nothing was blended.
 uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     const float mean = inverse_depth_sums.x / alpha;
     const float inverse_depth = !(alpha > 0)                   ? 0
@@ -185,8 +185,8 @@ uint toMove(float alpha, float depth_sum, vec2 inverse_depth_sums) {
     return movingPixel(inverse_depth, kLanded, kSpread ? spreadCode(variance / (inverse_depth * inverse_depth)) : 0);
 }
 
-// What a picture that is made from this one must know of the tile. By every thread; `error` is what the thread's pixels turned out to
-// have had.
+// Writes what a picture that is made from this one must know of the tile. Every thread must call it; `error` is what its pixels turned out
+// to have had.
 void leaveTile(uint tile, uint cost, float error) {
     if (kMasked) {
         atomicAdd(squares, uint(error * kErrorSteps));

@@ -1,5 +1,5 @@
-// tile_ranges: where each tile's pairs lie, once they are sorted by tile: a thread a tile looks for the first of its own and the first of the next.
-// Under a mask tiles with pairs are listed for 7; those without become background here, which takes less than a workgroup each.
+// tile_ranges: where each tile's pairs lie, once they are sorted by tile: a thread per tile searches for its first pair and the next
+// tile's. Under a mask tiles with pairs are listed for rasterize; others become background here, which takes less than a workgroup each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -11,7 +11,7 @@
 
 layout(local_size_x = kGroupSize) in;
 layout(push_constant, scalar) uniform Push { TileRangesPass pass; };
-layout(constant_id = 0) const bool kMasked = false;  // the tiles of pass.tile_list alone
+layout(constant_id = 0) const bool kMasked = false;  // only the tiles of pass.tile_list
 layout(constant_id = 1) const bool kHalfColours = false;
 layout(constant_id = 2) const bool kPast = false;  // the picture is going to be a past
 
@@ -23,7 +23,7 @@ const uint kTilePixels = kTileSize * kTileSize;
 shared uint empty_tiles[kMasked ? kGroupSize : 1];
 shared uint empty_count;
 
-// Of the pairs from `begin` on the first in this tile or a later one.
+// The first pair, from `begin` on, in this tile or a later one.
 uint firstPairFrom(uint tile, uint begin) {
     uint end = pass.pairs.at[0].count;
     while (begin < end) {
@@ -37,14 +37,14 @@ uint firstPairFrom(uint tile, uint begin) {
     return begin;
 }
 
-// Whether it has any.
+// True if the tile has any.
 bool findPairs(uint tile) {
     const uint begin = firstPairFrom(tile, 0), end = firstPairFrom(tile + 1, begin);
     pass.ranges.at[tile] = uvec2(begin, end);
     return begin < end;
 }
 
-// By every thread of the workgroup.
+// Every thread of the workgroup must call it.
 void listFull(bool full, uint tile) {
     const uvec4 lanes = subgroupBallot(full);
     uint place = 0;
@@ -72,7 +72,7 @@ void main() {
     }
     if (gl_LocalInvocationIndex == 0) { empty_count = 0; }
     barrier();
-    // Pairs that had no room: what the past made stays.
+    // If pairs had no room, what the past made stays.
     const bool is_void = kPast && pass.is_made != 0 && (pass.pairs.at[0].needed != pass.pairs.at[0].count || pass.visible.at[0].needed != pass.visible.at[0].count);
     const bool listed = item < pass.masked_tiles.at[0].count && !is_void;
     const uint tile = listed ? pass.tile_list.at[item] : 0;

@@ -1,7 +1,7 @@
-// reproject: the source's pixels go to where the target sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
-// greatest inverse depth stays, whatever the order of threads. resample finds the source from it again, so that 32-bit atomics suffice.
+// reproject: moves the source's pixels to where the target sees them (paper, section 3.4, equations 3 to 5). Of several that meet, the
+// one with the greatest inverse depth stays, whatever the order of threads. resample finds the source from it, so 32-bit atomics suffice.
 // A surface may be stretched. Pixels that fall between a pixel and its neighbours, at most gap_px apart, are interpolated here already,
-// since what lies behind would otherwise show through the cracks. Where colours are copied, they are not: in the paper only pixels move
+// since what lies behind would otherwise show through the cracks. Not so where colours are copied: in the paper only pixels move
 // (section 3.1, stage 2), and what they leave open is a hole to be filled afterwards (stage 4).
 // The paper does not say which pixel a place belongs to: here the one that holds it. Nor does it say which of two surfaces stays: here the
 // nearer one. Nor what becomes of pixels without any splat, whose D of 0 is no depth: here they are infinitely far.

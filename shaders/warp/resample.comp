@@ -2,14 +2,14 @@
 // Where pixels stay in their rows and a row fits into shared memory, this pass moves them there itself; otherwise reproject has done so.
 // A pixel that something reached keeps its depth. The others form runs between two such pixels. A short run across a slanted surface
 // interpolates its depth; any other repeats the farther neighbour, since what was hidden lies behind. Few tiles have runs: they are listed
-// and gone through once more, so that all other pixels do without the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
-// Where errors are predicted, each tile sums them up, from the samples at hand. A hole's pixel counts what the picture changes by next to
-// the hole. Any other counts how uncertain its disparity is, times the picture's gradient, and what a cubic loses between pixels.
-// Only even rows have errors, which count for two. They come first, and the odd ones once tiles are chosen: of a tile that is going to be
+// and processed in a second pass, so that all other pixels skip the search. A cubic kernel (Catmull and Rom 1974) reads the colour.
+// Where errors are predicted, each tile sums those of its pixels from the samples at hand: for a hole's pixel, how much the picture changes
+// next to the hole; for any other, the uncertainty of its disparity times the picture's gradient, and what a cubic loses between pixels.
+// Only even rows have errors, which count twice. They come first, and the odd ones once tiles are chosen: of a tile that is going to be
 // rendered only half of the pixels are then sampled in vain. Where pixels stay in their rows, an odd row is sampled at the places of the
 // even one above it, so that only half of the rows are moved. Its colours are its own, except where it repeats a neighbour. Where an eye
 // does not resolve two rows (price), an odd row is the mean of those above and below.
-// Where colours are copied (kForward), this is the paper to the letter instead, see copyArrived.
+// Where colours are copied (kForward), this follows the paper to the letter instead, see copyArrived.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -25,7 +25,7 @@ layout(local_size_x = kWarpGroup) in;
 layout(push_constant, scalar) uniform Push { ResamplePass pass; };
 layout(constant_id = 1) const bool kPredictErrors = false;
 layout(constant_id = 2) const bool kDepth = false;
-layout(constant_id = 3) const bool kClasses = false;     // somebody asks for the class of each pixel
+layout(constant_id = 3) const bool kClasses = false;     // the class of each pixel is asked for
 layout(constant_id = 4) const bool kComponents = false;  // holes are going to be grouped
 // A whole row of arrivals is kept in shared memory, so that colours may overwrite it in device memory. 0: rows are too long, and arrivals
 // lie elsewhere.
@@ -47,11 +47,11 @@ shared uint arrived_bits[kRowSource == kPlacesGiven ? 1 : kLongestRow / 32];
 shared uint tile_classes[kClasses ? kLongestRow / 16 : 1];
 const uint kMostTiles = kLongestRow / 16;
 
-shared uint moved_tiles[kMostTiles];  // of this row of tiles, in no order; from the end those of which this row is a mean
+shared uint moved_tiles[kMostTiles];  // tiles of this row, in no order; from the end those in which this row is a mean of others
 shared uint moved_count;
 shared uint mean_count;
 shared uint hidden_count;
-shared uint open_tiles[kFindsOpen ? kMostTiles : 1];  // of moved_tiles those with pixels that nothing reached
+shared uint open_tiles[kFindsOpen ? kMostTiles : 1];  // slots of moved_tiles whose tiles have pixels that nothing reached
 shared uint open_bits[kFindsOpen ? (kMostTiles + 31) / 32 : 1];
 shared uint open_count;
 
@@ -61,7 +61,7 @@ vec4 sourceAt(uint i) { return colourAt(pass.source, pass.half_source, i); }
 #include "lib/moved_error.glsl"
 #include "lib/copy_arrived.glsl"
 
-// Whether later pictures are made from this one.
+// True if later pictures are made from this one.
 bool keepsWords() { return !kForward && any(notEqual(uvec2(pass.words), uvec2(0))); }
 
 void putPixel(WarpView warp, uvec2 at, uint pixel_class, vec4 colour, float inverse_depth) {
@@ -114,7 +114,7 @@ float putResolved(WarpView warp, uint row, uvec2 at, Resolved resolved, bool ope
     return 2 * (variance_px2 * dot(found.gradient, found.gradient) + found.lost) / 3;
 }
 
-// Writes a pixel that something reached, or any if open ones are not told apart; returns its expected squared error, and its class.
+// Writes a pixel that something reached, or any pixel if open ones are not told apart; returns its expected squared error, and its class.
 float putReached(WarpView warp, uint row, uvec2 at, uint arrival, out uint pixel_class) {
     if (kForward) {
         const Copied copied = copyArrived(warp, row, at);
@@ -141,7 +141,7 @@ void countClass(uint x, uint pixel_class, inout uvec3 classes) {
 
 uint errorSteps(float error) { return uint(min(error, kMaxPixelError) * kErrorSteps); }
 
-// Lanes work side by side on a row of pixels of a tile, or of several: each 16 have a `tile`.
+// Lanes work side by side on a row of pixels of one or several tiles: every 16 share a `tile`.
 void addErrors(uint tile, uint steps, uint lanes) {
     const uint slots = max(lanes / kTileSize, 1u);
     uint s = 0;
@@ -208,7 +208,7 @@ void main() {
     }
     if (kRowSource != kPlacesGiven) {
         if (items > 0) { loadRow(row, width); }
-        memoryBarrierBuffer();  // colours may take the place of what was read
+        memoryBarrierBuffer();  // colours may overwrite what was read
         barrier();
     }
 
@@ -253,7 +253,7 @@ void main() {
     if (!kClasses) { return; }
     barrier();
     for (uint tile = gl_LocalInvocationIndex; tile < tiles; tile += kWarpGroup) { pass.pixel_classes.at[y * tiles + tile] = tile_classes[tile]; }
-    // As if no tile were chosen yet: the even rows count for the odd ones.
+    // Counted as if no tile were chosen yet: the even rows count for the odd ones.
     classes *= warp.rows_apart == 1 ? 1 : pass.first_row == 0 ? min(2, warp.size_px.y - y) : 0;
     const uint covered = subgroupAdd(classes.x), gaps = subgroupAdd(classes.y), holes = subgroupAdd(classes.z);
     if (subgroupElect()) {

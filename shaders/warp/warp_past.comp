@@ -1,5 +1,5 @@
-// warp_past: an eye's picture from the one that it showed before, and what each tile has gone wrong by so far. A workgroup makes 128x16 pixels, a
-// thread a block of 4x8. Where a block's places in the past lie as its pixels do, shifted and a little turned, its thread goes over the source
+// warp_past: warps the picture that an eye showed before, and predicts each tile's error. A workgroup makes 128x16 pixels, a thread a
+// block of 4x8. Where a block's places in the past lie as its pixels do, shifted and a little rotated, its thread goes over the source
 // pixels row by row and resamples first along the row, then along columns, so that each is read once. Other blocks, where depths differ or
 // the past ends, are listed for warp_pixels: few workgroups have many of them, and the rest would wait for these.
 #version 460
@@ -9,8 +9,8 @@
 
 layout(constant_id = 0) const bool kHalfColours = false;
 layout(constant_id = 1) const bool kHiddenTiles = false;  // a lens hides parts
-layout(constant_id = 2) const bool kSomeTiles = false;    // those of a list alone
-layout(constant_id = 3) const bool kWholeBlocks = false;  // rows of the picture are a multiple of a block's
+layout(constant_id = 2) const bool kSomeTiles = false;    // only those of a list
+layout(constant_id = 3) const bool kWholeBlocks = false;  // the picture's width is a multiple of a block's
 
 layout(local_size_x = kPastGroup) in;
 layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
@@ -27,16 +27,16 @@ const uvec2 kRegionCells = uvec2(kPastTiles, 1) * (kTileSize / kCellSize);
 const int kColumns = int(kPastColumns), kRows = int(kPastRows);
 
 shared uint listed_count, listed_first;  // this workgroup's part of the list of blocks
-shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // sums of what this step is expected to lose, squared, in kErrorSteps
-shared uint cell_carried[kRegionCells.x * kRegionCells.y];  // the greatest error of where a cell comes from, as bits
+shared uint cell_grown[kRegionCells.x * kRegionCells.y];    // squared errors expected of this step, summed, in kErrorSteps
+shared uint cell_carried[kRegionCells.x * kRegionCells.y];  // the greatest error of the past where a cell comes from, as bits
 
-// How a block's pixels lie in the past, less how they lie in the block: from its middle, by column and by row.
+// The offsets from a block's pixels to their places in the past: at its middle, by column and by row.
 struct BlockMoves {
     vec2 mean;
     vec2 across, down;  // how that changes from column to column and from row to row
 };
 
-// A row of a block, in stores of 16 bytes where it begins at a multiple of them.
+// A row of a block, in 16-byte stores where it begins at a multiple of 16 bytes.
 void putWords(PastView view, uvec2 first, uvec4 words) {
     if (first.y >= view.size_px.y) { return; }
     if (kWholeBlocks) {
@@ -93,14 +93,14 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
         const float beside = float(c) - 0.5 * float(kColumns - 1);
         lagrangeWeights(clamp(moves.mean.y + beside * moves.across.y - float(base_y), 0, 1), weights_y[c]);
     }
-    vec4 sums[kTaps][kColumns];  // of the rows that the source rows so far go into, the one that is complete first
+    vec4 sums[kTaps][kColumns];  // of the block's rows that the source rows so far contribute to, the first to complete first
     [[unroll]] for (int k = 0; k < int(kTaps); ++k) {
         [[unroll]] for (int c = 0; c < kColumns; ++c) { sums[k][c] = vec4(0); }
     }
-    int row = 1 - int(kTaps);  // of the block, that is complete once its last source row is there
+    int row = 1 - int(kTaps);  // the block's row that this source row completes
     [[dont_unroll]] do {
         [[dont_unroll]] do {
-            // As far from the block's middle as the source row comes to lie.
+            // How far from the block's middle the source row comes to lie.
             const float from_middle = float(row + 3) - fract_y - 0.5 * float(kRows - 1);
             const float move_x = moves.mean.x + from_middle * moves.down.x;
             const float base_x = floor(move_x);
@@ -128,8 +128,8 @@ void resampleBlock(PastView view, uvec2 first, BlockMoves moves, ivec2 last) {
     } while (row < kRows);
 }
 
-// The inverse depth of what comes to lie at a place from so far away in the past that it is not among its neighbours; 0: nothing that stands
-// in front of `known`.
+// The inverse depth of content that comes to lie at a place from so far away in the past that it is not among its neighbours; 0: nothing
+// stands in front of `known`.
 float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known) {
     const float px_by_depth = max(abs(by_depth.x), abs(by_depth.y));
     const uint steps = min(uint(px_by_depth * view.nearest / kPastSearchStep), kPastMostSearched);
@@ -145,8 +145,8 @@ float nearestOnTheWay(PastView view, vec2 wanted_px, vec2 by_depth, float known)
     return nearest;
 }
 
-// Looks where the block's pixels come from: near its middle's place, since in a frame the head moves little. Whether they lie in the past as
-// in a picture that is shifted and a little turned; then their depths are written.
+// Looks for where the block's pixels come from: near its middle's place, since in a frame the head moves little. True if they lie in the
+// past as in a picture that is shifted and a little rotated. Also writes their depths, which hold in that case.
 bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out vec2 depths, out vec2 source_px, out float spread) {
     const vec2 half_size = 0.5 * vec2(kBlock), middle_px = vec2(first) + half_size;
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
@@ -187,7 +187,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         lower += r < kRows / 2 ? -in_row : in_row;
     }
     const float differ = 0.5 * (depths.y - depths.x);
-    // What stands in front of its neighbours may have come before this block.
+    // Content in front of its neighbours may have moved in front of this block.
     [[unroll]] for (int side = 0; side < 9; ++side) {
         if (side == 4) { continue; }
         const ivec2 at = clamp((corner + end + 1) / 2 + ivec2(side % 3 - 1, side / 3 - 1) * (ivec2(kBlock) / 2 + int(kPastBorder)), ivec2(0), last);
@@ -196,7 +196,7 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
         depths = vec2(min(depths.x, here), max(depths.y, here));
     }
     depths.y = max(depths.y, nearestOnTheWay(view, middle_px, by_depth, depths.y));
-    // What is found there belongs there: it comes to lie where it was looked for.
+    // What is found there must belong there: it comes to lie where it was looked for.
     const float pixels = float(kColumns * kRows), off_px = max(abs(by_depth.x), abs(by_depth.y)) * abs(sum / pixels - guess);
     valid = valid && off_px <= kPastAgrees;
     const float right = in_columns[2] + in_columns[3] - in_columns[0] - in_columns[1];
@@ -210,13 +210,13 @@ bool findBlock(PastView view, uvec2 first, ivec2 last, out BlockMoves moves, out
     return valid && max(max(apart.x, apart.y), farthest * differ) <= kPastSmooth && farthest * (depths.y - depths.x) <= kPastSameDepth;
 }
 
-// Workgroups of warp_pixels over so many blocks.
+// Workgroups of warp_pixels over this many blocks.
 uint pixelGroups(uint blocks) {
     const uint pixels = blocks * kBlock.x * kBlock.y;
     return min(pixels / kGroupSize + uint(pixels % kGroupSize != 0), kMaxGroupsX);
 }
 
-// The tiles that a workgroup makes: those beside each other, or as many of the list. Outside the picture where there are no more.
+// The workgroup's tile `i`: of adjacent ones, or of the list; outside the picture if there are no more.
 uvec2 tileOfRegion(PastView view, uint i) {
     if (!kSomeTiles) { return uvec2(gl_WorkGroupID.x * kPastTiles + i, gl_WorkGroupID.y); }
     const uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastTiles + i;
@@ -235,7 +235,7 @@ void main() {
     const uvec2 in_cells = block * kBlock / kCellSize;
     const uint cell = in_cells.y * kRegionCells.x + in_cells.x;
 
-    // For the passes that choose.
+    // Cleared for the passes that choose tiles.
     const uint all_threads = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kPastGroup;
     const uint own = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * kPastGroup + thread;
     for (uint i = own; i < maskWords(view.size_tiles) * view.size_tiles.y; i += all_threads) { pass.tile_mask.at[i] = 0; }
@@ -266,7 +266,7 @@ void main() {
             [[unroll]] for (int i = 0; i < 2; ++i) {
                 grown += lossAt(clamp(corner + ivec2(1 + i, 2 + 3 * i), ivec2(0), last), last, shares, uncertain_px);
             }
-            // What lies between the two may be worse, unless nothing moves.
+            // Pixels between the two may be worse, unless nothing moves.
             atomicAdd(cell_grown[cell], uint(float(kColumns * kRows) * max(0.5 * grown, least) * kErrorSteps));
             resampleBlock(view, first, moves, last);
         } else {
@@ -287,7 +287,7 @@ void main() {
     if (thread >= kPastTiles) { return; }
     const uvec2 tile = tileOfRegion(view, thread);
     if (any(greaterThanEqual(tile, view.size_tiles))) { return; }
-    // What rendering the tile takes and how fast it goes wrong are those of where its middle comes from.
+    // The tile's cost and how fast its error grows are those of where its middle comes from.
     const vec2 middle_px = min(vec2(tile * kTileSize) + 0.5 * float(kTileSize), vec2(view.size_px));
     const float guess = look(view, movePixelAnywhere(view.past_from_now, middle_px, 0).xy, middle_px).inverse_depth;
     const uvec2 from = uvec2(clamp(movePixelAnywhere(view.past_from_now, middle_px, guess).xy, vec2(0), vec2(view.past_size_px) - 1)) / kTileSize;

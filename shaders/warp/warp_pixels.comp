@@ -1,8 +1,8 @@
-// warp_pixels: the pixels of an eye's picture that warp_past has left out, a thread a pixel.
+// warp_pixels: the pixels of an eye's picture that warp_past has left out, one thread per pixel.
 //
 // A place is found backwards, by a fixed point (Bowles et al. 2012, Iterative Image Warping): the depth at a place says where the place is.
-// Such a search always finds something, so that a place counts only if the past's pixel there, moved forwards, meets the pixel that it is
-// wanted for. Of what is found from the nearest and from the farthest depth around the nearer counts.
+// Such a search always finds something, so a place counts only if the past's pixel there, moved forwards, meets the pixel that it is
+// wanted for. The search starts from the nearest and from the farthest depth around; of the two results the nearer counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -24,7 +24,7 @@ layout(push_constant, scalar) uniform Push { WarpPastPass pass; };
 
 const uint kBlockPixels = kPastColumns * kPastRows;
 
-// Where the past shows what is wanted, from a first guess; whether it does.
+// Searches, from a first guess, where the past shows what is wanted; true if found.
 bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 place_px) {
     float inverse_depth = guess;
     bool found = false, inside = true;
@@ -46,7 +46,7 @@ bool search(PastView view, vec2 wanted_px, float guess, out Seen seen, out vec2 
     return found;
 }
 
-// A pixel by itself. Its expected squared error.
+// Makes one pixel; returns its expected squared error.
 float makePixel(PastView view, uvec2 pixel, vec2 depths) {
     const vec2 wanted_px = vec2(pixel) + 0.5;
     Seen from_near, from_far;

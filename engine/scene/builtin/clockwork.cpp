@@ -46,7 +46,7 @@ void append(Scene& scene, const Scene& part, const glm::dvec3& pivot, const cloc
     }
 }
 
-// What all frames have in common: their light takes far longer than where things are.
+// Shared by all frames: computing the light takes far longer than placing the things.
 struct Parts {
     std::uint64_t splats = 0;
     Scene still;  // as in the scene

@@ -1,4 +1,4 @@
-// What stays in builtin:clockwork.
+// The static part of builtin:clockwork.
 #include "engine/scene/builtin/clockwork.h"
 #include "engine/scene/builtin/noise.h"
 #include "engine/scene/builtin/shapes.h"

@@ -1,4 +1,4 @@
-// What moves in builtin:clockwork, and how; procedural.h has the same in words.
+// The moving things of builtin:clockwork, and how they move; procedural.h has the same in words.
 #include "engine/scene/builtin/builtin.h"
 #include "engine/scene/builtin/clockwork.h"
 #include "engine/scene/builtin/noise.h"
