@@ -399,17 +399,6 @@ TEST_CASE("recordings in ticks are read" * binosplat::test::needsSharedData()) {
     CHECK(script.at(0.0).stage_from_head.position == glm::dvec3(0.0, 1.6, 0.0));
 }
 
-TEST_CASE("binding paths say hand and input") {
-    const auto trigger = parseInputPath("/user/hand/right/input/trigger/value");
-    REQUIRE(trigger.has_value());
-    CHECK(trigger->side == kRight);
-    CHECK(trigger->input == "trigger/value");
-    CHECK(parseInputPath("/user/hand/left/input/a")->input == "a");
-    CHECK_FALSE(parseInputPath("/user/hand/left/output/haptic").has_value());
-    CHECK_FALSE(parseInputPath("/user/head/input/volume_up/click").has_value());
-    CHECK_FALSE(parseInputPath("/user/hand/left/input/").has_value());
-}
-
 TEST_CASE("the same time gives the same state") {
     const Script script = Script::load(std::string(BINOSPLAT_SOURCE_DIR) + "/configs/simulated/walk.script");
     const State once = script.at(1.7);

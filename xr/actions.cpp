@@ -8,11 +8,16 @@
 namespace binosplat::xr {
 namespace {
 
-XrActionStateGetInfo ask(XrAction action, XrPath hand) {
+// By the function of the state's type, which has this name.
+template <typename State>
+State ask(XrResult(XRAPI_PTR* get)(XrSession, const XrActionStateGetInfo*, State*), const char* name, XrStructureType type,
+          const Session& session, XrAction action, XrPath hand) {
     auto info = structure<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
     info.action = action;
     info.subactionPath = hand;
-    return info;
+    auto state = structure<State>(type);
+    checkResult(get(session.handle(), &info, &state), name);
+    return state;
 }
 
 }  // namespace
@@ -76,32 +81,24 @@ bool Actions::sync() const {
 }
 
 std::optional<double> Actions::readNumber(XrAction action, XrPath hand) const {
-    const XrActionStateGetInfo get = ask(action, hand);
-    auto state = structure<XrActionStateFloat>(XR_TYPE_ACTION_STATE_FLOAT);
-    BINOSPLAT_XR(xrGetActionStateFloat(session_.handle(), &get, &state));
+    const auto state = ask(xrGetActionStateFloat, "xrGetActionStateFloat", XR_TYPE_ACTION_STATE_FLOAT, session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     return static_cast<double>(state.currentState);
 }
 
 std::optional<bool> Actions::readButton(XrAction action, XrPath hand) const {
-    const XrActionStateGetInfo get = ask(action, hand);
-    auto state = structure<XrActionStateBoolean>(XR_TYPE_ACTION_STATE_BOOLEAN);
-    BINOSPLAT_XR(xrGetActionStateBoolean(session_.handle(), &get, &state));
+    const auto state = ask(xrGetActionStateBoolean, "xrGetActionStateBoolean", XR_TYPE_ACTION_STATE_BOOLEAN, session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     return state.currentState == XR_TRUE;
 }
 
 glm::dvec2 Actions::readStick(XrAction action, XrPath hand) const {
-    const XrActionStateGetInfo get = ask(action, hand);
-    auto state = structure<XrActionStateVector2f>(XR_TYPE_ACTION_STATE_VECTOR2F);
-    BINOSPLAT_XR(xrGetActionStateVector2f(session_.handle(), &get, &state));
+    const auto state = ask(xrGetActionStateVector2f, "xrGetActionStateVector2f", XR_TYPE_ACTION_STATE_VECTOR2F, session_, action, hand);
     return state.isActive == XR_TRUE ? glm::dvec2(glm::vec2(state.currentState.x, state.currentState.y)) : glm::dvec2(0.0);
 }
 
 std::optional<Pose> Actions::locate(XrAction action, XrPath hand, const OwnedSpace& space, XrSpaceLocationFlags needed) const {
-    const XrActionStateGetInfo get = ask(action, hand);
-    auto state = structure<XrActionStatePose>(XR_TYPE_ACTION_STATE_POSE);
-    BINOSPLAT_XR(xrGetActionStatePose(session_.handle(), &get, &state));
+    const auto state = ask(xrGetActionStatePose, "xrGetActionStatePose", XR_TYPE_ACTION_STATE_POSE, session_, action, hand);
     if (state.isActive != XR_TRUE) { return std::nullopt; }
     auto location = structure<XrSpaceLocation>(XR_TYPE_SPACE_LOCATION);
     BINOSPLAT_XR(xrLocateSpace(space.get(), session_.space(), session_.displayTime(), &location));

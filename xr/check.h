@@ -5,8 +5,10 @@
 
 #include <openxr/openxr.h>
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace binosplat::xr {
 
@@ -40,6 +42,17 @@ template <typename Struct>
     Struct made{};
     made.type = type;
     return made;
+}
+
+// What a call in two steps lists: it is given the array's capacity, a place for the count, and the array.
+template <typename Value>
+[[nodiscard]] std::vector<Value> listAll(const auto& call) {
+    std::uint32_t count = 0;
+    call(0u, &count, nullptr);
+    std::vector<Value> values(count);
+    call(count, &count, values.data());
+    values.resize(count);
+    return values;
 }
 
 }  // namespace binosplat::xr

@@ -5,7 +5,6 @@
 #include "xr/spaces.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 namespace binosplat::xr {
@@ -14,11 +13,7 @@ namespace {
 bool hasStage(const Instance& instance, XrSession session) {
     std::vector<XrReferenceSpaceType> offered;
     instance.troubles().tryFor("the stage's floor", [&] {
-        std::uint32_t count = 0;
-        BINOSPLAT_XR(xrEnumerateReferenceSpaces(session, 0, &count, nullptr));
-        std::vector<XrReferenceSpaceType> found(count);
-        BINOSPLAT_XR(xrEnumerateReferenceSpaces(session, count, &count, found.data()));
-        offered = std::move(found);
+        offered = listAll<XrReferenceSpaceType>([&](auto... step) { BINOSPLAT_XR(xrEnumerateReferenceSpaces(session, step...)); });
     });
     return std::ranges::find(offered, XR_REFERENCE_SPACE_TYPE_STAGE) != offered.end();
 }

@@ -149,10 +149,8 @@ void Instance::readViews() {
 }
 
 void Instance::readBlendModes() {
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(handle(), system_, kStereo, 0, &count, nullptr));
-    std::vector<XrEnvironmentBlendMode> modes(count);
-    BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(handle(), system_, kStereo, count, &count, modes.data()));
+    const auto modes = listAll<XrEnvironmentBlendMode>(
+        [&](auto... step) { BINOSPLAT_XR(xrEnumerateEnvironmentBlendModes(handle(), system_, kStereo, step...)); });
     const auto has = [&](XrEnvironmentBlendMode mode) { return std::ranges::find(modes, mode) != modes.end(); };
     blend_mode_ = has(XR_ENVIRONMENT_BLEND_MODE_OPAQUE) || modes.empty() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes.front();
     see_through_.reset();

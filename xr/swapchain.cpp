@@ -30,10 +30,7 @@ XrSwapchainUsageFlags flagsOf(ImageUse use) {
 }  // namespace
 
 vk::Format chooseFormat(const Session& session, std::span<const vk::Format> wanted) {
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), 0, &count, nullptr));
-    std::vector<std::int64_t> formats(count);
-    BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), count, &count, formats.data()));
+    const auto formats = listAll<std::int64_t>([&](auto... step) { BINOSPLAT_XR(xrEnumerateSwapchainFormats(session.handle(), step...)); });
     for (const vk::Format format : wanted) {
         if (std::ranges::find(formats, static_cast<std::int64_t>(format)) != formats.end()) { return format; }
     }
@@ -85,7 +82,6 @@ vk::Image Swapchain::acquire() {
     while (BINOSPLAT_XR(xrWaitSwapchainImage(handle(), &info)) == XR_TIMEOUT_EXPIRED) {
         if (++waits == kMostWaits) { throw Error(ExitCode::kNoDevice, "OpenXR: a swapchain image did not come free for ten seconds"); }
     }
-    acquired_ = index;
     return images_.at(index);
 }
 

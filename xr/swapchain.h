@@ -30,9 +30,6 @@ public:
     // free within ten seconds.
     vk::Image acquire();
     void release();
-    // The index of the image from acquire(), and the number of images.
-    [[nodiscard]] std::size_t acquiredIndex() const { return acquired_; }
-    [[nodiscard]] const std::vector<vk::Image>& images() const { return images_; }
 
     [[nodiscard]] XrSwapchain handle() const { return swapchain_.get(); }
     [[nodiscard]] glm::uvec2 sizePx() const { return size_px_; }
@@ -54,7 +51,6 @@ private:
     std::vector<vk::Image> images_;
     glm::uvec2 size_px_{0, 0};
     vk::Format format_ = vk::Format::eUndefined;
-    std::size_t acquired_ = 0;
     std::uint32_t levels_ = 1;
 };
 

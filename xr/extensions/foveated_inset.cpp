@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace binosplat::xr {
 
 std::optional<InsetSizes> findInset(const Instance& instance) {
     if (!instance.hasExtension(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME)) { return std::nullopt; }
-    std::uint32_t count = 0;
-    BINOSPLAT_XR(xrEnumerateViewConfigurations(instance.handle(), instance.system(), 0, &count, nullptr));
-    std::vector<XrViewConfigurationType> types(count);
-    BINOSPLAT_XR(xrEnumerateViewConfigurations(instance.handle(), instance.system(), count, &count, types.data()));
+    const auto types = listAll<XrViewConfigurationType>(
+        [&](auto... step) { BINOSPLAT_XR(xrEnumerateViewConfigurations(instance.handle(), instance.system(), step...)); });
     if (std::ranges::find(types, kStereoWithInset) == types.end()) { return std::nullopt; }
     std::array<XrViewConfigurationView, 4> views;
+    std::uint32_t count = 0;
     views.fill({XR_TYPE_VIEW_CONFIGURATION_VIEW, nullptr, 0, 0, 0, 0, 0, 0});
     BINOSPLAT_XR(xrEnumerateViewConfigurationViews(instance.handle(), instance.system(), kStereoWithInset, 4, &count, views.data()));
     const auto sizeOf = [&](std::size_t v) { return glm::uvec2(views[v].recommendedImageRectWidth, views[v].recommendedImageRectHeight); };

@@ -12,12 +12,7 @@ std::vector<double> RefreshRate::list() const {
     std::vector<float> rates;
     instance_.troubles().tryFor("a choice of refresh rates", [&] {
         const auto get = instance_.function<PFN_xrEnumerateDisplayRefreshRatesFB>("xrEnumerateDisplayRefreshRatesFB");
-        std::uint32_t count = 0;
-        checkResult(get(session_, 0, &count, nullptr), "xrEnumerateDisplayRefreshRatesFB");
-        std::vector<float> found(count);
-        checkResult(get(session_, count, &count, found.data()), "xrEnumerateDisplayRefreshRatesFB");
-        found.resize(count);
-        rates = std::move(found);
+        rates = listAll<float>([&](auto... step) { checkResult(get(session_, step...), "xrEnumerateDisplayRefreshRatesFB"); });
     });
     return {rates.begin(), rates.end()};
 }

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 namespace simulated {
 
@@ -46,12 +44,5 @@ inline constexpr Extension kExtensions[] = {
     {"XR_EXT_hand_interaction", 1},
     {"XR_MSFT_hand_interaction", 1},
 };
-
-[[nodiscard]] constexpr bool isExtension(std::string_view name) {
-    for (const Extension& extension : kExtensions) {
-        if (name == extension.name) { return true; }
-    }
-    return false;
-}
 
 }  // namespace simulated

@@ -4,10 +4,6 @@
 
 #include <openxr/openxr.h>
 
-#ifndef XR_API_VERSION_1_1
-#define XR_API_VERSION_1_1 XR_MAKE_VERSION(1, 1, XR_VERSION_PATCH(XR_CURRENT_API_VERSION))
-#endif
-
 #ifndef XR_VERSION_1_1
 
 constexpr XrReferenceSpaceType XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR = static_cast<XrReferenceSpaceType>(1000426000);

@@ -18,11 +18,8 @@ AttachedAction attach(const Action& action, const ActionSet& set) {
 }
 
 std::vector<ActiveSet> checkActiveSets(const Session& session, const XrActionsSyncInfo& info) {
-    require(info.activeActionSets != nullptr || info.countActiveActionSets == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
-            info.countActiveActionSets, " action sets is missing");
     std::vector<ActiveSet> active;
-    for (std::uint32_t i = 0; i < info.countActiveActionSets; ++i) {
-        const auto& [handle, path] = info.activeActionSets[i];
+    for (const auto& [handle, path] : checkArray(info.activeActionSets, info.countActiveActionSets, "action sets")) {
         const ActionSet& described = getActionSet(session.instance, handle);
         const std::uint64_t set = described.number;
         const bool is_attached =
@@ -52,23 +49,20 @@ const ActionReading& readingFor(Session& session, const XrActionStateGetInfo* ge
 template <typename State, typename ValueOf>
 XrResult answerState(const char* call, XrSession session, const XrActionStateGetInfo* getInfo, XrActionType type, State* state,
                      XrStructureType state_type, const ValueOf& valueOf) {
-    return answer(call, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(call, session, [&](Session& owner) {
         const ActionReading& reading = readingFor(owner, getInfo, type);
         State& output = checkStruct(state, state_type);
         output.currentState = valueOf(reading.value);
         output.changedSinceLastSync = reading.has_changed;
         output.lastChangeTime = reading.changed_at;
         output.isActive = reading.is_active;
-        return successOf(owner);
     });
 }
 
 }  // namespace
 
 XrResult xrAttachSessionActionSets(XrSession session, const XrSessionActionSetsAttachInfo* attachInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrSessionActionSetsAttachInfo& info = checkStruct(attachInfo, XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);
         require(info.countActionSets > 0 && info.actionSets != nullptr, XR_ERROR_VALIDATION_FAILURE, "no action sets");
         require(!owner.attachment, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "action sets are attached once per session");
@@ -83,13 +77,11 @@ XrResult xrAttachSessionActionSets(XrSession session, const XrSessionActionSetsA
             for (const auto& child : set->children) { attachment.actions.push_back(attach(dynamic_cast<const Action&>(*child), *set)); }
         }
         owner.attachment = std::move(attachment);
-        return successOf(owner);
     });
 }
 
 XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrActionsSyncInfo& info = checkStruct(syncInfo, XR_TYPE_ACTIONS_SYNC_INFO);
         const std::vector<ActiveSet> active = checkActiveSets(owner, info);
         if (owner.isHeadless() && owner.is_running) { owner.passHeadlessFrame(); }
@@ -103,7 +95,7 @@ XrResult xrSyncActions(XrSession session, const XrActionsSyncInfo* syncInfo) {
             }
             owner.attachment->read(owner.at(now), is_focused ? active : std::vector<ActiveSet>{}, now);
         }
-        return successOf(owner, is_focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED);
+        return is_focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
     });
 }
 
@@ -125,11 +117,9 @@ XrResult xrGetActionStateVector2f(XrSession session, const XrActionStateGetInfo*
 }
 
 XrResult xrGetActionStatePose(XrSession session, const XrActionStateGetInfo* getInfo, XrActionStatePose* state) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const ActionReading& reading = readingFor(owner, getInfo, XR_ACTION_TYPE_POSE_INPUT);
         checkStruct(state, XR_TYPE_ACTION_STATE_POSE).isActive = reading.is_active;
-        return successOf(owner);
     });
 }
 

@@ -30,11 +30,8 @@ void checkUnique(const Object& parent, const std::string& name, const std::strin
 }
 
 std::vector<XrPath> checkSubactionPaths(const Instance& instance, const XrActionCreateInfo& info) {
-    require(info.subactionPaths != nullptr || info.countSubactionPaths == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
-            info.countSubactionPaths, " subaction paths is missing");
     std::vector<XrPath> paths;
-    for (std::uint32_t i = 0; i < info.countSubactionPaths; ++i) {
-        const XrPath path = info.subactionPaths[i];
+    for (const XrPath path : checkArray(info.subactionPaths, info.countSubactionPaths, "subaction paths")) {
         const std::string& text = instance.paths.textOf(path);
         require(deviceOf(text) && instance.hasUserPath(text), XR_ERROR_PATH_UNSUPPORTED, text, " is not a subaction path");
         require(std::find(paths.begin(), paths.end(), path) == paths.end(), XR_ERROR_PATH_UNSUPPORTED, "the subaction path ", text,
@@ -66,8 +63,7 @@ void checkSubactionPath(const Instance& instance, const std::vector<XrPath>& dec
 }
 
 XrResult xrCreateActionSet(XrInstance instance, const XrActionSetCreateInfo* createInfo, XrActionSet* actionSet) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrActionSetCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_SET_CREATE_INFO);
         XrActionSet& output = checkOutput(actionSet);
         auto created = std::make_unique<ActionSet>();
@@ -77,21 +73,18 @@ XrResult xrCreateActionSet(XrInstance instance, const XrActionSetCreateInfo* cre
         checkNames(created->name, created->localized_name);
         checkUnique<ActionSet>(owner, created->name, created->localized_name);
         output = handleOf(adopt(owner, std::move(created)));
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrDestroyActionSet(XrActionSet actionSet) {
-    return answer(__func__, [&] {
-        destroyObject(get<ActionSet>(actionSet));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<ActionSet>(actionSet)); });
 }
 
 XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createInfo, XrAction* action) {
     return answer(__func__, [&] {
         ActionSet& set = get<ActionSet>(actionSet);
-        const Instance& instance = getInstance(handleOf(findAncestor<Instance>(set)));
+        const auto& instance = dynamic_cast<const Instance&>(*set.parent);
+        checkNotLost(instance);
         const XrActionCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_CREATE_INFO);
         XrAction& output = checkOutput(action);
         require(!set.is_attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "the action set ", set.name, " is attached already");
@@ -113,20 +106,15 @@ XrResult xrCreateAction(XrActionSet actionSet, const XrActionCreateInfo* createI
         checkNames(created->name, created->localized_name);
         checkUnique<Action>(set, created->name, created->localized_name);
         output = handleOf(adopt(set, std::move(created)));
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrDestroyAction(XrAction action) {
-    return answer(__func__, [&] {
-        destroyObject(get<Action>(action));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<Action>(action)); });
 }
 
 XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrInteractionProfileSuggestedBinding* suggestedBindings) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrInteractionProfileSuggestedBinding& info = checkStruct(suggestedBindings, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
         const std::string& name = owner.paths.textOf(info.interactionProfile);
         const Profile* const profile = findProfile(name);
@@ -150,7 +138,6 @@ XrResult xrSuggestInteractionProfileBindings(XrInstance instance, const XrIntera
         }
         std::erase_if(owner.suggestions, [&](const auto& earlier) { return earlier.profile == suggested.profile; });
         owner.suggestions.push_back(std::move(suggested));
-        return XR_SUCCESS;
     });
 }
 

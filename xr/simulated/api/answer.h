@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "xr/simulated/openxr.h"
 
@@ -54,10 +53,21 @@ void explainFailure(const char* function, const char* what);
 // A line that comes again is counted: it is said at ten times, at a hundred and so on, and here, at the end.
 void sayTotals();
 
+// A body without a result of its own succeeds.
+template <class Body, class... Objects>
+XrResult resultOf(const Body& body, Objects&... objects) {
+    if constexpr (std::is_void_v<decltype(body(objects...))>) {
+        body(objects...);
+        return XR_SUCCESS;
+    } else {
+        return body(objects...);
+    }
+}
+
 template <class Body>
-XrResult answerUnlocked(const char* function, Body&& body) {
+XrResult answerUnlocked(const char* function, const Body& body) {
     try {
-        return std::forward<Body>(body)();
+        return resultOf(body);
     } catch (const Refusal& refusal) {
         explain(function, refusal);
         return refusal.result;
@@ -71,11 +81,11 @@ XrResult answerUnlocked(const char* function, Body&& body) {
 void deliverMessages();
 
 template <class Body>
-XrResult answer(const char* function, Body&& body) {
+XrResult answer(const char* function, const Body& body) {
     XrResult result = XR_SUCCESS;
     {
         const std::lock_guard guard(getRuntimeLock());
-        result = answerUnlocked(function, std::forward<Body>(body));
+        result = answerUnlocked(function, body);
     }
     deliverMessages();
     return result;

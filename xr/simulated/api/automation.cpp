@@ -47,12 +47,10 @@ Input checkInput(Session& session, XrPath user_path, XrPath source_path, const c
 }
 
 XrResult setInput(const char* function, XrSession session, XrPath user_path, XrPath source_path, double value) {
-    return answer(function, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(function, session, [&](Session& owner) {
         require(std::isfinite(value), XR_ERROR_VALIDATION_FAILURE, "the value is ", value, ", must be finite");
         const Input input = checkInput(owner, user_path, source_path, "");
         input.device.inputs[input.name] = value;
-        return successOf(owner);
     });
 }
 
@@ -70,8 +68,7 @@ void Automation::applyTo(State& state) const {
 }
 
 XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile, XrPath topLevelPath, XrBool32 isActive) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const std::string& name = owner.instance.paths.textOf(interactionProfile);
         const Profile* const profile = findProfile(name);
         require(profile != nullptr, XR_ERROR_PATH_UNSUPPORTED, name, " is not an interaction profile");
@@ -85,7 +82,6 @@ XrResult xrSetInputDeviceActiveEXT(XrSession session, XrPath interactionProfile,
         if (moved.profile != profile) { moved.inputs.clear(); }
         moved.profile = profile;
         moved.is_active = isActive != XR_FALSE;
-        return successOf(owner);
     });
 }
 
@@ -98,20 +94,17 @@ XrResult xrSetInputDeviceStateFloatEXT(XrSession session, XrPath topLevelPath, X
 }
 
 XrResult xrSetInputDeviceStateVector2fEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrVector2f state) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         require(std::isfinite(state.x) && std::isfinite(state.y), XR_ERROR_VALIDATION_FAILURE, "the value is ", state.x, " ", state.y,
                 ", must be finite");
         const Input input = checkInput(owner, topLevelPath, inputSourcePath, "/x");
         input.device.inputs[input.name + "/x"] = state.x;
         input.device.inputs[input.name + "/y"] = state.y;
-        return successOf(owner);
     });
 }
 
 XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrPath inputSourcePath, XrSpace space, XrPosef pose) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const Input input = checkInput(owner, topLevelPath, inputSourcePath, "");
         require(input.name.ends_with("/pose"), XR_ERROR_PATH_UNSUPPORTED, input.name, " is not a pose");
         checkPose(pose);
@@ -122,7 +115,6 @@ XrResult xrSetInputDeviceLocationEXT(XrSession session, XrPath topLevelPath, XrP
         const bool aims = input.name == "aim/pose" || input.name == "gaze_ext/pose";
         if (!aims) { stage_from_pose = compose(stage_from_pose, inverse(gripFromPose(input.name, checkInputDevice(owner, topLevelPath)))); }
         (aims ? input.device.stage_from_aim : input.device.stage_from_grip) = stage_from_pose;
-        return successOf(owner);
     });
 }
 

@@ -6,7 +6,6 @@
 #include <vulkan/vulkan.hpp>
 
 #include "xr/simulated/api/answer.h"
-#include "xr/simulated/system.h"
 
 namespace simulated {
 namespace {
@@ -49,12 +48,6 @@ vk::ImageLayout layoutOf(const ImageInfo& info) {
 
 }  // namespace
 
-PFN_vkGetInstanceProcAddr findSystemVulkanLoader() {
-    void* const function = findVulkanFunction("vkGetInstanceProcAddr");
-    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, "there is no ", kVulkanLoader);
-    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(function);
-}
-
 struct Device::Implementation {
     Dispatch dispatch;
     vk::PhysicalDevice physical_device;
@@ -65,7 +58,7 @@ struct Device::Implementation {
     vk::CommandBuffer commands;
     Unique<vk::Fence> done;
 
-    explicit Implementation(const GraphicsBinding& binding);
+    Implementation(PFN_vkGetInstanceProcAddr loader, const XrGraphicsBindingVulkan2KHR& binding);
     std::uint32_t findMemory(std::uint32_t allowed, vk::MemoryPropertyFlags wanted) const;
     Unique<vk::DeviceMemory> allocate(const vk::MemoryRequirements& needs, vk::MemoryPropertyFlags wanted);
     void transition(const DeviceImage& image, vk::ImageLayout from, vk::ImageLayout to) const;
@@ -79,22 +72,24 @@ struct DeviceImage::Implementation {
     Unique<vk::DeviceMemory> memory;
 };
 
-Device::Implementation::Implementation(const GraphicsBinding& binding)
-    : dispatch(binding.instance, binding.loader), physical_device(binding.physical_device), device(binding.device) {
+Device::Implementation::Implementation(PFN_vkGetInstanceProcAddr loader, const XrGraphicsBindingVulkan2KHR& binding)
+    : dispatch(binding.instance, loader), physical_device(binding.physicalDevice), device(binding.device) {
     dispatch.init(device);
     const auto families = physical_device.getQueueFamilyProperties(dispatch);
-    const bool can_draw = binding.queue_family < families.size() && binding.queue < families[binding.queue_family].queueCount &&
-                          (families[binding.queue_family].queueFlags & vk::QueueFlagBits::eGraphics);
-    require(can_draw, XR_ERROR_GRAPHICS_DEVICE_INVALID, "queue ", binding.queue, " of family ", binding.queue_family,
+    const bool can_draw = binding.queueFamilyIndex < families.size() &&
+                          binding.queueIndex < families[binding.queueFamilyIndex].queueCount &&
+                          (families[binding.queueFamilyIndex].queueFlags & vk::QueueFlagBits::eGraphics);
+    require(can_draw, XR_ERROR_GRAPHICS_DEVICE_INVALID, "queue ", binding.queueIndex, " of family ", binding.queueFamilyIndex,
             " cannot draw, or is not there");
-    queue = device.getQueue(binding.queue_family, binding.queue, dispatch);
+    queue = device.getQueue(binding.queueFamilyIndex, binding.queueIndex, dispatch);
     for (const SwapchainFormat& format : kFormats) {
         const auto features = physical_device.getFormatProperties(vk::Format(format.format), dispatch).optimalTilingFeatures;
         const auto needed =
             format.aspects == kColour ? vk::FormatFeatureFlagBits::eColorAttachment : vk::FormatFeatureFlagBits::eDepthStencilAttachment;
         if (features & needed) { formats.push_back(format); }
     }
-    pool = device.createCommandPoolUnique({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, binding.queue_family}, nullptr, dispatch);
+    pool =
+        device.createCommandPoolUnique({vk::CommandPoolCreateFlagBits::eResetCommandBuffer, binding.queueFamilyIndex}, nullptr, dispatch);
     commands = device.allocateCommandBuffers({*pool, vk::CommandBufferLevel::ePrimary, 1}, dispatch).front();
     done = device.createFenceUnique({}, nullptr, dispatch);
 }
@@ -133,7 +128,8 @@ void Device::Implementation::finish() {
     device.resetFences(*done, dispatch);
 }
 
-Device::Device(const GraphicsBinding& binding) : implementation_(std::make_unique<Implementation>(binding)) {}
+Device::Device(PFN_vkGetInstanceProcAddr loader, const XrGraphicsBindingVulkan2KHR& binding)
+    : implementation_(std::make_unique<Implementation>(loader, binding)) {}
 Device::~Device() = default;
 
 const std::vector<SwapchainFormat>& Device::formats() const { return implementation_->formats; }

@@ -9,18 +9,6 @@
 
 namespace simulated {
 
-struct GraphicsBinding {
-    PFN_vkGetInstanceProcAddr loader;
-    VkInstance instance;
-    VkPhysicalDevice physical_device;
-    VkDevice device;
-    std::uint32_t queue_family;
-    std::uint32_t queue;
-};
-
-// Of the system's Vulkan loader, for instances that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE without one.
-PFN_vkGetInstanceProcAddr findSystemVulkanLoader();
-
 struct SwapchainFormat {
     VkFormat format;
     const char* name;
@@ -45,7 +33,7 @@ class DeviceImage;
 class Device {
 public:
     // XR_ERROR_GRAPHICS_DEVICE_INVALID if the queue is not one that can draw.
-    explicit Device(const GraphicsBinding& binding);
+    Device(PFN_vkGetInstanceProcAddr loader, const XrGraphicsBindingVulkan2KHR& binding);
     ~Device();
 
     // The formats that this device can draw to, in the order of preference.

@@ -13,23 +13,14 @@ namespace {
 
 constexpr std::size_t kMostEvents = 64;
 
+// Those of a session begin alike.
 XrSession sessionOf(const XrEventDataBuffer& event) {
-    switch (event.type) {
-        case XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED:
-            return reinterpret_cast<const XrEventDataSessionStateChanged&>(event).session;
-        case XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED:
-            return reinterpret_cast<const XrEventDataInteractionProfileChanged&>(event).session;
-        case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
-            return reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).session;
-        case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
-            return reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).session;
-        default:
-            break;
-    }
-    if (event.type == XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT) {
-        return reinterpret_cast<const XrEventDataUserPresenceChangedEXT&>(event).session;
-    }
-    return XR_NULL_HANDLE;
+    constexpr XrStructureType kOfSessions[] = {XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED, XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED,
+                                               XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR,
+                                               XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING,
+                                               XR_TYPE_EVENT_DATA_USER_PRESENCE_CHANGED_EXT};
+    if (std::ranges::find(kOfSessions, event.type) == std::end(kOfSessions)) { return XR_NULL_HANDLE; }
+    return reinterpret_cast<const XrEventDataInteractionProfileChanged&>(event).session;
 }
 
 }  // namespace
@@ -59,8 +50,7 @@ void Events::forget(XrSession session) {
 }
 
 XrResult xrPollEvent(XrInstance instance, XrEventDataBuffer* eventData) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         XrEventDataBuffer& event = checkStruct(eventData, XR_TYPE_EVENT_DATA_BUFFER);
         if (owner.events.pop(event)) { return XR_SUCCESS; }
         if (owner.session != nullptr) { owner.session->idle(); }

@@ -22,8 +22,9 @@ std::condition_variable& getFrameBegun() {
 }
 
 Session& getRunningSession(XrSession session) {
-    Session& found = getSession(session);
-    require(found.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
+    Session& found = get<Session>(session);
+    checkNotLost(found);
+    checkRunning(found);
     return found;
 }
 
@@ -107,7 +108,7 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
             simulation.clock.period() * (simulation.script.stretches_period && !simulation.clock.isReal() ? 1 + missed : 1);
         output.shouldRender = owner.frames.should_render;
         if (!simulation.clock.isReal()) { frame.wake_time = {}; }
-        return successOf(owner);
+        return successOf(owner, XR_SUCCESS);
     });
     lock.unlock();
     deliverMessages();
@@ -116,8 +117,8 @@ XrResult xrWaitFrame(XrSession session, const XrFrameWaitInfo* frameWaitInfo, Xr
 }
 
 XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getRunningSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
+        checkRunning(owner);
         checkOptional(frameBeginInfo, XR_TYPE_FRAME_BEGIN_INFO);
         require(owner.frames.waited.has_value(), XR_ERROR_CALL_ORDER_INVALID, "xrWaitFrame was not called for this frame");
         const bool is_discarding = owner.frames.begun.has_value();
@@ -128,13 +129,13 @@ XrResult xrBeginFrame(XrSession session, const XrFrameBeginInfo* frameBeginInfo)
         owner.frames.refused_for.clear();
         if (owner.instance.simulation->script.changes_state_at_begin) { owner.passFrame(*owner.frames.begun); }
         wakeFrameWaiters();
-        return successOf(owner, is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS);
+        return is_discarding ? XR_FRAME_DISCARDED : XR_SUCCESS;
     });
 }
 
 XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getRunningSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
+        checkRunning(owner);
         const XrFrameEndInfo& info = checkFrame(owner, frameEndInfo);
         owner.frames.begun.reset();
         owner.frames.refused_for.clear();
@@ -142,7 +143,6 @@ XrResult xrEndFrame(XrSession session, const XrFrameEndInfo* frameEndInfo) {
         loadGpu(owner, info);
         showFrame(owner, info, state);
         owner.passFrame(info.displayTime);
-        return successOf(owner);
     });
 }
 

@@ -12,17 +12,13 @@
 namespace simulated {
 namespace {
 
-struct HandTracker : Object {
+struct HandTracker : SessionChild {
     using Handle = XrHandTrackerEXT;
 
-    Session& session;
     Side side;
 
-    HandTracker(Session& owner, Side of_side) : session(owner), side(of_side) {}
+    HandTracker(Session& owner, Side of_side) : SessionChild(owner), side(of_side) {}
 };
-
-constexpr XrSpaceLocationFlags kPlaceKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
-                                             XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
 
 // In the base space; none while the hand is not seen.
 std::optional<std::array<HandJoint, kHandJoints>> findJoints(const HandTracker& tracker, const Space& base, XrTime time) {
@@ -50,7 +46,7 @@ void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, Xr
     locations.isActive = now ? XR_TRUE : XR_FALSE;
     for (std::size_t i = 0; i < kHandJoints; ++i) {
         XrHandJointLocationEXT& joint = locations.jointLocations[i];
-        joint = now ? XrHandJointLocationEXT{kPlaceKnown, toXr((*now)[i].stage_from_joint), static_cast<float>((*now)[i].radius_m)}
+        joint = now ? XrHandJointLocationEXT{kPoseKnown, toXr((*now)[i].stage_from_joint), static_cast<float>((*now)[i].radius_m)}
                     : XrHandJointLocationEXT{0, toXr(Pose{}), 0};
     }
     if (velocities == nullptr) { return; }
@@ -61,15 +57,14 @@ void locateJoints(const HandTracker& tracker, const Space& base, XrTime time, Xr
         joint = {0, {0, 0, 0}, {0, 0, 0}};
         if (!before || !after) { continue; }
         const Motion motion = motionOf((*before)[i].stage_from_joint, (*after)[i].stage_from_joint);
-        joint = {XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT, motion.linear_m_s, motion.angular_rad_s};
+        joint = {kVelocityKnown, motion.linear_m_s, motion.angular_rad_s};
     }
 }
 
 }  // namespace
 
 XrResult xrCreateHandTrackerEXT(XrSession session, const XrHandTrackerCreateInfoEXT* createInfo, XrHandTrackerEXT* handTracker) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const auto& info = checkStruct(createInfo, XR_TYPE_HAND_TRACKER_CREATE_INFO_EXT);
         XrHandTrackerEXT& output = checkOutput(handTracker);
         require(info.hand == XR_HAND_LEFT_EXT || info.hand == XR_HAND_RIGHT_EXT, XR_ERROR_VALIDATION_FAILURE, "the hand is ", info.hand,
@@ -77,34 +72,26 @@ XrResult xrCreateHandTrackerEXT(XrSession session, const XrHandTrackerCreateInfo
         require(info.handJointSet == XR_HAND_JOINT_SET_DEFAULT_EXT, XR_ERROR_VALIDATION_FAILURE, "the set of joints is ", info.handJointSet,
                 ", must be the default");
         output = handleOf(adopt(owner, std::make_unique<HandTracker>(owner, info.hand == XR_HAND_LEFT_EXT ? kLeft : kRight)));
-        return successOf(owner);
     });
 }
 
 XrResult xrDestroyHandTrackerEXT(XrHandTrackerEXT handTracker) {
-    return answer(__func__, [&] {
-        destroyObject(get<HandTracker>(handTracker));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<HandTracker>(handTracker)); });
 }
 
 XrResult xrLocateHandJointsEXT(XrHandTrackerEXT handTracker, const XrHandJointsLocateInfoEXT* locateInfo,
                                XrHandJointLocationsEXT* locations) {
-    return answer(__func__, [&] {
-        const HandTracker& tracker = get<HandTracker>(handTracker);
-        checkNotLost(tracker.session);
+    return answerFor<HandTracker>(__func__, handTracker, [&](const HandTracker& tracker) {
         const auto& info = checkStruct(locateInfo, XR_TYPE_HAND_JOINTS_LOCATE_INFO_EXT);
         auto& output = checkStruct(locations, XR_TYPE_HAND_JOINT_LOCATIONS_EXT);
         require(output.jointCount == kHandJoints && output.jointLocations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.jointCount,
                 " locations, a hand has ", kHandJoints, " joints");
-        auto* const velocities = reinterpret_cast<XrHandJointVelocitiesEXT*>(
-            const_cast<XrBaseInStructure*>(findInChain(output.next, XR_TYPE_HAND_JOINT_VELOCITIES_EXT)));
+        auto* const velocities = findInChain<XrHandJointVelocitiesEXT>(output.next, XR_TYPE_HAND_JOINT_VELOCITIES_EXT);
         require(velocities == nullptr || (velocities->jointCount == kHandJoints && velocities->jointVelocities != nullptr),
                 XR_ERROR_VALIDATION_FAILURE, "not as many velocities as a hand has joints, ", kHandJoints);
         const Space& base = getSpace(tracker.session, info.baseSpace);
         checkTime(info.time);
         locateJoints(tracker, base, info.time, output, velocities);
-        return successOf(tracker.session);
     });
 }
 

@@ -23,6 +23,15 @@ struct Object {
     virtual ~Object() = default;
 };
 
+struct Session;
+
+// Whatever a session's calls make.
+struct SessionChild : Object {
+    Session& session;
+
+    explicit SessionChild(Session& owner) : session(owner) {}
+};
+
 // As destroyObject would, where the process ends with them.
 inline void endChildren(Object& object) {
     for (; !object.children.empty(); object.children.pop_back()) { endChildren(*object.children.back()); }
@@ -84,12 +93,14 @@ T& adopt(Object& parent, std::unique_ptr<T> child) {
     return object;
 }
 
-// The ancestor of type T: a swapchain's session, an action's instance.
-template <class T>
-T& findAncestor(Object& object) {
-    Object* above = object.parent;
-    while (dynamic_cast<T*>(above) == nullptr) { above = above->parent; }
-    return dynamic_cast<T&>(*above);
+// A call of an instance, a session or a session's child, which the body is given.
+template <class T, class Body>
+XrResult answerFor(const char* function, typename T::Handle handle, const Body& body) {
+    return answer(function, [&] {
+        T& object = get<T>(handle);
+        checkNotLost(object);
+        return successOf(object, resultOf(body, object));
+    });
 }
 
 }  // namespace simulated

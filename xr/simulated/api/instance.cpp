@@ -2,7 +2,6 @@
 #include "xr/simulated/api/instance.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 
 #include "xr/simulated/api/api.h"
@@ -48,42 +47,34 @@ void checkApplication(const XrApplicationInfo& application) {
 }
 
 std::set<std::string, std::less<>> checkExtensions(const XrInstanceCreateInfo& info, const Script& script) {
-    require(info.enabledExtensionNames != nullptr || info.enabledExtensionCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ",
-            info.enabledExtensionCount, " extension names is missing");
     const std::vector<Extension> offered = listOfferedExtensions(script);
     std::set<std::string, std::less<>> names;
-    for (std::uint32_t i = 0; i < info.enabledExtensionCount; ++i) {
-        const char* const name = info.enabledExtensionNames[i];
+    for (const char* const name : checkArray(info.enabledExtensionNames, info.enabledExtensionCount, "extension names")) {
         require(name != nullptr, XR_ERROR_VALIDATION_FAILURE, "an extension name is missing");
-        const bool is_offered =
-            std::any_of(offered.begin(), offered.end(), [&](const auto& one) { return std::strcmp(one.name, name) == 0; });
-        if (!is_offered) { refuseExtension(name); }
+        const auto isIt = [&](const Extension& one) { return std::strcmp(one.name, name) == 0; };
+        if (std::ranges::none_of(offered, isIt)) { refuseExtension(name); }
         names.emplace(name);
     }
     return names;
 }
 
 template <std::size_t size, class Value>
-XrResult spell(char (&text)[size], const char* name, const char* unknown_prefix, Value value) {
-    if (name != nullptr) {
-        copyText(text, name);
-    } else {
-        std::snprintf(text, size, "%s%d", unknown_prefix, static_cast<int>(value));
-    }
-    return XR_SUCCESS;
+void spell(char* buffer, const char* unknown_prefix, Value value) {
+    require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
+    const char* const name = nameOf(value);
+    copyText(*reinterpret_cast<char(*)[size]>(buffer), name != nullptr ? name : unknown_prefix + std::to_string(static_cast<int>(value)));
 }
 
 }  // namespace
 
-Instance& getInstance(XrInstance instance) {
-    Instance& owner = get<Instance>(instance);
-    require(!owner.lost_from || owner.simulation->clock.now() < *owner.lost_from, XR_ERROR_INSTANCE_LOST, "the script lost the instance");
-    return owner;
+void checkNotLost(const Instance& instance) {
+    require(!instance.lost_from || instance.simulation->clock.now() < *instance.lost_from, XR_ERROR_INSTANCE_LOST,
+            "the script lost the instance");
 }
 
 XrResult xrEnumerateApiLayerProperties(uint32_t propertyCapacityInput, uint32_t* propertyCountOutput, XrApiLayerProperties* properties) {
     // The loader knows the layers; a runtime has none.
-    return answer(__func__, [&] { return fillArray(propertyCapacityInput, propertyCountOutput, properties, {}); });
+    return answer(__func__, [&] { fillArray(propertyCapacityInput, propertyCountOutput, properties, {}); });
 }
 
 XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t propertyCapacityInput, uint32_t* propertyCountOutput,
@@ -91,13 +82,12 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layerName, uint32_t 
     return answer(__func__, [&] {
         require(layerName == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, layerName, ": a runtime has no layers");
         const std::vector<Extension> offered = listOfferedExtensions(loadScriptBeforeInstance());
-        if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) { return XR_SUCCESS; }
+        if (!wantsArray(propertyCapacityInput, propertyCountOutput, properties, offered.size())) { return; }
         for (std::size_t i = 0; i < offered.size(); ++i) { checkType(properties[i], XR_TYPE_EXTENSION_PROPERTIES); }
         for (std::size_t i = 0; i < offered.size(); ++i) {
             copyText(properties[i].extensionName, offered[i].name);
             properties[i].extensionVersion = offered[i].version;
         }
-        return XR_SUCCESS;
     });
 }
 
@@ -116,7 +106,6 @@ XrResult xrCreateInstance(const XrInstanceCreateInfo* createInfo, XrInstance* in
         created->extensions = checkExtensions(info, loadScriptOfEnvironment());
         created->simulation = Simulation::begin();
         output = handleOf(adopt(root(), std::move(created)));
-        return XR_SUCCESS;
     });
 }
 
@@ -124,36 +113,26 @@ XrResult xrDestroyInstance(XrInstance instance) {
     return answer(__func__, [&] {
         destroyObject(get<Instance>(instance));
         sayTotals();
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrGetInstanceProperties(XrInstance instance, XrInstanceProperties* instanceProperties) {
-    return answer(__func__, [&] {
-        getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance&) {
         XrInstanceProperties& properties = checkStruct(instanceProperties, XR_TYPE_INSTANCE_PROPERTIES);
         properties.runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
         copyText(properties.runtimeName, "Simulated OpenXR runtime");
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrResultToString(XrInstance instance, XrResult value, char buffer[XR_MAX_RESULT_STRING_SIZE]) {
-    return answer(__func__, [&] {
-        getInstance(instance);
-        require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
-        auto& text = *reinterpret_cast<char(*)[XR_MAX_RESULT_STRING_SIZE]>(buffer);
-        return spell(text, nameOf(value), XR_SUCCEEDED(value) ? "XR_UNKNOWN_SUCCESS_" : "XR_UNKNOWN_FAILURE_", value);
+    return answerFor<Instance>(__func__, instance, [&](const Instance&) {
+        spell<XR_MAX_RESULT_STRING_SIZE>(buffer, XR_SUCCEEDED(value) ? "XR_UNKNOWN_SUCCESS_" : "XR_UNKNOWN_FAILURE_", value);
     });
 }
 
 XrResult xrStructureTypeToString(XrInstance instance, XrStructureType value, char buffer[XR_MAX_STRUCTURE_NAME_SIZE]) {
-    return answer(__func__, [&] {
-        getInstance(instance);
-        require(buffer != nullptr, XR_ERROR_VALIDATION_FAILURE, "a buffer is missing");
-        auto& text = *reinterpret_cast<char(*)[XR_MAX_STRUCTURE_NAME_SIZE]>(buffer);
-        return spell(text, nameOf(value), "XR_UNKNOWN_STRUCTURE_TYPE_", value);
-    });
+    return answerFor<Instance>(__func__, instance,
+                               [&](const Instance&) { spell<XR_MAX_STRUCTURE_NAME_SIZE>(buffer, "XR_UNKNOWN_STRUCTURE_TYPE_", value); });
 }
 
 }  // namespace simulated

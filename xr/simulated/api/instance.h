@@ -48,10 +48,13 @@ struct Instance : Object, Enabled {
     }
     // Features in the core since 1.1, and in 1.0 with an extension.
     [[nodiscard]] bool has1_1Or(const char* extension) const { return is_1_1 || extensions.contains(extension); }
+    // The system's for one that the application made without this runtime. XR_ERROR_RUNTIME_FAILURE without one.
+    [[nodiscard]] PFN_vkGetInstanceProcAddr vulkanLoaderOf(VkInstance vulkan_instance) const;
 };
 
-// XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST.
-Instance& getInstance(XrInstance instance);
+// XR_ERROR_INSTANCE_LOST.
+void checkNotLost(const Instance& instance);
+constexpr XrResult successOf(const Instance&, XrResult success) { return success; }
 
 constexpr XrSystemId kSystemId = 1;
 constexpr std::uint32_t kMostLayers = XR_MIN_COMPOSITION_LAYERS_SUPPORTED;

@@ -43,7 +43,7 @@ void checkColour(const Swapchain& swapchain) {
 
 const XrCompositionLayerDepthInfoKHR* depthOf(const Session& session, const XrCompositionLayerProjectionView& view) {
     if (!session.instance.extensions.contains(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) { return nullptr; }
-    return reinterpret_cast<const XrCompositionLayerDepthInfoKHR*>(findInChain(view.next, XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR));
+    return findInChain<const XrCompositionLayerDepthInfoKHR>(view.next, XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR);
 }
 
 void checkDepth(const Session& session, const XrCompositionLayerDepthInfoKHR& depth) {
@@ -193,8 +193,7 @@ void checkLayer(const Session& session, const XrCompositionLayerBaseHeader* subm
 
 void checkLayers(const Session& session, const XrFrameEndInfo& info) {
     require(info.layerCount <= kMostLayers, XR_ERROR_LAYER_LIMIT_EXCEEDED, info.layerCount, " layers, at most ", kMostLayers, " are shown");
-    require(info.layers != nullptr || info.layerCount == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", info.layerCount,
-            " layers is missing");
+    checkArray(info.layers, info.layerCount, "layers");
     require(info.layerCount == 0 || !session.isHeadless(), XR_ERROR_LAYER_INVALID, "a headless session shows no layers");
     for (std::uint32_t i = 0; i < info.layerCount; ++i) {
         try {

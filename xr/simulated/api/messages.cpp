@@ -1,7 +1,9 @@
 // Messengers, labels and objects' names of XR_EXT_debug_utils, and the messages that wait.
 #include "xr/simulated/api/messages.h"
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "xr/simulated/api/api.h"
 #include "xr/simulated/api/session.h"
@@ -42,24 +44,18 @@ const XrDebugUtilsMessengerCreateInfoEXT*& getCreationMessenger() {
     return messenger;
 }
 
-void queueFor(const Pending& message, XrDebugUtilsMessageSeverityFlagsEXT severities, XrDebugUtilsMessageTypeFlagsEXT types,
-              PFN_xrDebugUtilsMessengerCallbackEXT callback, void* user_data) {
-    if ((severities & message.severity) == 0 || (types & message.types) == 0) { return; }
+void queueFor(const Pending& message, const XrDebugUtilsMessengerCreateInfoEXT& messenger) {
+    if ((messenger.messageSeverities & message.severity) == 0 || (messenger.messageTypes & message.types) == 0) { return; }
     getPending().push_back(message);
-    getPending().back().callback = callback;
-    getPending().back().user_data = user_data;
+    getPending().back().callback = messenger.userCallback;
+    getPending().back().user_data = messenger.userData;
 }
 
 void queueForAll(const Pending& message) {
-    if (const auto* const creation = getCreationMessenger()) {
-        queueFor(message, creation->messageSeverities, creation->messageTypes, creation->userCallback, creation->userData);
-    }
+    if (const auto* const creation = getCreationMessenger()) { queueFor(message, *creation); }
     for (const auto& instance : root().children) {
         for (const auto& child : instance->children) {
-            const auto* const messenger = dynamic_cast<const Messenger*>(child.get());
-            if (messenger != nullptr) {
-                queueFor(message, messenger->severities, messenger->types, messenger->callback, messenger->user_data);
-            }
+            if (const auto* const messenger = dynamic_cast<const Messenger*>(child.get())) { queueFor(message, messenger->info); }
         }
     }
 }
@@ -75,10 +71,8 @@ std::vector<std::string> labelsOf(const Instance* instance) {
 
 const XrDebugUtilsMessengerCreateInfoEXT& checkMessenger(const XrDebugUtilsMessengerCreateInfoEXT* info) {
     const auto& checked_info = checkStruct(info, XR_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
-    require(checked_info.messageSeverities != 0 && (checked_info.messageSeverities & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE,
-            "messageSeverities is ", checked_info.messageSeverities, ", must be of the bits ", kSeverities);
-    require(checked_info.messageTypes != 0 && (checked_info.messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ",
-            checked_info.messageTypes, ", must be of the bits ", kTypes);
+    checkFlags(checked_info.messageSeverities, kSeverities, "messageSeverities");
+    checkFlags(checked_info.messageTypes, kTypes, "messageTypes");
     require(checked_info.userCallback != nullptr, XR_ERROR_VALIDATION_FAILURE, "no callback");
     return checked_info;
 }
@@ -90,11 +84,10 @@ std::string checkLabel(const XrDebugUtilsLabelEXT* label) {
 }
 
 bool wantsMessages(const XrInstanceCreateInfo& info) {
-    for (std::uint32_t i = 0; info.enabledExtensionNames != nullptr && i < info.enabledExtensionCount; ++i) {
-        const char* const name = info.enabledExtensionNames[i];
-        if (name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0) { return true; }
-    }
-    return false;
+    if (info.enabledExtensionNames == nullptr) { return false; }
+    return std::ranges::any_of(std::span(info.enabledExtensionNames, info.enabledExtensionCount), [](const char* name) {
+        return name != nullptr && std::strcmp(name, XR_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
+    });
 }
 
 }  // namespace
@@ -142,37 +135,26 @@ void deliverMessages() {
 
 XrResult xrCreateDebugUtilsMessengerEXT(XrInstance instance, const XrDebugUtilsMessengerCreateInfoEXT* createInfo,
                                         XrDebugUtilsMessengerEXT* messenger) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrDebugUtilsMessengerCreateInfoEXT& info = checkMessenger(createInfo);
         XrDebugUtilsMessengerEXT& output = checkOutput(messenger);
         auto created = std::make_unique<Messenger>();
-        created->severities = info.messageSeverities;
-        created->types = info.messageTypes;
-        created->callback = info.userCallback;
-        created->user_data = info.userData;
+        created->info = info;
         output = handleOf(adopt(owner, std::move(created)));
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrDestroyDebugUtilsMessengerEXT(XrDebugUtilsMessengerEXT messenger) {
-    return answer(__func__, [&] {
-        destroyObject(get<Messenger>(messenger));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<Messenger>(messenger)); });
 }
 
 XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSeverityFlagsEXT messageSeverity,
                                       XrDebugUtilsMessageTypeFlagsEXT messageTypes,
                                       const XrDebugUtilsMessengerCallbackDataEXT* callbackData) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         const auto& data = checkStruct(callbackData, XR_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT);
-        require(messageSeverity != 0 && (messageSeverity & ~kSeverities) == 0, XR_ERROR_VALIDATION_FAILURE, "messageSeverity is ",
-                messageSeverity, ", must be of the bits ", kSeverities);
-        require(messageTypes != 0 && (messageTypes & ~kTypes) == 0, XR_ERROR_VALIDATION_FAILURE, "messageTypes is ", messageTypes,
-                ", must be of the bits ", kTypes);
+        checkFlags(messageSeverity, kSeverities, "messageSeverity");
+        checkFlags(messageTypes, kTypes, "messageTypes");
         require(data.message != nullptr, XR_ERROR_VALIDATION_FAILURE, "there is no message");
         require(data.objects != nullptr || data.objectCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of objects is missing");
         require(data.sessionLabels != nullptr || data.sessionLabelCount == 0, XR_ERROR_VALIDATION_FAILURE, "an array of labels is missing");
@@ -188,13 +170,11 @@ XrResult xrSubmitDebugUtilsMessageEXT(XrInstance instance, XrDebugUtilsMessageSe
             message.objects.emplace_back(object, registered == owner.object_names.end() ? copyOf(object.objectName) : registered->second);
         }
         queueForAll(message);
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObjectNameInfoEXT* nameInfo) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const auto& info = checkStruct(nameInfo, XR_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
         require(info.objectType != XR_OBJECT_TYPE_UNKNOWN && info.objectHandle != 0, XR_ERROR_VALIDATION_FAILURE, "no object to name");
         const std::pair key(info.objectType, info.objectHandle);
@@ -203,34 +183,25 @@ XrResult xrSetDebugUtilsObjectNameEXT(XrInstance instance, const XrDebugUtilsObj
         } else {
             owner.object_names[key] = info.objectName;
         }
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrSessionBeginDebugUtilsLabelRegionEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         owner.labels.regions.push_back(checkLabel(labelInfo));
         owner.labels.inserted.reset();
-        return successOf(owner);
     });
 }
 
 XrResult xrSessionEndDebugUtilsLabelRegionEXT(XrSession session) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         owner.labels.inserted.reset();
         if (!owner.labels.regions.empty()) { owner.labels.regions.pop_back(); }
-        return successOf(owner);
     });
 }
 
 XrResult xrSessionInsertDebugUtilsLabelEXT(XrSession session, const XrDebugUtilsLabelEXT* labelInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
-        owner.labels.inserted = checkLabel(labelInfo);
-        return successOf(owner);
-    });
+    return answerFor<Session>(__func__, session, [&](Session& owner) { owner.labels.inserted = checkLabel(labelInfo); });
 }
 
 }  // namespace simulated

@@ -17,10 +17,7 @@ struct Instance;
 struct Messenger : Object {
     using Handle = XrDebugUtilsMessengerEXT;
 
-    XrDebugUtilsMessageSeverityFlagsEXT severities = 0;
-    XrDebugUtilsMessageTypeFlagsEXT types = 0;
-    PFN_xrDebugUtilsMessengerCallbackEXT callback = nullptr;
-    void* user_data = nullptr;
+    XrDebugUtilsMessengerCreateInfoEXT info{};  // as the application gave it; its chain may be gone
 };
 
 // By type and handle, for messages that speak of the object.

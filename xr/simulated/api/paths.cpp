@@ -55,19 +55,16 @@ XrPath Paths::findPath(std::string_view text) const {
 }
 
 XrResult xrStringToPath(XrInstance instance, const char* pathString, XrPath* path) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         require(pathString != nullptr, XR_ERROR_VALIDATION_FAILURE, "a string is missing");
         XrPath& output = checkOutput(path);
         output = owner.paths.pathOf({pathString, strnlen(pathString, XR_MAX_PATH_LENGTH)});
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrPathToString(XrInstance instance, XrPath path, uint32_t bufferCapacityInput, uint32_t* bufferCountOutput, char* buffer) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
-        return fillString(bufferCapacityInput, bufferCountOutput, buffer, owner.paths.textOf(path));
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
+        fillString(bufferCapacityInput, bufferCountOutput, buffer, owner.paths.textOf(path));
     });
 }
 

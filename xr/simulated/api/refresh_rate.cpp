@@ -32,25 +32,20 @@ void changeRate(Instance& instance, double rate_hz) {
 
 XrResult xrEnumerateDisplayRefreshRatesFB(XrSession session, uint32_t displayRefreshRateCapacityInput,
                                           uint32_t* displayRefreshRateCountOutput, float* displayRefreshRates) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         fillArray(displayRefreshRateCapacityInput, displayRefreshRateCountOutput, displayRefreshRates,
                   ratesOf(owner.instance.simulation->script));
-        return successOf(owner);
     });
 }
 
 XrResult xrGetDisplayRefreshRateFB(XrSession session, float* displayRefreshRate) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         checkOutput(displayRefreshRate) = static_cast<float>(owner.instance.simulation->rate_hz);
-        return successOf(owner);
     });
 }
 
 XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRate) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         Simulation& simulation = *owner.instance.simulation;
         const auto before = static_cast<float>(simulation.rate_hz);
         // 0 leaves it to the runtime.
@@ -58,11 +53,10 @@ XrResult xrRequestDisplayRefreshRateFB(XrSession session, float displayRefreshRa
         const std::vector<float> rates = ratesOf(simulation.script);
         require(std::find(rates.begin(), rates.end(), wanted) != rates.end(), XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 displayRefreshRate, " Hz was not enumerated");
-        if (wanted == before) { return successOf(owner); }
+        if (wanted == before) { return; }
         require(!simulation.script.rate_is_fixed, XR_ERROR_DISPLAY_REFRESH_RATE_UNSUPPORTED_FB,
                 "the script says that the rate is fixed, and not at ", displayRefreshRate, " Hz");
         changeRate(owner.instance, wanted == static_cast<float>(simulation.script.rate_hz) ? simulation.script.rate_hz : wanted);
-        return successOf(owner);
     });
 }
 

@@ -183,17 +183,13 @@ void Session::announceMasks(const State& now) {
     masked = {now.eyes[kLeft].fov, now.eyes[kRight].fov};
 }
 
-Session& getSession(XrSession session) {
-    Session& found = get<Session>(session);
-    checkNotLost(found);
-    return found;
-}
-
 void checkNotLost(const Session& session) {
-    getInstance(handleOf(session.instance));
+    checkNotLost(session.instance);
     require(!session.lost_from || session.instance.simulation->clock.now() < *session.lost_from, XR_ERROR_SESSION_LOST,
             "the script lost the session");
 }
+
+void checkRunning(const Session& session) { require(session.is_running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run"); }
 
 XrResult successOf(const Session& session, XrResult success) { return session.loss_announced ? XR_SESSION_LOSS_PENDING : success; }
 

@@ -78,13 +78,15 @@ struct Session : Object {
     void announceMasks(const State& now);
 };
 
-// XR_ERROR_HANDLE_INVALID, XR_ERROR_INSTANCE_LOST, XR_ERROR_SESSION_LOST.
-Session& getSession(XrSession session);
-// The same for a session's children.
+// XR_ERROR_INSTANCE_LOST, XR_ERROR_SESSION_LOST.
 void checkNotLost(const Session& session);
+inline void checkNotLost(const SessionChild& child) { checkNotLost(child.session); }
+// XR_ERROR_SESSION_NOT_RUNNING.
+void checkRunning(const Session& session);
 
 // While a loss is pending, whatever succeeds says so.
-XrResult successOf(const Session& session, XrResult success = XR_SUCCESS);
+XrResult successOf(const Session& session, XrResult success);
+inline XrResult successOf(const SessionChild& child, XrResult success) { return successOf(child.session, success); }
 
 // Another display rate, from the next frame on; the application is told if it asked to be.
 void changeRate(Instance& instance, double rate_hz);

@@ -61,39 +61,33 @@ XrResult successOfHaptic(const Session& session) { return session.state == XR_SE
 }  // namespace
 
 XrResult xrGetCurrentInteractionProfile(XrSession session, XrPath topLevelUserPath, XrInteractionProfileState* interactionProfile) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         XrInteractionProfileState& output = checkStruct(interactionProfile, XR_TYPE_INTERACTION_PROFILE_STATE);
         const std::string& user_path = owner.instance.paths.textOf(topLevelUserPath);
         require(owner.instance.hasUserPath(user_path), XR_ERROR_PATH_UNSUPPORTED, user_path, " is not a top-level user path");
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const Profile* const profile = profileOf(owner, user_path);
         output.interactionProfile = profile != nullptr ? owner.instance.paths.pathOf(profile->path) : XR_NULL_PATH;
-        return successOf(owner);
     });
 }
 
 XrResult xrEnumerateBoundSourcesForAction(XrSession session, const XrBoundSourcesForActionEnumerateInfo* enumerateInfo,
                                           uint32_t sourceCapacityInput, uint32_t* sourceCountOutput, XrPath* sources) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const auto& info = checkStruct(enumerateInfo, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
         std::vector<XrPath> paths;
         for (const BoundSource& source : getAttached(owner, info.action).sources) {
             if (std::find(paths.begin(), paths.end(), source.path) == paths.end()) { paths.push_back(source.path); }
         }
         fillArray(sourceCapacityInput, sourceCountOutput, sources, paths);
-        return successOf(owner);
     });
 }
 
 XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLocalizedNameGetInfo* getInfo, uint32_t bufferCapacityInput,
                                        uint32_t* bufferCountOutput, char* buffer) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const auto& info = checkStruct(getInfo, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
-        require(info.whichComponents != 0 && (info.whichComponents & ~kAllComponents) == 0, XR_ERROR_VALIDATION_FAILURE,
-                "whichComponents is ", info.whichComponents, ", must be of the bits ", kAllComponents);
+        checkFlags(info.whichComponents, kAllComponents, "whichComponents");
         const std::string& path = owner.instance.paths.textOf(info.sourcePath);
         require(owner.attachment.has_value(), XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action sets are attached");
         const std::string_view user_path = userPathOf(path);
@@ -110,13 +104,11 @@ XrResult xrGetInputSourceLocalizedName(XrSession session, const XrInputSourceLoc
         }
         append(XR_INPUT_SOURCE_LOCALIZED_NAME_COMPONENT_BIT, titleOfComponent(component));
         fillString(bufferCapacityInput, bufferCountOutput, buffer, name);
-        return successOf(owner);
     });
 }
 
 XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo, const XrHapticBaseHeader* hapticFeedback) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const AttachedAction& action = checkHaptic(owner, hapticActionInfo);
         const auto& vibration = reinterpret_cast<const XrHapticVibration&>(checkStruct(hapticFeedback, XR_TYPE_HAPTIC_VIBRATION));
         const bool has_duration = vibration.duration > 0 || vibration.duration == XR_MIN_HAPTIC_DURATION;
@@ -131,16 +123,15 @@ XrResult xrApplyHapticFeedback(XrSession session, const XrHapticActionInfo* hapt
         append(pulse, vibration.amplitude);
         // Nobody feels an amplitude of 0, which ends what is felt.
         logHaptic(owner, action, hapticActionInfo->subactionPath, vibration.amplitude > 0 ? pulse : "off");
-        return successOf(owner, successOfHaptic(owner));
+        return successOfHaptic(owner);
     });
 }
 
 XrResult xrStopHapticFeedback(XrSession session, const XrHapticActionInfo* hapticActionInfo) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const AttachedAction& action = checkHaptic(owner, hapticActionInfo);
         logHaptic(owner, action, hapticActionInfo->subactionPath, "off");
-        return successOf(owner, successOfHaptic(owner));
+        return successOfHaptic(owner);
     });
 }
 

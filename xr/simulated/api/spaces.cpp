@@ -11,10 +11,6 @@
 namespace simulated {
 namespace {
 
-constexpr XrSpaceLocationFlags kPoseKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT |
-                                            XR_SPACE_LOCATION_ORIENTATION_TRACKED_BIT | XR_SPACE_LOCATION_POSITION_TRACKED_BIT;
-constexpr XrSpaceVelocityFlags kVelocityKnown = XR_SPACE_VELOCITY_LINEAR_VALID_BIT | XR_SPACE_VELOCITY_ANGULAR_VALID_BIT;
-
 bool hasStage(const Session& session) { return session.instance.simulation->script.has_stage; }
 
 std::vector<XrReferenceSpaceType> referenceSpacesOf(const Session& session) {
@@ -96,37 +92,30 @@ Space& getSpace(const Session& session, XrSpace space) {
 }
 
 std::optional<Pose> stageFromSpace(const Space& space, const State& state) {
+    if (space.reference == XR_REFERENCE_SPACE_TYPE_STAGE) { return space.origin_from_space; }
+    const Script& script = space.session.instance.simulation->script;
+    std::optional<Pose> stage_from_origin = state.stage_from_head;
     if (!space.reference) {
-        const std::optional<Pose> stage_from_source = stageFromAction(space.session, space.action, space.subaction_path, state);
-        if (!stage_from_source) { return std::nullopt; }
-        return compose(*stage_from_source, space.origin_from_space);
+        stage_from_origin = stageFromAction(space.session, space.action, space.subaction_path, state);
+    } else if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL) {
+        stage_from_origin = script.stageFromLocal(state.time_s);
+    } else if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) {
+        stage_from_origin = script.stageFromLocalFloor(state.time_s);
     }
-    // No case of its own: older headers' enumeration lacks it.
-    if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) {
-        return compose(space.session.instance.simulation->script.stageFromLocalFloor(state.time_s), space.origin_from_space);
-    }
-    switch (*space.reference) {
-        case XR_REFERENCE_SPACE_TYPE_VIEW:
-            return compose(state.stage_from_head, space.origin_from_space);
-        case XR_REFERENCE_SPACE_TYPE_LOCAL:
-            return compose(space.session.instance.simulation->script.stageFromLocal(state.time_s), space.origin_from_space);
-        default:
-            return space.origin_from_space;
-    }
+    if (!stage_from_origin) { return std::nullopt; }
+    return compose(*stage_from_origin, space.origin_from_space);
 }
 
 namespace {
 
 // Of 1.1's xrLocateSpaces and its predecessor.
-XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
-    const Session& owner = getSession(session);
+void locateAll(const Session& owner, const XrSpacesLocateInfo* locate_info, XrSpaceLocations* space_locations) {
     const XrSpacesLocateInfo& info = checkStruct(locate_info, XR_TYPE_SPACES_LOCATE_INFO);
     XrSpaceLocations& output = checkStruct(space_locations, XR_TYPE_SPACE_LOCATIONS);
     require(info.spaceCount > 0 && info.spaces != nullptr, XR_ERROR_VALIDATION_FAILURE, "no spaces");
     require(output.locationCount == info.spaceCount && output.locations != nullptr, XR_ERROR_VALIDATION_FAILURE, output.locationCount,
             " locations, must be one for each of ", info.spaceCount, " spaces");
-    const XrBaseInStructure* const chained = findInChain(output.next, XR_TYPE_SPACE_VELOCITIES);
-    auto* const velocities = const_cast<XrSpaceVelocities*>(reinterpret_cast<const XrSpaceVelocities*>(chained));
+    auto* const velocities = findInChain<XrSpaceVelocities>(output.next, XR_TYPE_SPACE_VELOCITIES);
     require(velocities == nullptr || (velocities->velocityCount == info.spaceCount && velocities->velocities != nullptr),
             XR_ERROR_VALIDATION_FAILURE, "not as many velocities as there are spaces, ", info.spaceCount);
     const Space& base = getSpace(owner, info.baseSpace);
@@ -138,7 +127,6 @@ XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrS
         output.locations[i] = {flags, pose};
         if (velocities != nullptr) { differentiate(space, base, info.time, velocities->velocities[i]); }
     }
-    return successOf(owner);
 }
 
 }  // namespace
@@ -146,28 +134,19 @@ XrResult locateAll(XrSession session, const XrSpacesLocateInfo* locate_info, XrS
 const char* nameOf(const Space& space) {
     if (!space.reference) { return "action"; }
     if (*space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR) { return "LOCAL_FLOOR"; }
-    switch (*space.reference) {
-        case XR_REFERENCE_SPACE_TYPE_VIEW:
-            return "VIEW";
-        case XR_REFERENCE_SPACE_TYPE_LOCAL:
-            return "LOCAL";
-        default:
-            return "STAGE";
-    }
+    if (*space.reference == XR_REFERENCE_SPACE_TYPE_VIEW) { return "VIEW"; }
+    return *space.reference == XR_REFERENCE_SPACE_TYPE_LOCAL ? "LOCAL" : "STAGE";
 }
 
 XrResult xrEnumerateReferenceSpaces(XrSession session, uint32_t spaceCapacityInput, uint32_t* spaceCountOutput,
                                     XrReferenceSpaceType* spaces) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         fillArray(spaceCapacityInput, spaceCountOutput, spaces, referenceSpacesOf(owner));
-        return successOf(owner);
     });
 }
 
 XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateInfo* createInfo, XrSpace* space) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrReferenceSpaceCreateInfo& info = checkStruct(createInfo, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
         XrSpace& output = checkOutput(space);
         require(isKnown(owner, info.referenceSpaceType), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, info.referenceSpaceType,
@@ -177,13 +156,11 @@ XrResult xrCreateReferenceSpace(XrSession session, const XrReferenceSpaceCreateI
         created->origin_from_space = fromXr(info.poseInReferenceSpace);
         created->reference = info.referenceSpaceType;
         output = handleOf(adopt(owner, std::move(created)));
-        return successOf(owner);
     });
 }
 
 XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* createInfo, XrSpace* space) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrActionSpaceCreateInfo& info = checkStruct(createInfo, XR_TYPE_ACTION_SPACE_CREATE_INFO);
         XrSpace& output = checkOutput(space);
         const Action& action = getAction(owner.instance, info.action);
@@ -197,63 +174,52 @@ XrResult xrCreateActionSpace(XrSession session, const XrActionSpaceCreateInfo* c
         created->action = action.number;
         created->subaction_path = info.subactionPath;
         output = handleOf(adopt(owner, std::move(created)));
-        return successOf(owner);
     });
 }
 
 XrResult xrGetReferenceSpaceBoundsRect(XrSession session, XrReferenceSpaceType referenceSpaceType, XrExtent2Df* bounds) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
-        const bool left_out = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE && !hasStage(owner);
-        require(!left_out, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
+        const bool is_stage = referenceSpaceType == XR_REFERENCE_SPACE_TYPE_STAGE;
+        require(!is_stage || hasStage(owner), XR_ERROR_REFERENCE_SPACE_UNSUPPORTED, "there is no STAGE");
         // Unlike xrCreateReferenceSpace: its conformance test wants XR_ERROR_REFERENCE_SPACE_UNSUPPORTED for whatever it does not know.
         require(isKnown(owner, referenceSpaceType), XR_ERROR_VALIDATION_FAILURE, referenceSpaceType,
                 " is no reference space that this session has");
-        checkOutput(bounds) = {0, 0};
-        if (referenceSpaceType != XR_REFERENCE_SPACE_TYPE_STAGE) { return successOf(owner, XR_SPACE_BOUNDS_UNAVAILABLE); }
-        *bounds = {3, 2};
-        return successOf(owner);
+        checkOutput(bounds) = is_stage ? XrExtent2Df{3, 2} : XrExtent2Df{0, 0};
+        return is_stage ? XR_SUCCESS : XR_SPACE_BOUNDS_UNAVAILABLE;
     });
 }
 
 XrResult xrLocateSpace(XrSpace space, XrSpace baseSpace, XrTime time, XrSpaceLocation* location) {
-    return answer(__func__, [&] {
-        const Space& located = get<Space>(space);
-        checkNotLost(located.session);
+    return answerFor<Space>(__func__, space, [&](const Space& located) {
         const Space& base = getSpace(located.session, baseSpace);
         XrSpaceLocation& output = checkStruct(location, XR_TYPE_SPACE_LOCATION);
         checkTime(time);
         const auto [flags, pose] = locate(located, base, time);
         output.locationFlags = flags;
         output.pose = pose;
-        const XrBaseInStructure* const velocity = findInChain(output.next, XR_TYPE_SPACE_VELOCITY);
-        if (velocity != nullptr) {
-            differentiate(located, base, time, *const_cast<XrSpaceVelocity*>(reinterpret_cast<const XrSpaceVelocity*>(velocity)));
+        if (auto* const velocity = findInChain<XrSpaceVelocity>(output.next, XR_TYPE_SPACE_VELOCITY)) {
+            differentiate(located, base, time, *velocity);
         }
         const bool has_samples = located.session.instance.extensions.contains(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
-        const XrBaseInStructure* const sample = has_samples ? findInChain(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT) : nullptr;
+        auto* const sample = findInChain<XrEyeGazeSampleTimeEXT>(output.next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT);
         // The script knows the gaze of any time; 0 stands for no sample.
-        if (sample != nullptr) {
+        if (has_samples && sample != nullptr) {
             const bool is_seen = flags != 0 && isGaze(located) && stageFromSpace(located, located.session.at(time));
-            const_cast<XrEyeGazeSampleTimeEXT*>(reinterpret_cast<const XrEyeGazeSampleTimeEXT*>(sample))->time = is_seen ? time : 0;
+            sample->time = is_seen ? time : 0;
         }
-        return successOf(located.session);
     });
 }
 
 XrResult xrLocateSpaces(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
-    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
+    return answerFor<Session>(__func__, session, [&](const Session& owner) { locateAll(owner, locateInfo, spaceLocations); });
 }
 
 XrResult xrLocateSpacesKHR(XrSession session, const XrSpacesLocateInfo* locateInfo, XrSpaceLocations* spaceLocations) {
-    return answer(__func__, [&] { return locateAll(session, locateInfo, spaceLocations); });
+    return answerFor<Session>(__func__, session, [&](const Session& owner) { locateAll(owner, locateInfo, spaceLocations); });
 }
 
 XrResult xrDestroySpace(XrSpace space) {
-    return answer(__func__, [&] {
-        destroyObject(get<Space>(space));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<Space>(space)); });
 }
 
 }  // namespace simulated

@@ -1,7 +1,9 @@
 // Checks of every structure and array that an application passes: types, next chains, the two-call idiom, fixed strings.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +15,12 @@ namespace simulated {
 
 // Unknown structures of a chain are passed over, as the specification demands; one that never ends is refused.
 void checkChain(const void* next);
+// Null if there is none.
 const XrBaseInStructure* findInChain(const void* next, XrStructureType type);
+template <class T>
+T* findInChain(const void* next, XrStructureType type) {
+    return reinterpret_cast<T*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
+}
 
 template <class T>
 void checkType(const T& structure, XrStructureType type) {
@@ -40,6 +47,18 @@ T& checkOutput(T* output) {
     return *output;
 }
 
+// `what` it holds is for a message.
+template <class T>
+std::span<T> checkArray(T* array, std::uint32_t count, const char* what) {
+    require(array != nullptr || count == 0, XR_ERROR_VALIDATION_FAILURE, "the array of ", count, " ", what, " is missing");
+    return {array, count};
+}
+
+// At least one flag, and none but those known.
+inline void checkFlags(XrFlags64 flags, XrFlags64 known, const char* name) {
+    require(flags != 0 && (flags & ~known) == 0, XR_ERROR_VALIDATION_FAILURE, name, " is ", flags, ", must be of the bits ", known);
+}
+
 // The two-call idiom's first half. True: there is room, copy. False: only the count was asked for.
 inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void* array, std::size_t size) {
     require(count != nullptr, XR_ERROR_VALIDATION_FAILURE, "a place for the count is missing");
@@ -51,17 +70,13 @@ inline bool wantsArray(std::uint32_t capacity, std::uint32_t* count, const void*
 }
 
 template <class T>
-XrResult fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std::vector<T>& values) {
-    if (wantsArray(capacity, count, array, values.size())) {
-        for (std::size_t i = 0; i < values.size(); ++i) { array[i] = values[i]; }
-    }
-    return XR_SUCCESS;
+void fillArray(std::uint32_t capacity, std::uint32_t* count, T* array, const std::vector<T>& values) {
+    if (wantsArray(capacity, count, array, values.size())) { std::ranges::copy(values, array); }
 }
 
 // With the terminating zero, which counts.
-inline XrResult fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
+inline void fillString(std::uint32_t capacity, std::uint32_t* count, char* buffer, const std::string& text) {
     if (wantsArray(capacity, count, buffer, text.size() + 1)) { std::memcpy(buffer, text.c_str(), text.size() + 1); }
-    return XR_SUCCESS;
 }
 
 // An application's text, in quotes and without characters that a line cannot show.
@@ -75,9 +90,7 @@ std::string textOf(const char (&characters)[size]) {
 
 template <std::size_t size>
 void copyText(char (&destination)[size], std::string_view text) {
-    const std::size_t length = std::min(text.size(), size - 1);
-    std::memcpy(destination, text.data(), length);
-    destination[length] = '\0';
+    destination[text.copy(destination, size - 1)] = '\0';
 }
 
 }  // namespace simulated

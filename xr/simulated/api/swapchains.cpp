@@ -117,20 +117,17 @@ void fetchTexels(Swapchain& swapchain) {
 }
 
 XrResult xrEnumerateSwapchainFormats(XrSession session, uint32_t formatCapacityInput, uint32_t* formatCountOutput, int64_t* formats) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         std::vector<int64_t> values;
         if (!owner.isHeadless()) {
             for (const SwapchainFormat& format : owner.device->formats()) { values.push_back(format.format); }
         }
         fillArray(formatCapacityInput, formatCountOutput, formats, values);
-        return successOf(owner);
     });
 }
 
 XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* createInfo, XrSwapchain* swapchain) {
-    return answer(__func__, [&] {
-        Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](Session& owner) {
         const XrSwapchainCreateInfo& info = checkStruct(createInfo, XR_TYPE_SWAPCHAIN_CREATE_INFO);
         XrSwapchain& output = checkOutput(swapchain);
         require(!owner.isHeadless(), XR_ERROR_VALIDATION_FAILURE, "a headless session has no swapchains");
@@ -142,34 +139,25 @@ XrResult xrCreateSwapchain(XrSession session, const XrSwapchainCreateInfo* creat
             created->images.push_back(owner.device->createImage(created->info));
         }
         output = handleOf(adopt(owner, std::move(created)));
-        return successOf(owner);
     });
 }
 
 XrResult xrDestroySwapchain(XrSwapchain swapchain) {
-    return answer(__func__, [&] {
-        destroyObject(get<Swapchain>(swapchain));
-        return XR_SUCCESS;
-    });
+    return answer(__func__, [&] { destroyObject(get<Swapchain>(swapchain)); });
 }
 
 XrResult xrEnumerateSwapchainImages(XrSwapchain swapchain, uint32_t imageCapacityInput, uint32_t* imageCountOutput,
                                     XrSwapchainImageBaseHeader* images) {
-    return answer(__func__, [&] {
-        const Swapchain& owner = get<Swapchain>(swapchain);
-        checkNotLost(owner.session);
-        if (!wantsArray(imageCapacityInput, imageCountOutput, images, owner.images.size())) { return successOf(owner.session); }
+    return answerFor<Swapchain>(__func__, swapchain, [&](const Swapchain& owner) {
+        if (!wantsArray(imageCapacityInput, imageCountOutput, images, owner.images.size())) { return; }
         auto* const vulkan_images = reinterpret_cast<XrSwapchainImageVulkan2KHR*>(images);
         for (std::size_t i = 0; i < owner.images.size(); ++i) { checkType(vulkan_images[i], XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR); }
         for (std::size_t i = 0; i < owner.images.size(); ++i) { vulkan_images[i].image = owner.images[i]->handle(); }
-        return successOf(owner.session);
     });
 }
 
 XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAcquireInfo* acquireInfo, uint32_t* index) {
-    return answer(__func__, [&] {
-        Swapchain& owner = get<Swapchain>(swapchain);
-        checkNotLost(owner.session);
+    return answerFor<Swapchain>(__func__, swapchain, [&](Swapchain& owner) {
         checkOptional(acquireInfo, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
         uint32_t& output = checkOutput(index);
         require(!owner.is_static || owner.acquisitions == 0, XR_ERROR_CALL_ORDER_INVALID, "a static image is acquired once");
@@ -183,31 +171,26 @@ XrResult xrAcquireSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageAc
         ++owner.acquisitions;
         owner.acquired.push_back(next);
         output = next;
-        return successOf(owner.session);
     });
 }
 
 XrResult xrWaitSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageWaitInfo* waitInfo) {
-    return answer(__func__, [&] {
-        Swapchain& owner = get<Swapchain>(swapchain);
-        checkNotLost(owner.session);
+    return answerFor<Swapchain>(__func__, swapchain, [&](Swapchain& owner) {
         const XrSwapchainImageWaitInfo& info = checkStruct(waitInfo, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
         require(!owner.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
         require(!owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "the image that was waited for is not released yet");
         // Slow images are late for every wait that has an end. While a loss is pending no result could say so, and the wait succeeds.
         if (owner.session.slow_images > 0 && info.timeout != XR_INFINITE_DURATION && !owner.session.loss_announced) {
             --owner.session.slow_images;
-            return successOf(owner.session, XR_TIMEOUT_EXPIRED);
+            return XR_TIMEOUT_EXPIRED;
         }
         owner.is_oldest_waited = true;
-        return successOf(owner.session);
+        return XR_SUCCESS;
     });
 }
 
 XrResult xrReleaseSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageReleaseInfo* releaseInfo) {
-    return answer(__func__, [&] {
-        Swapchain& owner = get<Swapchain>(swapchain);
-        checkNotLost(owner.session);
+    return answerFor<Swapchain>(__func__, swapchain, [&](Swapchain& owner) {
         checkOptional(releaseInfo, XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);
         require(owner.is_oldest_waited, XR_ERROR_CALL_ORDER_INVALID, "no image was waited for");
         owner.released_index = owner.acquired.front();
@@ -215,7 +198,6 @@ XrResult xrReleaseSwapchainImage(XrSwapchain swapchain, const XrSwapchainImageRe
         owner.is_oldest_waited = false;
         owner.has_released = true;
         owner.has_texels = false;
-        return successOf(owner.session);
     });
 }
 

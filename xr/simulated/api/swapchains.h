@@ -12,12 +12,10 @@
 
 namespace simulated {
 
-struct Session;
-
-struct Swapchain : Object {
+struct Swapchain : SessionChild {
     using Handle = XrSwapchain;
+    using SessionChild::SessionChild;
 
-    Session& session;
     ImageInfo info;
     bool is_static = false;
     std::vector<std::unique_ptr<DeviceImage>> images;
@@ -33,8 +31,6 @@ struct Swapchain : Object {
     std::uint32_t released_index = 0;
     bool has_texels = false;
     std::vector<std::byte> released_texels;
-
-    explicit Swapchain(Session& owner) : session(owner) {}
 };
 
 // XR_ERROR_HANDLE_INVALID also for a swapchain of another session.

@@ -6,11 +6,11 @@
 namespace simulated {
 namespace {
 
-// An extension's structure to fill, if it is there and the extension is enabled.
+// In an extension's structure, if it is there and the extension is enabled.
 template <class Structure>
-Structure* findChained(const Instance& instance, void* next, XrStructureType type, const char* extension) {
-    if (!instance.extensions.contains(extension)) { return nullptr; }
-    return reinterpret_cast<Structure*>(const_cast<XrBaseInStructure*>(findInChain(next, type)));
+void tell(const Instance& instance, void* next, XrStructureType type, const char* extension, XrBool32 Structure::*what, bool value) {
+    auto* const found = findInChain<Structure>(next, type);
+    if (found != nullptr && instance.extensions.contains(extension)) { found->*what = value ? XR_TRUE : XR_FALSE; }
 }
 
 }  // namespace
@@ -20,8 +20,7 @@ void checkSystem(XrSystemId system) {
 }
 
 XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSystemId* systemId) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         const XrSystemGetInfo& info = checkStruct(getInfo, XR_TYPE_SYSTEM_GET_INFO);
         XrSystemId& output = checkOutput(systemId);
         require(info.formFactor == XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY, XR_ERROR_FORM_FACTOR_UNSUPPORTED, "the form factor is ",
@@ -39,13 +38,11 @@ XrResult xrGetSystem(XrInstance instance, const XrSystemGetInfo* getInfo, XrSyst
             throw Refusal{XR_ERROR_FORM_FACTOR_UNAVAILABLE, "the headset is not there again yet"};
         }
         output = kSystemId;
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSystemProperties* properties) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         checkSystem(systemId);
         XrSystemProperties& output = checkStruct(properties, XR_TYPE_SYSTEM_PROPERTIES);
         output.systemId = kSystemId;
@@ -53,34 +50,27 @@ XrResult xrGetSystemProperties(XrInstance instance, XrSystemId systemId, XrSyste
         copyText(output.systemName, owner.simulation->script.system_name);
         output.graphicsProperties = {kMostSwapchainPixels, kMostSwapchainPixels, kMostLayers};
         output.trackingProperties = {XR_TRUE, XR_TRUE};
-        if (auto* gaze = findChained<XrSystemEyeGazeInteractionPropertiesEXT>(
-                owner, output.next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME)) {
-            gaze->supportsEyeGazeInteraction = owner.simulation->script.gaze.tracker != EyeTracking::kOff ? XR_TRUE : XR_FALSE;
-        }
-        if (auto* hands = findChained<XrSystemHandTrackingPropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT,
-                                                                         XR_EXT_HAND_TRACKING_EXTENSION_NAME)) {
-            hands->supportsHandTracking = XR_TRUE;
-        }
-        if (auto* presence = findChained<XrSystemUserPresencePropertiesEXT>(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT,
-                                                                            XR_EXT_USER_PRESENCE_EXTENSION_NAME)) {
-            presence->supportsUserPresence = XR_TRUE;
-        }
-        return XR_SUCCESS;
+        tell(owner, output.next, XR_TYPE_SYSTEM_EYE_GAZE_INTERACTION_PROPERTIES_EXT, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
+             &XrSystemEyeGazeInteractionPropertiesEXT::supportsEyeGazeInteraction,
+             owner.simulation->script.gaze.tracker != EyeTracking::kOff);
+        tell(owner, output.next, XR_TYPE_SYSTEM_HAND_TRACKING_PROPERTIES_EXT, XR_EXT_HAND_TRACKING_EXTENSION_NAME,
+             &XrSystemHandTrackingPropertiesEXT::supportsHandTracking, true);
+        tell(owner, output.next, XR_TYPE_SYSTEM_USER_PRESENCE_PROPERTIES_EXT, XR_EXT_USER_PRESENCE_EXTENSION_NAME,
+             &XrSystemUserPresencePropertiesEXT::supportsUserPresence, true);
     });
 }
 
 XrResult xrEnumerateEnvironmentBlendModes(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
                                           uint32_t environmentBlendModeCapacityInput, uint32_t* environmentBlendModeCountOutput,
                                           XrEnvironmentBlendMode* environmentBlendModes) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
         std::vector<XrEnvironmentBlendMode> modes;
         for (const Script::BlendMode mode : owner.simulation->script.blend_modes) {
             modes.push_back(static_cast<XrEnvironmentBlendMode>(static_cast<int>(mode) + 1));
         }
-        return fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes, modes);
+        fillArray(environmentBlendModeCapacityInput, environmentBlendModeCountOutput, environmentBlendModes, modes);
     });
 }
 

@@ -12,8 +12,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 }  // namespace
 
 XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timespec* timespecTime, XrTime* time) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         require(timespecTime != nullptr, XR_ERROR_VALIDATION_FAILURE, "a time is missing");
         XrTime& output = checkOutput(time);
         const bool is_time = timespecTime->tv_sec >= 0 && timespecTime->tv_sec < INT64_MAX / kSecond - 1 && timespecTime->tv_nsec >= 0 &&
@@ -22,13 +21,11 @@ XrResult xrConvertTimespecTimeToTimeKHR(XrInstance instance, const struct timesp
         const XrTime converted = timespecTime->tv_sec * kSecond + timespecTime->tv_nsec - owner.simulation->clock.monotonicOffset();
         checkTime(converted);
         output = converted;
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct timespec* timespecTime) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         struct timespec& output = checkOutput(timespecTime);
         checkTime(time);
         const std::int64_t offset = owner.simulation->clock.monotonicOffset();
@@ -36,7 +33,6 @@ XrResult xrConvertTimeToTimespecTimeKHR(XrInstance instance, XrTime time, struct
                 "CLOCK_MONOTONIC does not have the time ", time);
         output.tv_sec = (time + offset) / kSecond;
         output.tv_nsec = static_cast<long>((time + offset) % kSecond);
-        return XR_SUCCESS;
     });
 }
 

@@ -42,37 +42,33 @@ void checkViewConfiguration(const Instance& instance, XrViewConfigurationType ty
 
 XrResult xrEnumerateViewConfigurations(XrInstance instance, XrSystemId systemId, uint32_t viewConfigurationTypeCapacityInput,
                                        uint32_t* viewConfigurationTypeCountOutput, XrViewConfigurationType* viewConfigurationTypes) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         checkSystem(systemId);
         std::vector<XrViewConfigurationType> types{XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
         if (hasInset(owner)) { types.push_back(kInset); }
-        return fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes, types);
+        fillArray(viewConfigurationTypeCapacityInput, viewConfigurationTypeCountOutput, viewConfigurationTypes, types);
     });
 }
 
 XrResult xrGetViewConfigurationProperties(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
                                           XrViewConfigurationProperties* configurationProperties) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
         XrViewConfigurationProperties& output = checkStruct(configurationProperties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
         output.viewConfigurationType = viewConfigurationType;
         // Scripts change the angles during a run.
         output.fovMutable = XR_TRUE;
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId systemId, XrViewConfigurationType viewConfigurationType,
                                            uint32_t viewCapacityInput, uint32_t* viewCountOutput, XrViewConfigurationView* views) {
-    return answer(__func__, [&] {
-        const Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](const Instance& owner) {
         checkSystem(systemId);
         checkViewConfiguration(owner, viewConfigurationType);
         const std::size_t count = countViews(viewConfigurationType);
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return XR_SUCCESS; }
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return; }
         for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW_CONFIGURATION_VIEW); }
         for (std::size_t i = 0; i < count; ++i) {
             const glm::uvec2 size_px = sizePxOf(owner.simulation->script, viewConfigurationType, i);
@@ -83,14 +79,12 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance instance, XrSystemId syste
             views[i].recommendedSwapchainSampleCount = 1;
             views[i].maxSwapchainSampleCount = 1;
         }
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo, XrViewState* viewState, uint32_t viewCapacityInput,
                        uint32_t* viewCountOutput, XrView* views) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         const XrViewLocateInfo& info = checkStruct(viewLocateInfo, XR_TYPE_VIEW_LOCATE_INFO);
         XrViewState& output = checkStruct(viewState, XR_TYPE_VIEW_STATE);
         checkViewConfiguration(owner.instance, info.viewConfigurationType);
@@ -98,7 +92,7 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         checkTime(info.displayTime);
         output.viewStateFlags = 0;
         const std::size_t count = countViews(info.viewConfigurationType);
-        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return successOf(owner); }
+        if (!wantsArray(viewCapacityInput, viewCountOutput, views, count)) { return; }
         for (std::size_t i = 0; i < count; ++i) { checkType(views[i], XR_TYPE_VIEW); }
         const State state = owner.at(info.displayTime);
         const std::optional<Pose> stage_from_space = stageFromSpace(space, state);
@@ -116,7 +110,6 @@ XrResult xrLocateViews(XrSession session, const XrViewLocateInfo* viewLocateInfo
         const bool is_in_head = space.reference == XR_REFERENCE_SPACE_TYPE_VIEW;
         if (stage_from_space && (state.head_turn_known || is_in_head)) { output.viewStateFlags = kTurnsKnown; }
         if (stage_from_space && (state.head_place_known || is_in_head)) { output.viewStateFlags |= kPlacesKnown; }
-        return successOf(owner);
     });
 }
 

@@ -25,8 +25,7 @@ Mesh meshOf(const Fov& fov, XrVisibilityMaskTypeKHR type) {
 
 XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewConfigurationType, uint32_t viewIndex,
                                 XrVisibilityMaskTypeKHR visibilityMaskType, XrVisibilityMaskKHR* visibilityMask) {
-    return answer(__func__, [&] {
-        const Session& owner = getSession(session);
+    return answerFor<Session>(__func__, session, [&](const Session& owner) {
         checkViewConfiguration(owner.instance, viewConfigurationType);
         const std::size_t count = countViews(viewConfigurationType);
         require(viewIndex < count, XR_ERROR_VALIDATION_FAILURE, "the view is ", viewIndex, ", must be less than ", count);
@@ -38,14 +37,13 @@ XrResult xrGetVisibilityMaskKHR(XrSession session, XrViewConfigurationType viewC
         if (!simulation.script.visibility_mask || isInset(viewIndex)) { mesh = {}; }
         output.vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
         output.indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
-        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) { return successOf(owner); }
+        if (output.vertexCapacityInput == 0 || output.indexCapacityInput == 0) { return; }
         const bool has_room = output.vertexCapacityInput >= mesh.vertices.size() && output.indexCapacityInput >= mesh.indices.size();
         require(has_room, XR_ERROR_SIZE_INSUFFICIENT, "the arrays have room for ", output.vertexCapacityInput, " vertices and ",
                 output.indexCapacityInput, " indices, must have for ", mesh.vertices.size(), " and ", mesh.indices.size());
         require(output.vertices != nullptr && output.indices != nullptr, XR_ERROR_VALIDATION_FAILURE, "an array is missing");
         for (std::size_t i = 0; i < mesh.vertices.size(); ++i) { output.vertices[i] = {mesh.vertices[i].x, mesh.vertices[i].y}; }
         for (std::size_t i = 0; i < mesh.indices.size(); ++i) { output.indices[i] = mesh.indices[i]; }
-        return successOf(owner);
     });
 }
 

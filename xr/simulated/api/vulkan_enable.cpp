@@ -1,14 +1,14 @@
 // XR_KHR_vulkan_enable2 and its predecessor: the application's Vulkan instance and device are made through the runtime, which needs nothing
 // of them beyond what the application asks for.
-#include <charconv>
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
 #include "xr/simulated/api/api.h"
-#include "xr/simulated/api/device.h"
 #include "xr/simulated/api/instance.h"
 #include "xr/simulated/api/structures.h"
 #include "xr/simulated/environment.h"
+#include "xr/simulated/files/file_words.h"
 
 namespace simulated {
 namespace {
@@ -20,11 +20,6 @@ Function resolve(PFN_vkGetInstanceProcAddr loader, VkInstance instance, const ch
     return function;
 }
 
-PFN_vkGetInstanceProcAddr loaderOf(const Instance& owner, VkInstance instance) {
-    const auto found = owner.vulkan_loaders.find(instance);
-    return found == owner.vulkan_loaders.end() ? findSystemVulkanLoader() : found->second;
-}
-
 bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDevice device) {
     const auto getFamilies =
         resolve<PFN_vkGetPhysicalDeviceQueueFamilyProperties>(loader, instance, "vkGetPhysicalDeviceQueueFamilyProperties");
@@ -32,22 +27,16 @@ bool canDraw(PFN_vkGetInstanceProcAddr loader, VkInstance instance, VkPhysicalDe
     getFamilies(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     getFamilies(device, &count, families.data());
-    for (const auto& family : families) {
-        if ((family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) { return true; }
-    }
-    return false;
+    return std::ranges::any_of(families, [](const auto& family) { return (family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0; });
 }
 
 // SIMULATED_OPENXR_GPU counts the devices that can draw, from 0.
 std::size_t findWantedDevice() {
     const Setting setting = settingOf("GPU");
     if (!setting.isSet()) { return 0; }
-    const std::string& text = setting.value;
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    require(error == std::errc() && end == text.data() + text.size(), XR_ERROR_RUNTIME_FAILURE, setting.variable, " is '", text,
-            "', must be a whole number from 0 on");
-    return index;
+    const auto index = files::parseWhole<std::size_t>(setting.value);
+    require(index.has_value(), XR_ERROR_RUNTIME_FAILURE, setting.variable, " is '", setting.value, "', must be a whole number from 0 on");
+    return *index;
 }
 
 VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance instance) {
@@ -67,25 +56,22 @@ VkPhysicalDevice chooseDevice(PFN_vkGetInstanceProcAddr loader, VkInstance insta
 
 template <class Requirements>
 XrResult answerRequirements(const char* function, XrInstance instance, XrSystemId system, Requirements* requirements) {
-    return answer(function, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(function, instance, [&](Instance& owner) {
         checkSystem(system);
         // Both extensions share the structure and its type.
         Requirements& output = checkStruct(requirements, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR);
         output.minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
         output.maxApiVersionSupported = XR_MAKE_VERSION(1, 3, 0);
         owner.has_asked_requirements = true;
-        return XR_SUCCESS;
     });
 }
 
 // No extension is needed, so the string is empty.
 XrResult answerNoExtensions(const char* function, XrInstance instance, XrSystemId system, uint32_t capacity, uint32_t* count,
                             char* buffer) {
-    return answer(function, [&] {
-        getInstance(instance);
+    return answerFor<Instance>(function, instance, [&](const Instance&) {
         checkSystem(system);
-        return fillString(capacity, count, buffer, "");
+        fillString(capacity, count, buffer, "");
     });
 }
 
@@ -100,12 +86,20 @@ void checkCreation(const Info& info, const char* made_from) {
 
 VkPhysicalDevice giveDevice(Instance& owner, VkInstance instance) {
     require(instance != VK_NULL_HANDLE, XR_ERROR_VALIDATION_FAILURE, "the VkInstance is null");
-    owner.graphics_device = chooseDevice(loaderOf(owner, instance), instance);
+    owner.graphics_device = chooseDevice(owner.vulkanLoaderOf(instance), instance);
     owner.graphics_instance = instance;
     return owner.graphics_device;
 }
 
 }  // namespace
+
+PFN_vkGetInstanceProcAddr Instance::vulkanLoaderOf(VkInstance vulkan_instance) const {
+    const auto found = vulkan_loaders.find(vulkan_instance);
+    if (found != vulkan_loaders.end()) { return found->second; }
+    void* const function = findVulkanFunction("vkGetInstanceProcAddr");
+    require(function != nullptr, XR_ERROR_RUNTIME_FAILURE, "there is no ", kVulkanLoader);
+    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(function);
+}
 
 XrResult xrGetVulkanGraphicsRequirements2KHR(XrInstance instance, XrSystemId systemId,
                                              XrGraphicsRequirementsVulkan2KHR* graphicsRequirements) {
@@ -129,8 +123,7 @@ XrResult xrGetVulkanDeviceExtensionsKHR(XrInstance instance, XrSystemId systemId
 
 XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCreateInfoKHR* createInfo, VkInstance* vulkanInstance,
                                    VkResult* vulkanResult) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrVulkanInstanceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
         VkInstance& output = checkOutput(vulkanInstance);
         VkResult& result = checkOutput(vulkanResult);
@@ -143,36 +136,30 @@ XrResult xrCreateVulkanInstanceKHR(XrInstance instance, const XrVulkanInstanceCr
         if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
             explainFailure("xrCreateVulkanInstanceKHR", "no GPU: Vulkan has no driver, not even a software one (Mesa's lavapipe)");
         }
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrGetVulkanGraphicsDevice2KHR(XrInstance instance, const XrVulkanGraphicsDeviceGetInfoKHR* getInfo,
                                        VkPhysicalDevice* vulkanPhysicalDevice) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrVulkanGraphicsDeviceGetInfoKHR& info = checkStruct(getInfo, XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR);
         VkPhysicalDevice& output = checkOutput(vulkanPhysicalDevice);
         checkSystem(info.systemId);
         output = giveDevice(owner, info.vulkanInstance);
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrGetVulkanGraphicsDeviceKHR(XrInstance instance, XrSystemId systemId, VkInstance vkInstance, VkPhysicalDevice* vkPhysicalDevice) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         checkSystem(systemId);
         VkPhysicalDevice& output = checkOutput(vkPhysicalDevice);
         output = giveDevice(owner, vkInstance);
-        return XR_SUCCESS;
     });
 }
 
 XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreateInfoKHR* createInfo, VkDevice* vulkanDevice,
                                  VkResult* vulkanResult) {
-    return answer(__func__, [&] {
-        Instance& owner = getInstance(instance);
+    return answerFor<Instance>(__func__, instance, [&](Instance& owner) {
         const XrVulkanDeviceCreateInfoKHR& info = checkStruct(createInfo, XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
         VkDevice& output = checkOutput(vulkanDevice);
         VkResult& result = checkOutput(vulkanResult);
@@ -187,7 +174,6 @@ XrResult xrCreateVulkanDeviceKHR(XrInstance instance, const XrVulkanDeviceCreate
         with_additions.pNext = &timeline;
         const bool adds = owner.simulation->script.adds_vulkan_features;
         result = create(info.vulkanPhysicalDevice, adds ? &with_additions : info.vulkanCreateInfo, info.vulkanAllocator, &output);
-        return XR_SUCCESS;
     });
 }
 

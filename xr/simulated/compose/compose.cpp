@@ -30,8 +30,6 @@ struct Tangents {
     }
 };
 
-bool isInside(const glm::dvec2& uv) { return uv.x >= 0.0 && uv.x <= 1.0 && uv.y >= 0.0 && uv.y <= 1.0; }
-
 glm::dvec2 pixelCentre(const glm::uvec2& size_px, std::uint32_t x, std::uint32_t y) {
     return glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(size_px);
 }
@@ -52,8 +50,7 @@ public:
     [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t x, std::uint32_t y, const glm::dvec3& direction_eye) const {
         if (is_same_grid_) { return sampler_.texel(x, y); }
         const std::optional<glm::dvec2> uv = tangents_.uvOf(view_from_eye_ * direction_eye);
-        if (!uv || !isInside(*uv)) { return std::nullopt; }
-        return sampler_.sample(uv->x, uv->y);
+        return uv ? sampler_.sampleInside(uv->x, uv->y) : std::nullopt;
     }
 
 private:
@@ -98,28 +95,22 @@ private:
 
 class SeenQuad {
 public:
-    SeenQuad(const EyeView& eye, const QuadLayer& quad) : sampler_(quad.picture, quad.rect), size_m_(quad.size_m) {
-        const Pose quad_from_eye = compose(inverse(quad.stage_from_quad), eye.stage_from_eye);
-        eye_quad_ = quad_from_eye.position;
-        quad_from_eye_ = glm::mat3_cast(quad_from_eye.orientation);
-    }
+    SeenQuad(const EyeView& eye, const QuadLayer& quad)
+        : sampler_(quad.picture, quad.rect), rays_(eye, quad.stage_from_quad), size_m_(quad.size_m) {}
 
     [[nodiscard]] std::optional<glm::dvec4> at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
-        const glm::dvec3 direction = quad_from_eye_ * direction_eye;
+        const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
         // From the front only, and only ahead: the eye is on the +z side and looks towards -z.
-        if (!(eye_quad_.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
+        if (!(rays_.eye.z > 0.0) || !(direction.z < 0.0)) { return std::nullopt; }
         if (size_m_.x <= 0.0 || size_m_.y <= 0.0) { return std::nullopt; }
-        const glm::dvec3 hit = eye_quad_ - direction * (eye_quad_.z / direction.z);
-        const glm::dvec2 uv(hit.x / size_m_.x + 0.5, 0.5 - hit.y / size_m_.y);
-        if (!isInside(uv)) { return std::nullopt; }
-        return sampler_.sample(uv.x, uv.y);
+        const glm::dvec3 hit = rays_.eye - direction * (rays_.eye.z / direction.z);
+        return sampler_.sampleInside(hit.x / size_m_.x + 0.5, 0.5 - hit.y / size_m_.y);
     }
 
 private:
     Sampler sampler_;
+    LayerRays rays_;
     glm::dvec2 size_m_;
-    glm::dvec3 eye_quad_;
-    glm::dmat3 quad_from_eye_;
 };
 
 struct SeenLayer {

@@ -80,9 +80,7 @@ Mesh makeHiddenMesh(const Fov& fov) {
     const auto left = static_cast<float>(std::tan(fov.left_rad)), right = static_cast<float>(std::tan(fov.right_rad));
     const auto up = static_cast<float>(std::tan(fov.up_rad)), down = static_cast<float>(std::tan(fov.down_rad));
     // In the order in which the ellipse passes them: a fan from each corner of the view to its quarter.
-    for (const glm::vec2 corner : {glm::vec2(right, up), glm::vec2(left, up), glm::vec2(left, down), glm::vec2(right, down)}) {
-        mesh.vertices.push_back(corner);
-    }
+    mesh.vertices.insert(mesh.vertices.end(), {{right, up}, {left, up}, {left, down}, {right, down}});
     for (std::uint32_t i = 0; i < kOutlineCorners; ++i) {
         const std::uint32_t quarter = i / (kOutlineCorners / 4);
         mesh.indices.insert(mesh.indices.end(), {kOutlineCorners + quarter, (i + 1) % kOutlineCorners, i});

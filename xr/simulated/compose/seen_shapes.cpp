@@ -21,11 +21,6 @@ std::optional<double> findWayOut(double a, double b, double c) {
     return t > 0.0 ? std::optional(t) : std::nullopt;
 }
 
-std::optional<glm::dvec4> sampleInside(const Sampler& sampler, double u, double v) {
-    if (!(u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0)) { return std::nullopt; }
-    return sampler.sample(u, v);
-}
-
 double longitude(const glm::dvec3& place) { return std::atan2(place.x, -place.z); }
 
 Rect wholeOf(const Picture& picture) { return {{0, 0}, picture.size_px}; }
@@ -39,49 +34,43 @@ LayerRays::LayerRays(const EyeView& eye_view, const Pose& stage_from_layer) {
 }
 
 SeenCylinder::SeenCylinder(const EyeView& eye, const CylinderLayer& layer)
-    : sampler_(layer.picture, layer.rect),
-      rays_(eye, layer.stage_from_cylinder),
-      radius_m_(layer.radius_m),
-      angle_rad_(layer.central_angle_rad),
-      aspect_(layer.aspect_ratio) {}
+    : sampler_(layer.picture, layer.rect), rays_(eye, layer.stage_from_cylinder), layer_(layer) {}
 
 std::optional<glm::dvec4> SeenCylinder::at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
-    if (!(angle_rad_ > 0.0)) { return std::nullopt; }
+    const double radius_m = layer_.radius_m, angle_rad = layer_.central_angle_rad;
+    if (!(angle_rad > 0.0)) { return std::nullopt; }
     const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
     const double level = std::hypot(direction.x, direction.z);
     glm::dvec3 place = level > 0.0 ? direction / level : glm::dvec3(0.0);
     if (!(level > 0.0)) { return std::nullopt; }  // straight up or down
-    if (isFinite(radius_m_)) {
+    if (isFinite(radius_m)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t = findWayOut(level * level, direction.x * from.x + direction.z * from.z,
-                                  from.x * from.x + from.z * from.z - radius_m_ * radius_m_);
+        const auto t =
+            findWayOut(level * level, direction.x * from.x + direction.z * from.z, from.x * from.x + from.z * from.z - radius_m * radius_m);
         if (!t) { return std::nullopt; }
-        place = (from + *t * direction) / radius_m_;
+        place = (from + *t * direction) / radius_m;
     }
     // On the cylinder of radius 1 the picture is as wide as its angle.
-    return sampleInside(sampler_, 0.5 + longitude(place) / angle_rad_, 0.5 - place.y * aspect_ / angle_rad_);
+    return sampler_.sampleInside(0.5 + longitude(place) / angle_rad, 0.5 - place.y * layer_.aspect_ratio / angle_rad);
 }
 
 SeenSphere::SeenSphere(const EyeView& eye, const SphereLayer& layer)
-    : sampler_(layer.picture, layer.rect),
-      rays_(eye, layer.stage_from_sphere),
-      radius_m_(layer.radius_m),
-      angle_rad_(layer.horizontal_angle_rad),
-      upper_rad_(layer.upper_angle_rad),
-      lower_rad_(layer.lower_angle_rad) {}
+    : sampler_(layer.picture, layer.rect), rays_(eye, layer.stage_from_sphere), layer_(layer) {}
 
 std::optional<glm::dvec4> SeenSphere::at(std::uint32_t, std::uint32_t, const glm::dvec3& direction_eye) const {
-    if (!(angle_rad_ > 0.0) || !(upper_rad_ > lower_rad_)) { return std::nullopt; }
+    const double upper_rad = layer_.upper_angle_rad, lower_rad = layer_.lower_angle_rad;
+    if (!(layer_.horizontal_angle_rad > 0.0) || !(upper_rad > lower_rad)) { return std::nullopt; }
     const glm::dvec3 direction = rays_.layer_from_eye * direction_eye;
     glm::dvec3 place = direction;
-    if (isFinite(radius_m_)) {
+    if (isFinite(layer_.radius_m)) {
         const glm::dvec3& from = rays_.eye;
-        const auto t = findWayOut(glm::dot(direction, direction), glm::dot(direction, from), glm::dot(from, from) - radius_m_ * radius_m_);
+        const auto t =
+            findWayOut(glm::dot(direction, direction), glm::dot(direction, from), glm::dot(from, from) - layer_.radius_m * layer_.radius_m);
         if (!t) { return std::nullopt; }
         place = from + *t * direction;
     }
     const double latitude = std::asin(std::clamp(place.y / glm::length(place), -1.0, 1.0));
-    return sampleInside(sampler_, 0.5 + longitude(place) / angle_rad_, (upper_rad_ - latitude) / (upper_rad_ - lower_rad_));
+    return sampler_.sampleInside(0.5 + longitude(place) / layer_.horizontal_angle_rad, (upper_rad - latitude) / (upper_rad - lower_rad));
 }
 
 SeenCube::SeenCube(const EyeView& eye, const CubeLayer& layer) : rays_(eye, {layer.stage_from_cube, {}}) {

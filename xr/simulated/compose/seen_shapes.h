@@ -27,7 +27,7 @@ public:
 private:
     Sampler sampler_;
     LayerRays rays_;
-    double radius_m_, angle_rad_, aspect_;
+    CylinderLayer layer_;
 };
 
 class SeenSphere {
@@ -38,7 +38,7 @@ public:
 private:
     Sampler sampler_;
     LayerRays rays_;
-    double radius_m_, angle_rad_, upper_rad_, lower_rad_;
+    SphereLayer layer_;
 };
 
 class SeenCube {

@@ -101,4 +101,9 @@ glm::dvec4 Sampler::sample(double u, double v) const {
     return glm::mix(glm::mix(texel(x0, y0), texel(x1, y0), across), glm::mix(texel(x0, y1), texel(x1, y1), across), down);
 }
 
+std::optional<glm::dvec4> Sampler::sampleInside(double u, double v) const {
+    if (!(u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0)) { return std::nullopt; }
+    return sample(u, v);
+}
+
 }  // namespace simulated

@@ -5,6 +5,8 @@
 
 #include <glm/vec4.hpp>
 
+#include <optional>
+
 namespace simulated {
 
 // A rectangle of a picture, seen as linear light with the alpha as stored. Throws std::invalid_argument if the rectangle is empty or
@@ -13,11 +15,12 @@ class Sampler {
 public:
     Sampler(const Picture& picture, const Rect& rect);
 
-    [[nodiscard]] const Rect& rect() const { return rect_; }
     // Column and row within the rectangle.
     [[nodiscard]] glm::dvec4 texel(std::uint32_t x, std::uint32_t y) const;
     // Bilinear at u, v from 0 to 1, from the rectangle's left and top edges; texels beyond the rectangle are those at its edge.
     [[nodiscard]] glm::dvec4 sample(double u, double v) const;
+    // None beyond the rectangle's edges.
+    [[nodiscard]] std::optional<glm::dvec4> sampleInside(double u, double v) const;
 
 private:
     Picture picture_;

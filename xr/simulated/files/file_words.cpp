@@ -1,7 +1,6 @@
 // Words read as numbers, trimmed, and made fit for a message.
 #include "xr/simulated/files/file_words.h"
 
-#include <charconv>
 #include <cmath>
 
 namespace files {
@@ -19,6 +18,16 @@ std::optional<double> parseNumber(std::string_view word) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) { return std::nullopt; }
     return value;
+}
+
+std::string listWords(std::initializer_list<std::string_view> words) {
+    std::string result;
+    for (const std::string_view& word : words) {
+        const bool is_first = &word == words.begin(), is_last = &word + 1 == words.end();
+        result += is_first ? "" : is_last ? " or " : ", ";
+        result += word;
+    }
+    return result;
 }
 
 std::string_view trim(std::string_view text) {

@@ -1,6 +1,8 @@
 // Common to the readers of headsets and head motion: numbers, and errors that name file and line.
 #pragma once
 
+#include <charconv>
+#include <initializer_list>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -28,6 +30,17 @@ template <typename... Parts>
 
 // The whole word as a number of the C locale; none if it is anything else, or not finite.
 [[nodiscard]] std::optional<double> parseNumber(std::string_view word);
+
+// The whole word as a whole number; none if it is anything else, or too large for the type.
+template <typename Integer>
+[[nodiscard]] std::optional<Integer> parseWhole(std::string_view word) {
+    Integer value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc{} && end == word.data() + word.size() ? std::optional(value) : std::nullopt;
+}
+
+// "one, two or three"
+[[nodiscard]] std::string listWords(std::initializer_list<std::string_view> words);
 
 // Without blanks around it.
 [[nodiscard]] std::string_view trim(std::string_view text);

@@ -5,7 +5,6 @@
 #include "xr/simulated/files/toml_guard.h"
 
 #include <algorithm>
-#include <charconv>
 #include <initializer_list>
 #include <numbers>
 #include <vector>
@@ -29,17 +28,6 @@ namespace {
 double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
 
 double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
-
-// "one, two or three"
-std::string listWords(std::initializer_list<std::string_view> words) {
-    std::string result;
-    for (const std::string_view& word : words) {
-        const bool is_first = &word == words.begin(), is_last = &word + 1 == words.end();
-        result += is_first ? "" : is_last ? " or " : ", ";
-        result += word;
-    }
-    return result;
-}
 
 std::string putInWords(const toml::node& node) {
     if (const auto text = node.value<std::string>()) { return shown(*text); }
@@ -115,9 +103,8 @@ private:
 std::array<std::uint32_t, 2> sizeOf(const Table& table, std::string_view key = "size") {
     const std::string text = table.text(key);
     const auto side = [](std::string_view digits) {
-        std::uint32_t value = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        return error == std::errc{} && end == digits.data() + digits.size() && value <= 16384 ? value : 0;
+        const std::uint32_t value = parseWhole<std::uint32_t>(digits).value_or(0);
+        return value <= 16384 ? value : 0;
     };
     const std::size_t cross = std::min(text.find('x'), text.size());
     const std::string_view all = text;

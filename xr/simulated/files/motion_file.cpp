@@ -3,7 +3,6 @@
 
 #include "xr/simulated/files/file_words.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -65,10 +64,7 @@ std::optional<Time> parseTime(std::string_view text) {
     const std::optional<double> count = parseNumber(text);
     // Differences of numbers up to 4e18 do not overflow.
     if (!count || std::abs(*count) > 4e18) { return std::nullopt; }
-    std::int64_t whole = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
-    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
-    return Time{*count, is_whole ? std::optional(whole) : std::nullopt};
+    return Time{*count, parseWhole<std::int64_t>(text)};
 }
 
 double countBetween(const Time& from, const Time& to) {

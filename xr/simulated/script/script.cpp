@@ -70,21 +70,8 @@ double ControllerState::input(std::string_view identifier_and_component) const {
 }
 
 const char* nameOf(ScriptEvent::Kind kind) {
-    switch (kind) {
-        case ScriptEvent::Kind::kRate:
-            return "rate";
-        case ScriptEvent::Kind::kSlowImages:
-            return "slow-images";
-        case ScriptEvent::Kind::kRecentre:
-            return "recentre";
-        case ScriptEvent::Kind::kLoseSession:
-            return "lose-session";
-        case ScriptEvent::Kind::kLoseInstance:
-            return "lose-instance";
-        case ScriptEvent::Kind::kExit:
-            return "exit";
-    }
-    return "unknown";
+    constexpr const char* kNames[] = {"rate", "slow-images", "recentre", "lose-session", "lose-instance", "exit"};
+    return kNames[static_cast<std::size_t>(kind)];
 }
 
 Script::Script() {
@@ -166,14 +153,6 @@ glm::uvec2 Script::insetSizePx() const {
         share = glm::max(share, extentOf(makeInset(whole, lens_centres_rad[side], inset.half_angle_rad)) / extentOf(whole));
     }
     return glm::uvec2(glm::ceil(share * glm::dvec2(size_px) - 1e-9));
-}
-
-std::optional<InputPath> parseInputPath(std::string_view path) {
-    for (const Side side : kSides) {
-        const std::string_view prefix = side == kLeft ? "/user/hand/left/input/" : "/user/hand/right/input/";
-        if (path.starts_with(prefix) && path.size() > prefix.size()) { return InputPath{side, path.substr(prefix.size())}; }
-    }
-    return std::nullopt;
 }
 
 }  // namespace simulated

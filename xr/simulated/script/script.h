@@ -201,12 +201,4 @@ struct Script {
     std::vector<ScriptEvent> events;  // by time
 };
 
-// A binding path such as /user/hand/right/input/trigger/value at a state: the side and what follows /input/. None if the path is not of
-// that form. Identifiers without component ("/input/trigger") are returned as they are.
-struct InputPath {
-    Side side;
-    std::string_view input;
-};
-[[nodiscard]] std::optional<InputPath> parseInputPath(std::string_view path);
-
 }  // namespace simulated

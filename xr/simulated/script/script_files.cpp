@@ -14,6 +14,17 @@ namespace simulated {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// A file's own error as the script's.
+auto readWith(const auto& parse, const auto& text, const std::string& name) {
+    try {
+        return parse(text, name);
+    } catch (const files::Error& error) { throw ScriptError(error.what()); }
+}
+
+}  // namespace
+
 std::string readText(const fs::path& path, const std::string& place, const char* expected, std::size_t most_bytes) {
     const auto refuse = [&](const std::string& reason) {
         throw ScriptError(fmt::format("{}{}: cannot be read ({}), must be {}", place, path.string(), reason, expected));
@@ -33,20 +44,11 @@ std::string readText(const fs::path& path, const std::string& place, const char*
     return text;
 }
 
-files::HeadsetFile readHeadset(const std::string& text, const std::string& name) {
-    try {
-        return files::parseHeadset(text, name);
-    } catch (const files::Error& error) { throw ScriptError(error.what()); }
-}
+files::HeadsetFile readHeadset(const std::string& text, const std::string& name) { return readWith(files::parseHeadset, text, name); }
 
 Track<Pose> readHeadTrack(std::string_view text, const std::string& name, MotionAxes axes) {
     Track<Pose> track;
-    const std::vector<files::MotionSample> samples = [&] {
-        try {
-            return files::parseMotion(text, name);
-        } catch (const files::Error& error) { throw ScriptError(error.what()); }
-    }();
-    for (const files::MotionSample& sample : samples) {
+    for (const files::MotionSample& sample : readWith(files::parseMotion, text, name)) {
         const auto& [x, y, z] = sample.position_m;
         const auto& [qx, qy, qz, qw] = sample.orientation_xyzw;
         // Unity's axes: a reflection in z turns the axis and reverses the sense.

@@ -1,7 +1,7 @@
 // The commands about the wearer's gaze.
 #include "xr/simulated/script/script_gaze.h"
 
-#include "xr/simulated/script/script_words.h"
+#include "xr/simulated/script/script_parser.h"
 
 #include <glm/trigonometric.hpp>
 
@@ -16,25 +16,22 @@ Pose GazeScript::headFromGaze(double time_s) const {
 
 GazeTracking GazeScript::trackedAt(double time_s) const { return tracker == EyeTracking::kOn ? tracked.at(time_s) : GazeTracking::kOff; }
 
-void parseEyeTracking(Words& words, GazeScript& gaze) {
-    gaze.tracker = std::array{EyeTracking::kOn, EyeTracking::kOff, EyeTracking::kRefused}.at(
+void Parser::parseEyeTracking(Words& words) {
+    script_.gaze.tracker = std::array{EyeTracking::kOn, EyeTracking::kOff, EyeTracking::kRefused}.at(
         words.takeChoice("whether eyes are tracked", {"on", "off", "refused"}));
 }
 
-void parseGazeKey(Words& words, GazeScript& gaze) {
+void Parser::parseGaze(Words& words) {
     const double time_s = words.takeTime();
     const double yaw = words.takeNumber("the turn to the left in degrees", -90.0, 90.0);
     const double pitch = words.takeNumber("the turn upwards in degrees", -90.0, 90.0);
-    const glm::dvec2 turn_rad = glm::radians(glm::dvec2(yaw, pitch));
-    if (!gaze.turn_rad.add(time_s, turn_rad)) {
-        words.fail("the time is {}, must be after the key before, at {}", time_s, gaze.turn_rad.lastTime());
-    }
+    addKey(words, script_.gaze.turn_rad, time_s, glm::radians(glm::dvec2(yaw, pitch)));
 }
 
-void parseGazeTracking(Words& words, double time_s, GazeScript& gaze) {
+void Parser::parseGazeTracking(Words& words, double time_s) {
     const auto tracking = std::array{GazeTracking::kOn, GazeTracking::kOff, GazeTracking::kDegraded}.at(
         words.takeChoice("whether the gaze is tracked", {"on", "off", "degraded"}));
-    if (!gaze.tracked.add(time_s, tracking)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
+    addStep(words, script_.gaze.tracked, time_s, tracking);
 }
 
 }  // namespace simulated

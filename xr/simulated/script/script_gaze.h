@@ -7,8 +7,6 @@
 
 namespace simulated {
 
-class Words;
-
 // Eye tracking. Refused: the headset has it, but the wearer does not allow it to this program.
 enum class EyeTracking { kOn, kOff, kRefused };
 // The quality of the gaze. Degraded: a direction, but not a good one.
@@ -23,11 +21,5 @@ struct GazeScript {
     [[nodiscard]] Pose headFromGaze(double time_s) const;
     [[nodiscard]] GazeTracking trackedAt(double time_s) const;
 };
-
-// `eye-tracking on|off|refused`, `gaze T YAW PITCH` and `at T gaze on|off|degraded`, from the word after those named here. Throw
-// ScriptError.
-void parseEyeTracking(Words& words, GazeScript& gaze);
-void parseGazeKey(Words& words, GazeScript& gaze);
-void parseGazeTracking(Words& words, double time_s, GazeScript& gaze);
 
 }  // namespace simulated

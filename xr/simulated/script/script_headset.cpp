@@ -25,30 +25,19 @@ std::optional<glm::uvec2> sizeOf(const std::optional<std::array<std::uint32_t, 2
 }  // namespace
 
 void Parser::parseRate(Words& words) {
-    requireFirst(words, "rate");
     script_.rate_hz = words.takeNumber(kRateMeaning, kLeastRate, kMostRate);
     script_.rate_is_fixed = words.takeIf("fixed");
 }
 
 void Parser::parseIrregular(Words& words) {
-    requireFirst(words, "irregular");
     script_.irregularity = 0.01 * words.takeNumber("how much periods differ, in percent", 0.0, 90.0);
 }
 
-void Parser::parsePeriod(Words& words) {
-    requireFirst(words, "period");
-    script_.stretches_period = words.takeChoice("the stated period", {"steady", "stretched"}) == 1;
-}
+void Parser::parsePeriod(Words& words) { script_.stretches_period = words.takeChoice("the stated period", {"steady", "stretched"}) == 1; }
 
-void Parser::parseSize(Words& words) {
-    requireFirst(words, "size");
-    script_.size_px = takeSize(words);
-}
+void Parser::parseSize(Words& words) { script_.size_px = takeSize(words); }
 
-void Parser::parseIpd(Words& words) {
-    requireFirst(words, "ipd");
-    script_.eye_distance_m = words.takeNumber("the eye distance in metres", 0.0, 1.0);
-}
+void Parser::parseIpd(Words& words) { script_.eye_distance_m = words.takeNumber("the eye distance in metres", 0.0, 1.0); }
 
 void Parser::parseEye(Words& words) {
     const Side side = words.takeSide();
@@ -60,11 +49,6 @@ void Parser::parseEye(Words& words) {
         requireFirst(words, eye + "cant");
         script_.cant_rad[side] = glm::radians(words.takeNumber("the turn outwards in degrees", -45.0, 45.0));
     }
-}
-
-void Parser::parseEyeTrackingLine(Words& words) {
-    requireFirst(words, "eye-tracking");
-    parseEyeTracking(words, script_.gaze);
 }
 
 void Parser::parseHeadsetLine(Words& words) {
@@ -89,14 +73,12 @@ void Parser::parseHeadsetLine(Words& words) {
 }
 
 void Parser::parseInset(Words& words) {
-    requireFirst(words, "inset");
     script_.inset.half_angle_rad = glm::radians(words.takeNumber("half of the inset's angle in degrees", 1.0, 85.0));
     if (words.takeIf("size")) { script_.inset.size_px = takeSize(words); }
     if (words.takeIf("context")) { script_.inset.context_px = takeSize(words); }
 }
 
 void Parser::parseBlendModes(Words& words) {
-    requireFirst(words, "blend-modes");
     script_.blend_modes.clear();
     do {
         const auto mode = static_cast<Script::BlendMode>(words.takeChoice("a blend mode", {"opaque", "additive", "alpha-blend"}));
@@ -108,25 +90,17 @@ void Parser::parseBlendModes(Words& words) {
 }
 
 void Parser::parseRoomColour(Words& words) {
-    requireFirst(words, "room-colour");
     for (int c = 0; c < 3; ++c) { script_.room_colour[c] = words.takeNumber("the room's colour", 0.0, 1.0); }
 }
 
 void Parser::parseMask(Words& words) {
-    requireFirst(words, "visibility-mask");
     const std::size_t choice = words.takeChoice("whether there is a mask", {"on", "off", "broken"});
     script_.visibility_mask = choice == 0;
     script_.visibility_mask_is_broken = choice == 2;
 }
 
-void Parser::parseLocal(Words& words) {
-    requireFirst(words, "local");
-    script_.stage_from_local = parsePose(words, {});
-}
+void Parser::parseLocal(Words& words) { script_.stage_from_local = parsePose(words, {}); }
 
-void Parser::parseStage(Words& words) {
-    requireFirst(words, "stage");
-    script_.has_stage = words.takeOnOff("whether there is a STAGE");
-}
+void Parser::parseStage(Words& words) { script_.has_stage = words.takeOnOff("whether there is a STAGE"); }
 
 }  // namespace simulated

@@ -26,46 +26,50 @@ Script Parser::parse(std::string_view text) {
 }
 
 void Parser::parseLine(Words& words) {
-    static const std::map<std::string, Command, std::less<>> kCommands{{"at", &Parser::parseAt},
-                                                                       {"aim", &Parser::parseAim},
-                                                                       {"axis", &Parser::parseAxis},
-                                                                       {"blend-modes", &Parser::parseBlendModes},
-                                                                       {"controller", &Parser::parseController},
-                                                                       {"extension", &Parser::parseExtension},
-                                                                       {"eye", &Parser::parseEye},
-                                                                       {"eye-tracking", &Parser::parseEyeTrackingLine},
-                                                                       {"frames", &Parser::parseFrames},
-                                                                       {"gaze", &Parser::parseGazeLine},
-                                                                       {"head", &Parser::parseHead},
-                                                                       {"head-motion", &Parser::parseHeadMotionLine},
-                                                                       {"headset", &Parser::parseHeadsetLine},
-                                                                       {"images", &Parser::parseImages},
-                                                                       {"inset", &Parser::parseInset},
-                                                                       {"ipd", &Parser::parseIpd},
-                                                                       {"irregular", &Parser::parseIrregular},
-                                                                       {"local", &Parser::parseLocal},
-                                                                       {"no-headset-for", &Parser::parseNoHeadset},
-                                                                       {"period", &Parser::parsePeriod},
-                                                                       {"plugged", &Parser::parsePlugged},
-                                                                       {"press", &Parser::parsePress},
-                                                                       {"profile", &Parser::parseProfile},
-                                                                       {"rate", &Parser::parseRate},
-                                                                       {"refuse-depth", &Parser::parseRefusedDepth},
-                                                                       {"room-colour", &Parser::parseRoomColour},
-                                                                       {"size", &Parser::parseSize},
-                                                                       {"stage", &Parser::parseStage},
-                                                                       {"state-changes", &Parser::parseStateChanges},
-                                                                       {"touch", &Parser::parseTouch},
-                                                                       {"visibility-mask", &Parser::parseMask},
-                                                                       {"vulkan-additions", &Parser::parseVulkanAdditions}};
+    constexpr bool kOnce = true;
+    static const std::map<std::string, Command, std::less<>> kCommands{{"at", {&Parser::parseAt}},
+                                                                       {"aim", {&Parser::parseAim}},
+                                                                       {"axis", {&Parser::parseAxis}},
+                                                                       {"blend-modes", {&Parser::parseBlendModes, kOnce}},
+                                                                       {"controller", {&Parser::parseController}},
+                                                                       {"extension", {&Parser::parseExtension}},
+                                                                       {"eye", {&Parser::parseEye}},
+                                                                       {"eye-tracking", {&Parser::parseEyeTracking, kOnce}},
+                                                                       {"frames", {&Parser::parseFrames, kOnce}},
+                                                                       {"gaze", {&Parser::parseGaze}},
+                                                                       {"head", {&Parser::parseHead}},
+                                                                       {"head-motion", {&Parser::parseHeadMotionLine, kOnce}},
+                                                                       {"headset", {&Parser::parseHeadsetLine}},
+                                                                       {"images", {&Parser::parseImages, kOnce}},
+                                                                       {"inset", {&Parser::parseInset, kOnce}},
+                                                                       {"ipd", {&Parser::parseIpd, kOnce}},
+                                                                       {"irregular", {&Parser::parseIrregular, kOnce}},
+                                                                       {"local", {&Parser::parseLocal, kOnce}},
+                                                                       {"no-headset-for", {&Parser::parseNoHeadset}},
+                                                                       {"period", {&Parser::parsePeriod, kOnce}},
+                                                                       {"plugged", {&Parser::parsePlugged, kOnce}},
+                                                                       {"press", {&Parser::parsePress}},
+                                                                       {"profile", {&Parser::parseProfile, kOnce}},
+                                                                       {"rate", {&Parser::parseRate, kOnce}},
+                                                                       {"refuse-depth", {&Parser::parseRefusedDepth, kOnce}},
+                                                                       {"room-colour", {&Parser::parseRoomColour, kOnce}},
+                                                                       {"size", {&Parser::parseSize, kOnce}},
+                                                                       {"stage", {&Parser::parseStage, kOnce}},
+                                                                       {"state-changes", {&Parser::parseStateChanges, kOnce}},
+                                                                       {"touch", {&Parser::parseTouch}},
+                                                                       {"visibility-mask", {&Parser::parseMask, kOnce}},
+                                                                       {"vulkan-additions", {&Parser::parseVulkanAdditions, kOnce}}};
     const std::string command = words.takeText("the command");
     const auto found = kCommands.find(command);
     if (found == kCommands.end()) {
         std::string known;
-        for (const auto& [word, function] : kCommands) { known += (known.empty() ? "" : ", ") + word; }
+        for (const auto& [word, named] : kCommands) { known += (known.empty() ? "" : ", ") + word; }
         words.fail("{} is not a command, must be one of: {}", shown(command), known);
     }
-    (this->*found->second)(words);
+    // Settings stand once: which of two should win, nobody could see.
+    const auto& [parse, stands_once] = found->second;
+    if (stands_once) { requireFirst(words, command); }
+    (this->*parse)(words);
 }
 
 void Parser::requireFirst(const Words& words, const std::string& what) {

@@ -12,6 +12,16 @@ namespace simulated {
 inline constexpr const char* kRateMeaning = "the rate in frames per second";
 inline constexpr double kLeastRate = 1.0, kMostRate = 1000.0;
 
+template <typename Value>
+void addKey(const Words& words, Track<Value>& track, double time_s, const Value& value) {
+    if (!track.add(time_s, value)) { words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime()); }
+}
+
+template <typename Value>
+void addStep(const Words& words, Steps<Value>& steps, double time_s, const Value& value) {
+    if (!steps.add(time_s, value)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
+}
+
 class Parser {
 public:
     explicit Parser(const std::string& name);
@@ -19,10 +29,12 @@ public:
     Script parse(std::string_view text);
 
 private:
-    using Command = void (Parser::*)(Words&);
+    struct Command {
+        void (Parser::*parse)(Words&);
+        bool stands_once = false;
+    };
 
     void parseLine(Words& words);
-    // Settings stand once: which of two should win, nobody could see.
     void requireFirst(const Words& words, const std::string& what);
 
     // script_headset.cpp
@@ -32,7 +44,6 @@ private:
     void parseSize(Words& words);
     void parseIpd(Words& words);
     void parseEye(Words& words);
-    void parseEyeTrackingLine(Words& words);
     void parseHeadsetLine(Words& words);
     void parseInset(Words& words);
     void parseBlendModes(Words& words);
@@ -59,11 +70,15 @@ private:
     void addPose(Words& words, Track<Pose>& track, const Pose& at_rest);
     void parseHead(Words& words);
     void parseHeadMotionLine(Words& words);
-    void parseGazeLine(Words& words);
     void parseController(Words& words);
     void parseAim(Words& words);
     // The recording's first pose lies where the head line says, facing there; its tilt is as recorded.
     void finishPoses();
+
+    // script_gaze.cpp
+    void parseEyeTracking(Words& words);
+    void parseGaze(Words& words);
+    void parseGazeTracking(Words& words, double time_s);
 
     // script_presses.cpp
     std::string takeInputName(Words& words, Script::Hand& hand);

@@ -52,9 +52,7 @@ Pose Parser::parsePose(Words& words, Pose pose) {
 void Parser::addPose(Words& words, Track<Pose>& track, const Pose& at_rest) {
     const double time_s = words.takeTime();
     const Pose before = track.empty() ? at_rest : track.at(track.lastTime());
-    if (!track.add(time_s, parsePose(words, before))) {
-        words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime());
-    }
+    addKey(words, track, time_s, parsePose(words, before));
 }
 
 void Parser::parseHead(Words& words) {
@@ -64,7 +62,6 @@ void Parser::parseHead(Words& words) {
 }
 
 void Parser::parseHeadMotionLine(Words& words) {
-    requireFirst(words, "head-motion");
     if (head_lines_.size() > 1) { words.fail("the head has keys on more than one line, at most one can say where the motion starts"); }
     const fs::path path = folder_ / words.takeText("the motion's file");
     MotionAxes axes = MotionAxes::kOpenXr;
@@ -78,8 +75,6 @@ void Parser::parseHeadMotionLine(Words& words) {
         words.fail("the seconds to skip are {}, must be at most {}, the recording's length", motion_skip_s_, head_motion_->lastTime());
     }
 }
-
-void Parser::parseGazeLine(Words& words) { parseGazeKey(words, script_.gaze); }
 
 void Parser::parseController(Words& words) {
     const Side side = words.takeSide();

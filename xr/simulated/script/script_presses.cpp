@@ -43,8 +43,7 @@ void Parser::parseAxis(Words& words) {
     } else {
         value.x = words.takeNumber("the value", 0.0, 1.0);
     }
-    Track<glm::dvec2>& track = hand.axes[input];
-    if (!track.add(time_s, value)) { words.fail("the time is {}, must be after the key before, at {}", time_s, track.lastTime()); }
+    addKey(words, hand.axes[input], time_s, value);
 }
 
 }  // namespace simulated

@@ -3,12 +3,12 @@
 #include "xr/simulated/extensions.h"
 #include "xr/simulated/script/script_parser.h"
 
+#include <algorithm>
 #include <array>
 
 namespace simulated {
 
 void Parser::parseImages(Words& words) {
-    requireFirst(words, "images");
     script_.images = static_cast<std::uint32_t>(words.takeCount("the number of images", 1, 16));
     if (words.isAtEnd()) { return; }
     constexpr std::array kOrders{Script::ImageOrder::kInTurn, Script::ImageOrder::kReversed, Script::ImageOrder::kShuffled};
@@ -16,13 +16,12 @@ void Parser::parseImages(Words& words) {
 }
 
 void Parser::parseStateChanges(Words& words) {
-    requireFirst(words, "state-changes");
     script_.changes_state_at_begin = words.takeChoice("when states change", {"at-begin", "at-end"}) == 0;
 }
 
 void Parser::parseExtension(Words& words) {
     const std::string name = words.takeText("the extension's name");
-    if (!isExtension(name)) {
+    if (std::ranges::none_of(kExtensions, [&](const Extension& extension) { return extension.name == name; })) {
         std::string known;
         for (const Extension& extension : kExtensions) { known += (known.empty() ? "" : ", ") + std::string(extension.name); }
         words.fail("{} is no extension of this runtime, must be one of: {}", shown(name), known);
@@ -39,18 +38,11 @@ std::string Parser::takeProfileName(Words& words) {
     return name;
 }
 
-void Parser::parseProfile(Words& words) {
-    requireFirst(words, "profile");
-    script_.profile = takeProfileName(words);
-}
+void Parser::parseProfile(Words& words) { script_.profile = takeProfileName(words); }
 
-void Parser::parsePlugged(Words& words) {
-    requireFirst(words, "plugged");
-    script_.plugged = words.takeOnOff("whether the headset is plugged in");
-}
+void Parser::parsePlugged(Words& words) { script_.plugged = words.takeOnOff("whether the headset is plugged in"); }
 
 void Parser::parseVulkanAdditions(Words& words) {
-    requireFirst(words, "vulkan-additions");
     script_.adds_vulkan_features = words.takeOnOff("whether the runtime asks for Vulkan features of its own");
 }
 
@@ -62,13 +54,11 @@ void Parser::parseNoHeadset(Words& words) {
 }
 
 void Parser::parseRefusedDepth(Words& words) {
-    requireFirst(words, "refuse-depth");
     const bool images = words.takeChoice("what is refused", {"images", "layers"}) == 0;
     script_.depth = images ? Script::Depth::kNoImages : Script::Depth::kNoLayers;
 }
 
 void Parser::parseFrames(Words& words) {
-    requireFirst(words, "frames");
     constexpr std::uint64_t kMost = 1'000'000'000;
     if (words.takeIf("none")) {
         script_.writes_pictures = false;

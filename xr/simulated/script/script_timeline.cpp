@@ -20,11 +20,6 @@ GpuLoad parseLoad(Words& words) {
     }
 }
 
-template <typename Value>
-void addStep(Words& words, Steps<Value>& steps, double time_s, const Value& value) {
-    if (!steps.add(time_s, value)) { words.fail("the time is {}, must be after the one of the same change before", time_s); }
-}
-
 void addRecentring(Script& script, double time_s) {
     script.recentres_s.push_back(time_s);
     // The program is told before.
@@ -88,7 +83,7 @@ void Parser::parseAt(Words& words) {
         case 15:
             return addStep(words, script_.later_profiles, time_s, takeProfileName(words));
         default:
-            return parseGazeTracking(words, time_s, script_.gaze);
+            return parseGazeTracking(words, time_s);
     }
 }
 

@@ -5,19 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace simulated {
-
-std::string listWords(std::initializer_list<std::string_view> choices) {
-    std::string result;
-    for (const std::string_view& choice : choices) {
-        const bool is_first = &choice == choices.begin(), is_last = &choice + 1 == choices.end();
-        result += std::string(is_first ? "" : is_last ? " or " : ", ") + std::string(choice);
-    }
-    return result;
-}
 
 Words::Words(std::string_view line, std::string place) : place_(std::move(place)) {
     const auto isBlank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -62,12 +52,11 @@ double Words::takeNumber(std::string_view meaning, double least, double most) {
 std::uint64_t Words::takeCount(std::string_view meaning, std::uint64_t least, std::uint64_t most) {
     if (isAtEnd()) { fail("{} is missing, must be a whole number from {} to {}", meaning, least, most); }
     const std::string& word = words_[next_++];
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size() || value < least || value > most) {
+    const auto value = files::parseWhole<std::uint64_t>(word);
+    if (!value || *value < least || *value > most) {
         fail("{} is {}, must be a whole number from {} to {}", meaning, shown(word), least, most);
     }
-    return value;
+    return *value;
 }
 
 std::size_t Words::takeChoice(std::string_view meaning, std::initializer_list<std::string_view> choices) {

@@ -20,6 +20,7 @@ template <typename... Args>
     throw ScriptError(fmt::format("{}: {}", place, fmt::format(format, std::forward<Args>(args)...)));
 }
 
+using files::listWords;
 using files::parseNumber;
 using files::shown;
 
@@ -58,8 +59,5 @@ private:
     std::vector<std::string> words_;
     std::size_t next_ = 0;
 };
-
-// "one, two or three"
-[[nodiscard]] std::string listWords(std::initializer_list<std::string_view> choices);
 
 }  // namespace simulated
